@@ -1,0 +1,300 @@
+"""How thin can it be? Bisection between a thickness that falls and one that stands."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from blocksim import limit, theory
+from blocksim.arch import Arch, Weight, is_number, require, require_friction
+from blocksim.ladder import choose
+from blocksim.modes import Mode
+from blocksim.progress import Progress, silent
+from blocksim.trial import trial
+from blocksim.verdict import Verdict
+
+ETA_MAX = 2.0
+FIRST_STEP = 0.01
+"""First guess of the bracket's half-width, relative; doubled until it holds."""
+THINNEST = 1e-6
+"""Search below this ratio is given up."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bracket:
+    """Least thickness between two ratios that were both tried.
+
+    Parameters
+    ----------
+    method : str
+    half_angle, mu : float
+    voussoirs : int
+    weight : str
+    tol : float
+        Relative width asked for.
+    eta_low : float or None
+        Largest ratio that collapsed; None where none did.
+    eta_high : float or None
+        Smallest ratio that stood; None where none up to 2 did.
+    eta_limit, eta_theory : float or None
+        Exact values for the voussoirs as built and the continuous arch.
+    mode, mode_limit, mode_theory : Mode or None
+        As observed at `eta_low`, and exact.
+    thrust, beta_r, beta_s : float or None
+        Scaled thrust; angles of the inner hinge and inner sliding joint [rad]. For
+        static methods.
+    confirmed : bool or None
+        Whether moving runs at both ends agree; None for static methods.
+    runs, undecided : int
+        Arches tried, and those without an answer.
+    reason : str
+        What the answer rests on.
+    wall_s : float
+    """
+
+    method: str
+    half_angle: float
+    mu: float
+    voussoirs: int
+    weight: Weight
+    tol: float
+    eta_low: float | None
+    eta_high: float | None
+    eta_limit: float | None
+    eta_theory: float | None
+    mode: Mode | None
+    mode_limit: Mode | None
+    mode_theory: Mode
+    thrust: float | None = None
+    beta_r: float | None = None
+    beta_s: float | None = None
+    confirmed: bool | None = None
+    runs: int = 0
+    undecided: int = 0
+    reason: str = ""
+    wall_s: float = 0.0
+
+    @property
+    def centre(self) -> float | None:
+        """Middle of the bracket; None where no thickness stands or none falls."""
+        if self.eta_low is None or self.eta_high is None:
+            return None
+        return (self.eta_low + self.eta_high) / 2
+
+
+def bracket(
+    *,
+    half_angle: float,
+    mu: float,
+    voussoirs: int,
+    weight: Weight = "centreline",
+    method: str = "auto",
+    tol: float = 0.005,
+    progress: Progress = silent,
+) -> Bracket:
+    """Find the least thickness-to-radius ratio that stands.
+
+    Engines bisect with the onset test and let the arch go at both ends. The search
+    starts at the closed form's value, and only starts there.
+
+    Parameters
+    ----------
+    half_angle : float
+        alpha, in (0, pi) [rad].
+    mu : float
+        Friction coefficient, above 0, inf allowed.
+    voussoirs : int
+    weight : {"centreline", "sector"}
+    method : str
+        `auto`, `theory`, `limit`, or the name of an engine.
+    tol : float
+        Relative width at which to end, above 0 and at most 0.5.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Bracket
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    MissingPart
+        If the engine's library is not installed.
+    """
+    started = time.perf_counter()
+    require_friction(mu)
+    require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
+    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
+    rung = choose(method, tol)
+    built = limit.least_thickness(half_angle, mu, voussoirs, weight)
+    continuous = theory.least_thickness(half_angle, mu, weight)
+    answer = Bracket(
+        method=rung.name,
+        half_angle=half_angle,
+        mu=mu,
+        voussoirs=voussoirs,
+        weight=weight,
+        tol=tol,
+        eta_low=None,
+        eta_high=None,
+        eta_limit=built.eta,
+        eta_theory=continuous.eta,
+        mode=None,
+        mode_limit=built.mode,
+        mode_theory=continuous.mode,
+    )
+    if rung.name == "theory":
+        answer = replace(
+            answer,
+            eta_low=ETA_MAX if continuous.eta is None else continuous.eta,
+            eta_high=continuous.eta,
+            mode=continuous.mode,
+            thrust=continuous.thrust,
+            beta_r=continuous.beta_r,
+            beta_s=continuous.beta_s,
+            reason="closed form of the continuous arch",
+        )
+    elif rung.name == "limit":
+        answer = replace(
+            answer,
+            eta_low=ETA_MAX if built.eta is None else built.eta,
+            eta_high=built.eta,
+            mode=built.mode,
+            thrust=built.thrust,
+            beta_r=_inner(built.hinges_intrados),
+            beta_s=_inner(tuple(x for x in built.slides if x < half_angle)),
+            reason="static limit analysis of the voussoirs as built",
+        )
+    else:
+        answer = _by_simulation(arch, answer, continuous.eta, progress)
+    return replace(answer, wall_s=time.perf_counter() - started)
+
+
+def _inner(angles: tuple[float, ...]) -> float | None:
+    return angles[0] if angles else None
+
+
+def _by_simulation(
+    arch: Arch, answer: Bracket, guess: float | None, progress: Progress
+) -> Bracket:
+    """Bisect with the onset test, then let the arch go at both ends."""
+    search = Search(
+        judge=lambda eta: (
+            trial(replace(arch, eta=eta), answer.mu, answer.method, moving=False).verdict
+        ),
+        progress=progress,
+    )
+    search.expand(ETA_MAX if guess is None else guess)
+    search.bisect(answer.tol)
+    verdicts: list[bool] = []
+    mode = None
+    for eta, expected in ((search.low, Verdict.COLLAPSES), (search.high, Verdict.STANDS)):
+        if eta is not None:
+            progress(0.95, f"moving run at {eta:.6g}")
+            ended = trial(replace(arch, eta=eta), answer.mu, answer.method)
+            verdicts.append(ended.verdict is expected)
+            mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
+    confirmed = bool(verdicts) and all(verdicts)
+    ends = "confirmed" if confirmed else "not confirmed"
+    return replace(
+        answer,
+        eta_low=search.low,
+        eta_high=search.high,
+        mode=mode,
+        confirmed=confirmed,
+        runs=search.runs,
+        undecided=search.undecided,
+        reason=f"onset test at {search.runs} ratios, both ends {ends} by moving runs",
+    )
+
+
+class Search:
+    """Bisection on a judge that may answer `undecided`.
+
+    Parameters
+    ----------
+    judge : callable
+        Ratio to verdict.
+    progress : Progress, optional
+
+    Attributes
+    ----------
+    low, high : float or None
+        Largest ratio that collapsed, smallest that stood.
+    runs, undecided : int
+        Ratios tried, and those without an answer.
+    """
+
+    def __init__(self, judge: Callable[[float], Verdict], progress: Progress = silent) -> None:
+        self._judge = judge
+        self._progress = progress
+        self._dark: list[float] = []
+        self.low: float | None = None
+        self.high: float | None = None
+        self.runs = 0
+
+    @property
+    def undecided(self) -> int:
+        """Ratios without an answer."""
+        return len(self._dark)
+
+    def probe(self, eta: float) -> Verdict:
+        """Ask the judge and keep its answer."""
+        verdict = self._judge(eta)
+        self.runs += 1
+        if verdict is Verdict.COLLAPSES:
+            self.low = eta if self.low is None else max(self.low, eta)
+        elif verdict is Verdict.STANDS:
+            self.high = eta if self.high is None else min(self.high, eta)
+        else:
+            self._dark.append(eta)
+        return verdict
+
+    def expand(self, guess: float) -> None:
+        """Step away from a guess, ever farther, until both answers have been had."""
+        step = FIRST_STEP
+        eta = min(guess * (1 + step), ETA_MAX)
+        self._progress(0.0, f"trying eta = {eta:.6g}")
+        self.probe(eta)
+        while self.high is None and eta < ETA_MAX:
+            step *= 2
+            eta = min(eta * (1 + step), ETA_MAX)
+            self.probe(eta)
+        if self.high is None:
+            return
+        step, eta = FIRST_STEP, min(guess, self.high)
+        while self.low is None and eta > THINNEST:
+            eta *= 1 - min(step, 0.5)
+            step *= 2
+            self.probe(eta)
+
+    def bisect(self, tol: float) -> None:
+        """Halve the bracket until its relative width is `tol` or darkness fills it."""
+        start = self._width()
+        while (width := self._width()) > tol:
+            middle = self._next(tol)
+            if middle is None:
+                return
+            share = math.log(start / width) / math.log(start / tol)
+            self._progress(0.9 * share, f"trying eta = {middle:.6g}")
+            self.probe(middle)
+
+    def _width(self) -> float:
+        """Relative width of the bracket, 0 while there is none."""
+        if self.low is None or self.high is None:
+            return 0.0
+        return 1 - self.low / self.high
+
+    def _next(self, tol: float) -> float | None:
+        """Middle of the wider end part; nothing is to be learnt between undecided ratios."""
+        if self.low is None or self.high is None:
+            return None
+        dark = [eta for eta in self._dark if self.low < eta < self.high]
+        below, above = min(dark, default=self.high), max(dark, default=self.low)
+        low, high = max(
+            (self.low, below), (above, self.high), key=lambda part: part[1] - part[0]
+        )
+        return (low + high) / 2 if high - low > tol * self.high / 4 else None

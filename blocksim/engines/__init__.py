@@ -1,0 +1,49 @@
+"""Engines by name; each library is imported only when its engine is asked for."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from typing import NamedTuple
+
+from blocksim.engines.base import Engine
+from blocksim.errors import MissingPart
+
+
+class _Place(NamedTuple):
+    library: str
+    module: str
+    attribute: str
+    remedy: str
+
+
+_PLACES = {
+    "pymunk": _Place(
+        "pymunk", "blocksim.engines.chipmunk", "Chipmunk", "pip install 'pymunk>=7.3'"
+    ),
+}
+
+ENGINES: tuple[str, ...] = tuple(_PLACES)
+"""Names of the engines, as `method` takes them."""
+
+
+def remedy(name: str) -> str | None:
+    """Tell how to install an engine's library; None where it is there."""
+    place = _PLACES[name]
+    return None if find_spec(place.library) else place.remedy
+
+
+def get_engine(name: str) -> Engine:
+    """Return an engine by name.
+
+    Raises
+    ------
+    MissingPart
+        If its library is not installed.
+    """
+    missing = remedy(name)
+    if missing:
+        raise MissingPart(name, missing)
+    place = _PLACES[name]
+    engine: Engine = getattr(import_module(place.module), place.attribute)()
+    return engine

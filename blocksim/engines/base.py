@@ -1,0 +1,91 @@
+"""What every engine gives: blocks at rest, blocks let go, and their poses.
+
+A world is scaled: lengths in units of the assembly's size, time in units of
+sqrt(size/g), masses in units of the mean block's. Gravity is 1, downwards. Scale, density
+and gravity therefore cannot change an answer, and no engine's absolute tolerance meets
+an unexpected unit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from blocksim.assembly import Array, Assembly
+
+FRICTION_CAP = 1e3
+"""Engines multiply friction by impulses that may be 0, so inf cannot be passed on.
+
+The thrust below which an inner joint slides is about 1/(4 mu^2) for large mu: at this
+cap 2.5e-7 of the weight scale, far below what an engine resolves.
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What an engine is run with, scaled as its world.
+
+    Parameters
+    ----------
+    step : float
+        Time step.
+    sweeps : int
+        Sweeps over all contacts in each step of a moving run.
+    hold_sweeps : int
+        Most sweeps the onset test may spend.
+    """
+
+    step: float
+    sweeps: int
+    hold_sweeps: int
+
+
+class World(Protocol):
+    """Blocks in an engine, at rest where they were built until let go."""
+
+    def hold(self, sweeps: int) -> Array:
+        """Solve the contacts of one step from rest, then put every block back.
+
+        Impulses are kept, so that a further call goes on where this one stopped.
+
+        Parameters
+        ----------
+        sweeps : int
+            Sweeps over all contacts.
+
+        Returns
+        -------
+        (blocks, 3) float
+            Accelerations x, y [g] and angular [g/size] the blocks would start with.
+        """
+        ...
+
+    def advance(self, steps: int) -> None:
+        """Let the blocks move for a number of steps."""
+        ...
+
+    def poses(self) -> Array:
+        """Return centres of mass x, y and rotations [rad], shape (blocks, 3)."""
+        ...
+
+
+class Engine(Protocol):
+    """A way to set blocks in motion."""
+
+    @property
+    def name(self) -> str:
+        """Name as on the command line."""
+        ...
+
+    @property
+    def version(self) -> str:
+        """Version of the engine's library."""
+        ...
+
+    def settings(self, assembly: Assembly) -> Settings:
+        """Choose settings that suit an assembly."""
+        ...
+
+    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
+        """Put an assembly into the engine, all contacts closed, at rest."""
+        ...

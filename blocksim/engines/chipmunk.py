@@ -1,0 +1,191 @@
+"""Chipmunk through pymunk: planar, sequential impulses, Coulomb friction.
+
+How a near-critical arch has to be put into it (each point measured, see ARCHITECTURE.md):
+
+- Faces that touch exactly have round-off gaps and lose contacts. Each joint face is
+  set back by `INSET` and the shape given a radius that closes the joint again with an
+  overlap of an eighth of it, less than the slop: contacts exist from the start, their
+  levers are those of the true corners, and no position correction acts.
+- Corners that coincide make the collision routine return a wrong normal now and then:
+  one face of each joint is shorter by `TRIM` at both ends.
+- A pair's friction is the product of its two shapes' values: each takes sqrt(mu).
+- A contact that was open for a moment would come back with its old impulse:
+  collision_persistence is 1.
+"""
+
+from __future__ import annotations
+
+import math
+from importlib.metadata import version
+
+import numpy as np
+import pymunk
+
+from blocksim.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.engines.base import FRICTION_CAP, Settings, World
+
+INSET = 1e-6
+"""Most a face is set back; no more than `INSET_SHARE` of the shortest joint."""
+INSET_SHARE = 1e-4
+OVERLAP = 0.25
+"""Overlap of two closed shapes, in units of the inset."""
+TRIM = 0.01
+"""Shortening of one face of each joint, in units of the inset."""
+CLEARANCE = 6.0
+"""Least width of a block between two faces, in units of the inset."""
+LONGEST_STEP = 1 / 100
+THICK = 0.8
+"""Joint length from which the longest step will do [size]."""
+SWEEP_RATE = 5e4
+"""Sweeps of a moving run per unit of time."""
+SUPPORT_BIT = 1 << 31
+
+
+class Chipmunk:
+    """The engine of pymunk."""
+
+    name = "pymunk"
+
+    @property
+    def version(self) -> str:
+        """Version of pymunk."""
+        return version("pymunk")
+
+    def settings(self, assembly: Assembly) -> Settings:
+        """Choose steps as long as the thickness allows, for the most sweeps in each.
+
+        A hinge that turns for a step overlaps by about 100 step^2 / thickness of its
+        motion (measured), which asks for short steps. Sliding asks for many sweeps in a
+        step: at equal work, long steps keep friction converged where short ones do not.
+        """
+        shortest = min(joint.length for joint in assembly.joints) / assembly.size
+        step = LONGEST_STEP * min(1.0, math.sqrt(shortest / THICK))
+        return Settings(
+            step=step,
+            sweeps=max(20, round(SWEEP_RATE * step)),
+            hold_sweeps=max(50_000, 4000 * len(assembly.blocks) ** 2),
+        )
+
+    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
+        """Put an assembly into a new space."""
+        return _Space(assembly, mu, settings)
+
+
+class _Space:
+    """A pymunk space with one body for each block."""
+
+    def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
+        self._settings = settings
+        self._space = pymunk.Space()
+        self._space.gravity = (0.0, -1.0)
+        shortest = min(joint.length for joint in assembly.joints) / assembly.size
+        self._inset = min(INSET, INSET_SHARE * shortest)
+        self._space.collision_slop = self._inset
+        self._space.collision_persistence = 1
+        self._friction = math.sqrt(min(mu, FRICTION_CAP))
+        mass = float(np.mean([block.mass for block in assembly.blocks]))
+        faces: list[list[Joint]] = [[] for _ in assembly.blocks]
+        for joint in assembly.joints:
+            for index in (joint.before, joint.after):
+                if index != SUPPORT:
+                    faces[index].append(joint)
+        self._bodies: list[pymunk.Body] = []
+        for index, block in enumerate(assembly.blocks):
+            inertia = block.inertia / mass / assembly.size**2
+            body = pymunk.Body(block.mass / mass, inertia)
+            centre = block.centre / assembly.size
+            body.position = (float(centre[0]), float(centre[1]))
+            outline = _outline(block.vertices, index, faces[index], assembly.size, self._inset)
+            shape = self._shape(body, outline - centre)
+            bits = [
+                k for k, j in enumerate(_springings(assembly)) if index in (j.before, j.after)
+            ]
+            shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
+            self._space.add(body, shape)
+            self._bodies.append(body)
+        for k, joint in enumerate(_springings(assembly)):
+            shape = self._shape(
+                self._space.static_body, _footing(joint, assembly.size, self._inset)
+            )
+            # A support touches only the block that stands on it.
+            shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
+            self._space.add(shape)
+
+    def _shape(self, body: pymunk.Body, outline: Array) -> pymunk.Poly:
+        corners = [(float(x), float(y)) for x, y in outline]
+        shape = pymunk.Poly(body, corners, radius=self._inset * (1 + OVERLAP / 2))
+        shape.friction = self._friction
+        return shape
+
+    def hold(self, sweeps: int) -> Array:
+        """Solve the contacts of one step from rest, then put every block back."""
+        # Positions are integrated first and at rest, so they never change here.
+        self._space.iterations = sweeps
+        self._space.step(self._settings.step)
+        rates = [(*body.velocity, body.angular_velocity) for body in self._bodies]
+        for body in self._bodies:
+            body.velocity = (0.0, 0.0)
+            body.angular_velocity = 0.0
+        return np.array(rates) / self._settings.step
+
+    def advance(self, steps: int) -> None:
+        """Let the blocks move."""
+        self._space.iterations = self._settings.sweeps
+        for _ in range(steps):
+            self._space.step(self._settings.step)
+
+    def poses(self) -> Array:
+        """Return centres of mass and rotations."""
+        return np.array([(*body.position, body.angle) for body in self._bodies])
+
+
+def _springings(assembly: Assembly) -> list[Joint]:
+    return [j for j in assembly.joints if SUPPORT in (j.before, j.after)]
+
+
+def _side(joint: Joint, index: int) -> float:
+    """Sign of the direction from the joint into the block."""
+    return 1.0 if joint.after == index else -1.0
+
+
+def _outline(
+    vertices: Array, index: int, faces: list[Joint], size: float, inset: float
+) -> Array:
+    """Corners of a block with its joint faces set back, scaled, shape (k, 2)."""
+    corners: list[Array] = [v / size for v in vertices if not _on_a_face(v, faces)]
+    for joint in faces:
+        inward = _side(joint, index) * joint.normal * inset
+        trim = TRIM * inset if joint.before == index else 0.0
+        for end, along in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
+            cut = max(trim, _crowding(end, along, faces, size, inset))
+            corners.append(end / size + inward + along * cut)
+    return np.array(corners)
+
+
+def _crowding(end: Array, along: Array, faces: list[Joint], size: float, inset: float) -> float:
+    """How far a face must end short of a corner that is closer to another face than wide.
+
+    Where the intrados shrinks to a point (eta near 2) faces set back would cross there,
+    and voussoirs that do not share a joint would touch.
+    """
+    cut = 0.0
+    for joint in faces:
+        for other, direction in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
+            apart = float(np.hypot(*(other - end))) / size
+            spread = float(np.hypot(*(direction - along)))
+            if 0 < spread < 1:
+                cut = max(cut, (CLEARANCE * inset - apart) / spread)
+    return cut
+
+
+def _on_a_face(vertex: Array, faces: list[Joint]) -> bool:
+    return any(np.array_equal(vertex, end) for j in faces for end in (j.inner, j.outer))
+
+
+def _footing(joint: Joint, size: float, inset: float) -> Array:
+    """Return a slab under a springing, wider than the joint by its length on both sides."""
+    index = joint.before if joint.after == SUPPORT else joint.after
+    into = _side(joint, index) * joint.normal
+    span = joint.tangent * joint.length / size
+    ends = np.array([joint.inner / size - span, joint.outer / size + span]) - into * inset
+    return np.concatenate([ends, ends[::-1] - into * joint.length / size])

@@ -1,0 +1,53 @@
+"""What can go wrong outside blocksim: wrong input and missing optional parts.
+
+Outcomes (stands, collapses, undecided) are values and never exceptions.
+"""
+
+from __future__ import annotations
+
+
+class BlocksimError(Exception):
+    """Base of everything blocksim raises on purpose."""
+
+
+class InputError(BlocksimError, ValueError):
+    """A value that cannot be used.
+
+    Parameters
+    ----------
+    field : str
+        Name of the field or option, e.g. ``eta``.
+    value : object
+        What was given.
+    allowed : str
+        What would have been accepted, as a phrase.
+    where : str, optional
+        File the value comes from.
+    """
+
+    def __init__(
+        self, field: str, value: object, allowed: str, *, where: str | None = None
+    ) -> None:
+        self.field = field
+        self.value = value
+        self.allowed = allowed
+        self.where = where
+        place = f"{where}: " if where else ""
+        super().__init__(f"{place}{field} = {value!r}: must be {allowed}")
+
+
+class MissingPart(BlocksimError):
+    """An optional part that is not installed.
+
+    Parameters
+    ----------
+    part : str
+        What is missing, e.g. ``pybullet``.
+    remedy : str
+        How to get it.
+    """
+
+    def __init__(self, part: str, remedy: str) -> None:
+        self.part = part
+        self.remedy = remedy
+        super().__init__(f"{part} is not available here: {remedy}")

@@ -1,0 +1,48 @@
+"""Write a file whole or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+from blocksim.errors import InputError
+
+
+def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Write aside, then rename, so that nobody ever sees half a file.
+
+    Parameters
+    ----------
+    path : Path
+    write : callable
+        Writes to the open binary file it is given.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    aside = path.with_name(f".{path.name}.part")
+    try:
+        with aside.open("wb") as file:
+            write(file)
+        aside.replace(path)
+    except OSError as error:
+        raise InputError("--out", str(path), f"writable ({error.strerror})") from None
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def make_folder(path: Path) -> None:
+    """Create a folder for results.
+
+    Raises
+    ------
+    InputError
+        If it cannot be created.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError("--out", str(path), f"a writable folder ({error.strerror})") from None

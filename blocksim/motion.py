@@ -1,0 +1,162 @@
+"""The moving run: let the arch go and watch.
+
+It is released from the impulses the onset test ended with, and recorded. What is said of
+it rests on the largest displacement d of any corner, in units of r, and on time in units
+of sqrt(r/g):
+
+- *collapses* as soon as d > `MOVED`;
+- *stands* if d < `REST` at time `QUIET`. Near the limit an unstable arch starts slowly, but
+  its displacement grows e-fold in about half a unit of time: from an acceleration of
+  1e-6 g it would have passed `MOVED` by then;
+- otherwise it is watched until `LONGEST` and is then *undecided*: it creeps if its
+  displacement grew less than threefold over the second half (steady drift doubles it), or
+  else starts too slowly.
+
+A run whose blocks overlap before it has moved by `EARLY`, by more than `OVERLAP` of the
+motion of their joints, was started by contacts that had not converged. It is thrown away
+and repeated with `FINER` times the sweeps in each step; after `REPEATS` of them it is
+undecided.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.assembly import Array, Assembly
+from blocksim.engines.base import World
+from blocksim.joints import overlap_share
+from blocksim.progress import Progress, silent
+from blocksim.recording import Recording, displacement
+from blocksim.setup import Setup
+from blocksim.verdict import Verdict
+
+MOVED = 0.02
+REST = 1e-5
+QUIET = 10.0
+LONGEST = 40.0
+CREEP = 3.0
+OVERLAP = 0.03
+NOISE = 1e-7
+"""Displacement below which overlap is not looked at [r]."""
+FINER = 4
+REPEATS = 3
+FRAME = 0.05
+"""Time between frames."""
+EARLY = 1e-3
+"""Displacement at which the motion still is the collapse mechanism."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Motion:
+    """Outcome of a moving run.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    reason : str
+        The evidence in words.
+    overlap : float
+        Deepest overlap of blocks, as a share of the motion of their joints.
+    recording : Recording
+    """
+
+    verdict: Verdict
+    reason: str
+    overlap: float
+    recording: Recording
+
+    @property
+    def mechanism(self) -> Array:
+        """Poses when the motion first exceeds `EARLY`, or at the end."""
+        late = np.flatnonzero(self.recording.displacement > EARLY)
+        return self.recording.poses[late[0] if len(late) else -1]
+
+
+def moving_run(
+    setup: Setup,
+    held: World,
+    held_sweeps: int,
+    *,
+    until: float | None = None,
+    progress: Progress = silent,
+) -> Motion:
+    """Let an arch go that the onset test has held, and record it.
+
+    Parameters
+    ----------
+    setup : Setup
+    held : World
+        Built from it and at rest, impulses converged as far as they go.
+    held_sweeps : int
+        Sweeps that took, to do the same again if the run must be repeated.
+    until : float, optional
+        Time to record for, whatever happens [sqrt(r/g)]; by default the run stops as
+        soon as its verdict is certain.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Motion
+    """
+    motion = _released(setup, held, until, progress)
+    for _ in range(REPEATS):
+        if motion.overlap <= OVERLAP:
+            break
+        setup = setup.finer(FINER)
+        again = setup.world()
+        again.hold(held_sweeps)
+        motion = _released(setup, again, until, progress)
+    return motion
+
+
+def _released(setup: Setup, world: World, until: float | None, progress: Progress) -> Motion:
+    """Record one release, as far as its blocks do not overlap."""
+    assembly, step = setup.assembly, setup.settings.step
+    stride = max(1, round(FRAME / step))
+    times, poses, moved = [0.0], [world.poses()], [0.0]
+    end = LONGEST if until is None else until
+    overlap = 0.0
+    while times[-1] < end - step / 2 and overlap <= OVERLAP:
+        world.advance(stride)
+        times.append(len(times) * stride * step)
+        poses.append(world.poses())
+        moved.append(_moved(assembly, poses))
+        if moved[-1] > NOISE and moved[-2] < EARLY:
+            overlap = max(overlap, overlap_share(assembly, poses[-1]))
+        if until is None and _verdict(times, moved) is not Verdict.UNDECIDED:
+            break
+        progress(min(1.0, times[-1] / end), "moving run")
+    verdict = _verdict(times, moved) if overlap <= OVERLAP else Verdict.UNDECIDED
+    return Motion(
+        verdict=verdict,
+        reason=_reason(verdict, times, moved, overlap),
+        overlap=overlap,
+        recording=setup.record(times, poses),
+    )
+
+
+def _moved(assembly: Assembly, poses: list[Array]) -> float:
+    return float(displacement(poses[-1] - poses[0], assembly.reach / assembly.size))
+
+
+def _verdict(times: list[float], moved: list[float]) -> Verdict:
+    if moved[-1] > MOVED:
+        return Verdict.COLLAPSES
+    if times[-1] >= QUIET and moved[-1] < REST:
+        return Verdict.STANDS
+    return Verdict.UNDECIDED
+
+
+def _reason(verdict: Verdict, times: list[float], moved: list[float], overlap: float) -> str:
+    way = f"{moved[-1]:.1e} r in {times[-1]:.1f} sqrt(r/g)"
+    if verdict is Verdict.COLLAPSES:
+        return f"released, it moved {way}"
+    if verdict is Verdict.STANDS:
+        return f"released, it stayed within {way}"
+    if overlap > OVERLAP:
+        return f"released, its blocks overlap by {overlap:.0%} of their motion: {way}"
+    if moved[-1] < CREEP * moved[len(moved) // 2]:
+        return f"released, it creeps: {way}"
+    return f"released, it starts too slowly to tell: {way}"

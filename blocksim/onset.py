@@ -1,0 +1,111 @@
+"""The onset test: whether an arch held at rest would start to move if let go.
+
+The engine solves the contacts of a single step, in place, with as many sweeps as it
+takes. Its answer is read as one of two certificates, both from the engine's own solution:
+
+- *stands*: the largest acceleration falls below `STILL` (in g). The contact forces found
+  balance the weights and respect contact and friction.
+- *collapses*: the accelerations form a mechanism, that is, no joint closes further
+  (overlap below `OVERLAP` of the motion). Before the sweeps have converged the
+  accelerations press blocks into each other, by percents and more; once they have, by
+  a millionth. An arch that stands has no such motion at any number of sweeps.
+
+If neither is reached within the sweeps allowed the test is undecided, and says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.assembly import Array, Assembly
+from blocksim.engines.base import World
+from blocksim.joints import overlap_share
+from blocksim.progress import Progress, silent
+from blocksim.recording import displacement
+from blocksim.verdict import Verdict
+
+STILL = 1e-7
+OVERLAP = 1e-3
+PROBE = 1e-6
+"""Size of the displacement along the accelerations at which joints are looked at."""
+FIRST_SWEEPS = 1000
+GROWTH = 1.5
+"""Ratio of the totals of sweeps at two looks."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Onset:
+    """Outcome of the onset test.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    acceleration : float
+        Largest acceleration of any corner [g].
+    mechanism : (blocks, 3) float
+        Poses after a small displacement (`PROBE`) along the accelerations.
+    sweeps : int
+        Sweeps spent.
+    """
+
+    verdict: Verdict
+    acceleration: float
+    mechanism: Array
+    sweeps: int
+
+    @property
+    def reason(self) -> str:
+        """The evidence in words."""
+        size = f"{self.acceleration:.1e} g after {self.sweeps} sweeps"
+        match self.verdict:
+            case Verdict.STANDS:
+                return f"held at rest, contact forces balance the weight to {size}"
+            case Verdict.COLLAPSES:
+                return f"held at rest, it starts as a mechanism with {size}"
+            case Verdict.UNDECIDED:
+                return f"contact forces have not converged ({size})"
+
+
+def onset(
+    world: World, assembly: Assembly, hold_sweeps: int, progress: Progress = silent
+) -> Onset:
+    """Run the onset test on a world whose blocks are at rest where they were built.
+
+    Parameters
+    ----------
+    world : World
+    assembly : Assembly
+        What the world was built from.
+    hold_sweeps : int
+        Most sweeps to spend.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Onset
+        The world keeps its impulses and can be released from there.
+    """
+    rest = world.poses()
+    reach = assembly.reach / assembly.size
+    # Nothing is known of the far voussoirs before impulses have crossed the assembly.
+    first = max(FIRST_SWEEPS, len(assembly.blocks) ** 2)
+    total, sweeps = 0, first
+    while True:
+        accelerations = world.hold(sweeps)
+        total += sweeps
+        largest = float(displacement(accelerations, reach))
+        mechanism = rest + accelerations * (PROBE / largest if largest > 0 else 0.0)
+        if largest < STILL:
+            verdict = Verdict.STANDS
+        elif overlap_share(assembly, mechanism) < OVERLAP:
+            verdict = Verdict.COLLAPSES
+        else:
+            verdict = Verdict.UNDECIDED
+        if verdict is not Verdict.UNDECIDED or total >= hold_sweeps:
+            return Onset(
+                verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=total
+            )
+        progress(np.log(total / first) / np.log(hold_sweeps / first), "onset test")
+        sweeps = min(int(total * (GROWTH - 1)), hold_sweeps - total)

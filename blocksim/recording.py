@@ -1,0 +1,145 @@
+"""A recording: poses over time, from which everything else is derived."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import zipfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from blocksim.arch import Arch
+from blocksim.assembly import Array
+from blocksim.engines.base import Settings
+from blocksim.errors import InputError
+from blocksim.files import write_whole
+
+FORMAT = 1
+LARGEST_FILE = 1 << 30
+"""Bytes; a larger file is not opened."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recording:
+    """The motion of an arch in one engine.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+        Friction coefficient.
+    engine, engine_version : str
+    settings : Settings
+    times : (frames,) float
+        In units of sqrt(r/g), from the release.
+    poses : (frames, voussoirs, 3) float
+        Centres of mass x, y in units of r and rotations [rad].
+    """
+
+    arch: Arch
+    mu: float
+    engine: str
+    engine_version: str
+    settings: Settings
+    times: Array
+    poses: Array
+
+    @property
+    def state_hash(self) -> str:
+        """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
+        little = np.ascontiguousarray(self.poses, dtype="<f8")
+        return hashlib.sha256(little.tobytes()).hexdigest()[:16]
+
+    @property
+    def displacement(self) -> Array:
+        """Largest displacement of any corner since the release [r], shape (frames,)."""
+        assembly = self.arch.assembly()
+        return displacement(self.poses - self.poses[0], assembly.reach / assembly.size)
+
+    def seconds(self, gravity: float) -> Array:
+        """Return times in seconds for a gravity in m/s^2."""
+        return self.times * math.sqrt(self.arch.radius / gravity)
+
+    def save(self, path: Path) -> None:
+        """Write a compressed .npz: arrays and one JSON text, nothing executable.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        header = {
+            "format": FORMAT,
+            "arch": asdict(self.arch),
+            "mu": self.mu,
+            "engine": self.engine,
+            "engine_version": self.engine_version,
+            "settings": asdict(self.settings),
+            "state_hash": self.state_hash,
+        }
+        text = np.array(json.dumps(header))
+
+        def write(file: BinaryIO) -> None:
+            np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
+
+        write_whole(path, write)
+
+
+def displacement(moved: Array, reach: Array) -> Array:
+    """Bound of the displacement of any corner, from those of the centres.
+
+    Parameters
+    ----------
+    moved : (..., blocks, 3) float
+        Displacements of the centres and rotations.
+    reach : (blocks,) float
+        Distance of the farthest corner from the centre.
+
+    Returns
+    -------
+    (...) float
+        Largest over the blocks of the translation or the corner's way by rotation.
+    """
+    shift = np.hypot(moved[..., 0], moved[..., 1])
+    turn = np.abs(moved[..., 2]) * reach
+    return np.maximum(shift, turn).max(axis=-1)
+
+
+def load_recording(path: Path) -> Recording:
+    """Read a recording and check that it is one.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, or no recording.
+    """
+    where = str(path)
+    if not path.is_file():
+        raise InputError("recording", where, "an existing .npz file")
+    if path.stat().st_size > LARGEST_FILE:
+        raise InputError("recording", where, f"at most {LARGEST_FILE} bytes")
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            header = json.loads(str(archive["header"]))
+            times, poses = archive["times"], archive["poses"]
+        recording = Recording(
+            arch=Arch(**header["arch"]),
+            mu=float(header["mu"]),
+            engine=str(header["engine"]),
+            engine_version=str(header["engine_version"]),
+            settings=Settings(**header["settings"]),
+            times=np.asarray(times, dtype=np.float64),
+            poses=np.asarray(poses, dtype=np.float64),
+        )
+    except (KeyError, TypeError, ValueError, OSError, zipfile.BadZipFile):
+        raise InputError("recording", where, "written by blocksim simulate") from None
+    expected = (len(recording.times), recording.arch.voussoirs, 3)
+    if header.get("format") != FORMAT or recording.poses.shape != expected:
+        raise InputError("recording", where, f"of format {FORMAT}, poses of shape {expected}")
+    if header.get("state_hash") != recording.state_hash:
+        raise InputError("recording", where, "undamaged (its state hash does not match)")
+    return recording

@@ -1,0 +1,200 @@
+"""Scenarios: arches described in TOML files, one physical claim each."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from blocksim.arch import Arch, Weight
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+
+LARGEST_FILE = 64 * 1024
+"""Bytes; a larger file is not read."""
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArchTable:
+    """Table `[arch]` of a scenario file; see `Arch` for the fields."""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    half_angle_deg: Annotated[float, Field(gt=0, lt=180, strict=True)]
+    voussoirs: Annotated[int, Field(ge=3, le=1000, strict=True)]
+    eta: Annotated[float, Field(gt=0, le=2, strict=True)] | None = None
+    weight: Literal["centreline", "sector"] = "centreline"
+    radius: Positive = 1.0
+    depth: Positive = 1.0
+    specific_weight: Positive = 20_000.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactTable:
+    """Table `[contact]`: friction of every joint."""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    mu: Annotated[float, Field(gt=0, strict=True)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExpectTable:
+    """Table `[expect]`: what the source says of the continuous arch.
+
+    Parameters
+    ----------
+    modes : tuple of Mode
+        Collapse modes: several where the arch lies on a line of the map.
+    eta : float, optional
+        Least thickness-to-radius ratio; absent where none stands.
+    """
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    modes: Annotated[tuple[Mode, ...], Field(min_length=1)]
+    eta: Annotated[float, Field(gt=0, le=2, strict=True)] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScenarioFile:
+    """A scenario file as written."""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    title: Annotated[str, Field(min_length=1, max_length=200)]
+    source: Annotated[str, Field(min_length=1, max_length=500)]
+    arch: ArchTable
+    contact: ContactTable
+    expect: ExpectTable | None = None
+    quick: Annotated[bool, Field(strict=True)] = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scenario:
+    """An arch to ask about, and what is known of it.
+
+    Parameters
+    ----------
+    name : str
+        File name without its ending.
+    title, source : str
+    half_angle : float
+        alpha [rad].
+    mu : float
+    voussoirs : int
+    weight : str
+    eta : float or None
+        Thickness-to-radius ratio, where the scenario sets one.
+    radius, depth, specific_weight : float
+    expected_modes : tuple of Mode
+        Empty where nothing is said.
+    expected_eta : float or None
+    quick : bool
+        Whether `validate --quick` takes it.
+    """
+
+    name: str
+    title: str
+    source: str
+    half_angle: float
+    mu: float
+    voussoirs: int
+    weight: Weight
+    eta: float | None
+    radius: float
+    depth: float
+    specific_weight: float
+    expected_modes: tuple[Mode, ...]
+    expected_eta: float | None
+    quick: bool
+
+    def arch(self, eta: float) -> Arch:
+        """Return the arch at a thickness-to-radius ratio."""
+        return Arch(
+            half_angle=self.half_angle,
+            eta=eta,
+            voussoirs=self.voussoirs,
+            weight=self.weight,
+            radius=self.radius,
+            depth=self.depth,
+            specific_weight=self.specific_weight,
+        )
+
+
+def shipped() -> dict[str, Path]:
+    """Scenarios that come with blocksim, by name."""
+    # In a wheel they are package data, in a checkout they are beside the package.
+    inside = Path(str(files("blocksim") / "_scenarios"))
+    folder = inside if inside.is_dir() else Path(__file__).parent.parent / "scenarios"
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
+def load_scenario(name: str) -> Scenario:
+    """Read a scenario by its path, or by the name of a shipped one.
+
+    Raises
+    ------
+    InputError
+        In one line, with file, field, value and what is allowed.
+    """
+    path = Path(name)
+    known = shipped()
+    if path.suffix != ".toml" and name in known:
+        path = known[name]
+    if not path.is_file():
+        allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
+        raise InputError("scenario", name, allowed)
+    if path.stat().st_size > LARGEST_FILE:
+        raise InputError("scenario", name, f"at most {LARGEST_FILE} bytes")
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError("file", str(error), "valid TOML", where=str(path)) from None
+    try:
+        written = TypeAdapter(ScenarioFile).validate_python(table)
+    except ValidationError as error:
+        raise _first_of(error, str(path)) from None
+    return _scenario(path.stem, written)
+
+
+def _first_of(error: ValidationError, where: str) -> InputError:
+    """Turn the first of pydantic's complaints into one line."""
+    errors = error.errors(include_url=False, include_context=False)
+    # A misspelt key shows twice, as unknown and as missing: the first says more.
+    first = min(errors, key=lambda each: each["type"] != "unexpected_keyword_argument")
+    field = ".".join(str(part) for part in first["loc"])
+    if first["type"] == "unexpected_keyword_argument":
+        return InputError(field, first["input"], "left out: there is no such key", where=where)
+    if first["type"] in {"missing", "missing_argument"}:
+        return InputError(field, "(missing)", "given", where=where)
+    return InputError(
+        field, first["input"], first["msg"].removeprefix("Input should be "), where=where
+    )
+
+
+def _scenario(name: str, written: ScenarioFile) -> Scenario:
+    arch, expect = written.arch, written.expect
+    return Scenario(
+        name=name,
+        title=written.title,
+        source=written.source,
+        half_angle=math.radians(arch.half_angle_deg),
+        mu=written.contact.mu,
+        voussoirs=arch.voussoirs,
+        weight=arch.weight,
+        eta=arch.eta,
+        radius=arch.radius,
+        depth=arch.depth,
+        specific_weight=arch.specific_weight,
+        expected_modes=expect.modes if expect else (),
+        expected_eta=expect.eta if expect else None,
+        quick=written.quick,
+    )

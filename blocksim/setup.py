@@ -1,0 +1,65 @@
+"""An arch in an engine: everything a recording must know to be made again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from blocksim.arch import Arch
+from blocksim.assembly import Array, Assembly
+from blocksim.engines import get_engine
+from blocksim.engines.base import Engine, Settings, World
+from blocksim.recording import Recording
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """An arch, its friction, an engine and its settings.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+    engine : Engine
+    settings : Settings
+    """
+
+    arch: Arch
+    mu: float
+    engine: Engine
+    settings: Settings
+
+    @classmethod
+    def of(cls, arch: Arch, mu: float, engine: str) -> Setup:
+        """Take the settings that the engine chooses for the arch."""
+        library = get_engine(engine)
+        return cls(arch=arch, mu=mu, engine=library, settings=library.settings(arch.assembly()))
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """The arch's blocks and joints."""
+        return self.arch.assembly()
+
+    def world(self) -> World:
+        """Blocks in the engine, at rest."""
+        return self.engine.build(self.assembly, self.mu, self.settings)
+
+    def finer(self, factor: int) -> Setup:
+        """Return the same with `factor` times the sweeps in each step of a moving run."""
+        settings = replace(self.settings, sweeps=self.settings.sweeps * factor)
+        return replace(self, settings=settings)
+
+    def record(self, times: Sequence[float], poses: Sequence[Array]) -> Recording:
+        """Return frames as a recording."""
+        return Recording(
+            arch=self.arch,
+            mu=self.mu,
+            engine=self.engine.name,
+            engine_version=self.engine.version,
+            settings=self.settings,
+            times=np.array(times),
+            poses=np.array(poses),
+        )

@@ -1,0 +1,230 @@
+"""The main job: every scenario by simulation, held against limit analysis and theory."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+
+from blocksim.bracket import ETA_MAX, Bracket, bracket
+from blocksim.modes import Mode
+from blocksim.progress import Progress, silent
+from blocksim.scenario import Scenario, load_scenario, shipped
+from blocksim.trial import trial
+from blocksim.verdict import Verdict
+
+TOL = 0.001
+"""Relative width of the brackets."""
+ERROR_BOUND = 0.002
+"""A bracket whose centre is farther than this from `limit` is a miss."""
+ASIDE = 0.01
+"""How far below the bracket the mode is observed, and at which verdicts are asked."""
+NEARER = 0.002
+"""How far below the mode is looked at again where it differs from that of `limit`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One scenario by one engine, against what is known.
+
+    Parameters
+    ----------
+    scenario : str
+    engine : str
+    half_angle, mu : float
+    voussoirs : int
+    weight : str
+    modes_published : tuple of Mode
+        Of the continuous arch: several on a line of the map.
+    eta_published, eta_limit : float or None
+    mode_limit : Mode or None
+    eta_low, eta_high : float or None
+        The bracket.
+    error : float or None
+        Centre of the bracket over `eta_limit`, less 1.
+    mode_observed : Mode or None
+        In a moving run 1 % below the bracket.
+    below, above : Verdict or None
+        1 % below and above the bracket, by onset test and moving run.
+    confirmed : bool or None
+        Whether moving runs confirm both ends of the bracket.
+    miss : str
+        What disagrees; empty where nothing does.
+    note : str
+        Why, or what to keep in mind.
+    wall_s : float
+    """
+
+    scenario: str
+    engine: str
+    half_angle: float
+    mu: float
+    voussoirs: int
+    weight: str
+    modes_published: tuple[Mode, ...]
+    eta_published: float | None
+    eta_limit: float | None
+    mode_limit: Mode | None
+    eta_low: float | None
+    eta_high: float | None
+    error: float | None
+    mode_observed: Mode | None
+    below: Verdict | None
+    above: Verdict | None
+    confirmed: bool | None
+    miss: str
+    note: str
+    wall_s: float
+
+
+def scenarios(*, quick: bool) -> list[Scenario]:
+    """Return the shipped scenarios, or those marked quick."""
+    every = [load_scenario(name) for name in shipped()]
+    return [scenario for scenario in every if scenario.quick or not quick]
+
+
+def validate(
+    chosen: Sequence[Scenario],
+    engines: Iterable[str] = ("pymunk",),
+    *,
+    workers: int = 2,
+    progress: Progress = silent,
+) -> list[Row]:
+    """Bracket every scenario with every engine and compare.
+
+    Parameters
+    ----------
+    chosen : sequence of Scenario
+    engines : iterable of str
+    workers : int
+        Processes; 1 runs in this one.
+    progress : Progress, optional
+
+    Returns
+    -------
+    list of Row
+        In the order of scenarios, then engines, whatever finishes first.
+    """
+    jobs = [(scenario, engine) for scenario in chosen for engine in engines]
+    if workers == 1:
+        rows: list[Row] = []
+        for done, job in enumerate(jobs):
+            progress(done / len(jobs), job[0].name)
+            rows.append(validate_one(*job))
+        return rows
+    # spawn: engines are libraries with state of their own, which fork would share.
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        futures = {pool.submit(validate_one, *job): job for job in jobs}
+        try:
+            for done, future in enumerate(as_completed(futures)):
+                progress((done + 1) / len(jobs), futures[future][0].name)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+        return [future.result() for future in futures]
+
+
+def validate_one(scenario: Scenario, engine: str) -> Row:
+    """Bracket one scenario with one engine and compare."""
+    started = time.perf_counter()
+    found = bracket(
+        half_angle=scenario.half_angle,
+        mu=scenario.mu,
+        voussoirs=scenario.voussoirs,
+        weight=scenario.weight,
+        method=engine,
+        tol=TOL,
+    )
+    mode, below, above = found.mode, None, None
+    if found.eta_low is not None:
+        under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
+        seen = trial(scenario.arch(under), scenario.mu, engine)
+        mode, below = seen.mode, seen.verdict
+    if found.centre is not None:
+        over = min(found.centre * (1 + ASIDE), ETA_MAX)
+        above = trial(scenario.arch(over), scenario.mu, engine).verdict
+    error = None
+    # Where the limit is the thickest arch there is, nothing above it can be tried.
+    middle = found.centre or found.eta_low
+    if middle is not None and found.eta_limit is not None:
+        error = middle / found.eta_limit - 1
+    miss = "; ".join(_misses(found, error, mode, below, above))
+    return Row(
+        scenario=scenario.name,
+        engine=engine,
+        half_angle=scenario.half_angle,
+        mu=scenario.mu,
+        voussoirs=scenario.voussoirs,
+        weight=scenario.weight,
+        modes_published=scenario.expected_modes,
+        eta_published=scenario.expected_eta,
+        eta_limit=found.eta_limit,
+        mode_limit=found.mode_limit,
+        eta_low=found.eta_low,
+        eta_high=found.eta_high,
+        error=error,
+        mode_observed=mode,
+        below=below,
+        above=above,
+        confirmed=found.confirmed,
+        miss=miss,
+        note=_note(scenario, found, mode),
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def _misses(
+    found: Bracket,
+    error: float | None,
+    mode: Mode | None,
+    below: Verdict | None,
+    above: Verdict | None,
+) -> list[str]:
+    """List what disagrees with limit analysis."""
+    misses: list[str] = []
+    if found.eta_limit is None:
+        if found.eta_high is not None:
+            misses.append("stands, where nothing does")
+    elif error is None:
+        misses.append("no bracket")
+    elif abs(error) > ERROR_BOUND:
+        misses.append(f"error {error:+.2%}")
+    if mode is not found.mode_limit:
+        misses.append(f"mode {mode or 'unnamed'}, limit says {found.mode_limit or 'unnamed'}")
+    if below is not Verdict.COLLAPSES:
+        misses.append(f"{below or 'nothing tried'} 1 % below")
+    if found.eta_high is not None and above is not Verdict.STANDS:
+        misses.append(f"{above or 'nothing tried'} 1 % above")
+    return misses
+
+
+def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
+    """Say why modes differ, where that is known, and what was not confirmed."""
+    notes: list[str] = []
+    if mode is not found.mode_limit:
+        tied = {mode, found.mode_limit} <= {*scenario.expected_modes}
+        nearer = _mode_nearer(scenario, found)
+        if tied:
+            notes.append("on a line of the map, where both modes coincide")
+        elif nearer is found.mode_limit:
+            notes.append(
+                f"0.2 % below it is {nearer}: 1 % below, a second mode is overcome too"
+            )
+        else:
+            notes.append(f"0.2 % below it is {nearer or 'unnamed'}")
+    if found.confirmed is False:
+        notes.append("an end of the bracket starts too slowly for a moving run to tell")
+    if math.isinf(scenario.mu):
+        notes.append("unbounded friction, 1000 in the engine")
+    return "; ".join(notes)
+
+
+def _mode_nearer(scenario: Scenario, found: Bracket) -> Mode | None:
+    """Mode of the onset test close to the limit."""
+    if found.eta_low is None:
+        return None
+    eta = (found.centre or found.eta_low) * (1 - NEARER)
+    return trial(scenario.arch(eta), scenario.mu, found.method, moving=False).mode
