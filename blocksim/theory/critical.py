@@ -130,7 +130,6 @@ def inner_hinge(
     eta, beta_r : float
         The largest `touching_eta` over the intrados, where eq. (4) holds.
     """
-
     start = TINY if extrados == 0 else 0.0
 
     def eta_at(beta: float) -> float:

@@ -147,7 +147,8 @@ def divide(mu: Array, weight: Weight = "centreline") -> Curve:
 
 def first_sliding(half_angle: Array, weight: Weight = "centreline") -> Curve:
     """Line on the right of which no joint slides (rrr | srr below T, rrs above)."""
-    mu, eta = [], []
+    mu: list[float] = []
+    eta: list[float] = []
     for alpha in half_angle.tolist():
         thrust = rotational_thrust(alpha, weight)
         mu.append(max(float(shoulder_friction(alpha, thrust)), float(inner_friction(thrust))))
