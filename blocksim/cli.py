@@ -47,6 +47,8 @@ app = typer.Typer(
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 WRONG_INPUT = 2
 INTERRUPTED = 130
+WIDE = 128
+"""Characters in a line of the widest table."""
 LONGEST_RECORDING = 600.0
 """Seconds."""
 
@@ -182,7 +184,7 @@ def validate(
     with _progress() as report:
         rows = run_validation(chosen, workers=workers, progress=report)
     paths = write_results(rows, out)
-    Console().print(_table(rows))
+    _show(_table(rows))
     misses = [row for row in rows if row.miss]
     _say(f"{len(rows) - len(misses)} of {len(rows)} agree with limit analysis in every respect")
     for row in misses:
@@ -193,12 +195,10 @@ def validate(
 def _table(rows: list[Row]) -> Table:
     """Lay out validation rows for a terminal."""
     table = Table(box=None, header_style="bold", pad_edge=False)
-    numbers = {"#", "alpha", "mu", "n", "published", "limit", "bracket", "error", "s"}
-    headings = ("#", "scenario", "alpha", "mu", "n", "mode", "seen", "published", "limit",
-                "bracket", "error", "s")  # fmt: skip
-    for heading in headings:
-        side = "right" if heading in numbers else "left"
-        table.add_column(heading, justify=side, no_wrap=True)
+    words = {"scenario", "published mode", "seen"}
+    for heading in ("#", "scenario", "alpha", "mu", "n", "published mode", "seen", "published",
+                    "limit", "bracket", "error", "s"):  # fmt: skip
+        table.add_column(heading, justify="left" if heading in words else "right", no_wrap=True)
     for number, row in enumerate(rows, start=1):
         middle = row.eta_low
         if row.eta_low is not None and row.eta_high is not None:
@@ -242,7 +242,7 @@ def list_scenarios() -> None:
     for name in shipped():
         scenario = load_scenario(name)
         table.add_row(name, scenario.title, scenario.source)
-    Console().print(table)
+    _show(table)
 
 
 @app.command()
@@ -254,7 +254,7 @@ def doctor() -> None:
     for finding in examine():
         finest = "exact" if finding.finest == 0 else f"{finding.finest:.2%}"
         table.add_row(finding.method, finding.remedy or "ready", finest, finding.sees)
-    Console().print(table)
+    _show(table)
 
 
 def _question(
@@ -351,6 +351,11 @@ def _progress() -> Generator[Report]:
 
 def _print(record: dict[str, object], lines: list[str], *, as_json: bool) -> None:
     _say(json.dumps(record, allow_nan=False) if as_json else "\n".join(lines))
+
+
+def _show(table: Table) -> None:
+    """Print a table; a narrow window wraps its lines rather than losing columns."""
+    Console(width=max(Console().width, WIDE)).print(table)
 
 
 def _say(text: str) -> None:

@@ -12,6 +12,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
+import blocksim
 from blocksim.files import make_folder, write_whole
 from blocksim.report.answers import plain
 from blocksim.validate import ASIDE, ERROR_BOUND, TOL, Row
@@ -31,7 +32,8 @@ def machine() -> dict[str, str]:
         "processor": _processor(),
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
-        **{name: version(name) for name in ("blocksim", "numpy", "scipy", "pymunk")},
+        "blocksim": blocksim.__version__,
+        **{name: version(name) for name in ("numpy", "scipy", "pymunk")},
     }
 
 

@@ -164,7 +164,7 @@ def _draw_points(axes: Axes, points: Sequence[MapPoint]) -> None:
         axes.annotate(
             point.label,
             (point.mu, point.eta),
-            xytext=(7, -9),
+            xytext=(8, -3),
             textcoords="offset points",
             fontsize=8,
             zorder=6,
