@@ -41,7 +41,7 @@ OVERLAP = 0.03
 NOISE = 1e-7
 """Displacement below which overlap is not looked at [r]."""
 FINER = 4
-REPEATS = 3
+REPEATS = 2
 FRAME = 0.05
 """Time between frames."""
 EARLY = 1e-3
