@@ -27,7 +27,7 @@ from blocksim.progress import Progress, silent
 from blocksim.recording import displacement
 from blocksim.verdict import Verdict
 
-STILL = 1e-7
+STILL = 1e-6
 OVERLAP = 1e-3
 WORK = 0.95
 PROBE = 1e-6
