@@ -135,7 +135,8 @@ def load_recording(path: Path) -> Recording:
     if path.stat().st_size > LARGEST_FILE:
         raise InputError("recording", where, f"at most {LARGEST_FILE} bytes")
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        # Opened here: np.load leaves the file open where it is no archive.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             header = json.loads(str(archive["header"]))
             times, poses = archive["times"], archive["poses"]
         recording = Recording(
