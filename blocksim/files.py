@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -31,7 +32,9 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     except OSError as error:
         raise InputError("--out", str(path), f"writable ({error.strerror})") from None
     finally:
-        aside.unlink(missing_ok=True)
+        # Where the folder itself is missing or a file, there is nothing to take away.
+        with suppress(OSError):
+            aside.unlink()
 
 
 def make_folder(path: Path) -> None:

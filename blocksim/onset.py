@@ -29,7 +29,7 @@ from blocksim.verdict import Verdict
 
 STILL = 1e-6
 OVERLAP = 1e-3
-WORK = 0.95
+WORK = 0.99
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
 FIRST_SWEEPS = 1000
@@ -114,7 +114,7 @@ def onset(
 
 
 def _driven(assembly: Assembly, accelerations: Array) -> bool:
-    """Whether the weight does the work of the motion, from rest over one step."""
+    """Tell whether the weight does the work of the motion, from rest over one step."""
     masses = np.array([block.mass for block in assembly.blocks])
     inertias = np.array([block.inertia for block in assembly.blocks]) / assembly.size**2
     x, y, turn = accelerations.T

@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import zipfile
+import zlib
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -21,6 +22,17 @@ from blocksim.files import write_whole
 FORMAT = 1
 LARGEST_FILE = 1 << 30
 """Bytes; a larger file is not opened."""
+_UNREADABLE = (
+    KeyError,
+    TypeError,
+    ValueError,
+    OSError,
+    EOFError,
+    RuntimeError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What an empty, damaged or foreign file makes numpy, zipfile and json raise."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -123,7 +135,8 @@ def load_recording(path: Path) -> Recording:
     if path.stat().st_size > LARGEST_FILE:
         raise InputError("recording", where, f"at most {LARGEST_FILE} bytes")
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        # Opened here: np.load leaves the file open where it is no archive.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             header = json.loads(str(archive["header"]))
             times, poses = archive["times"], archive["poses"]
         recording = Recording(
@@ -135,10 +148,11 @@ def load_recording(path: Path) -> Recording:
             times=np.asarray(times, dtype=np.float64),
             poses=np.asarray(poses, dtype=np.float64),
         )
-    except (KeyError, TypeError, ValueError, OSError, zipfile.BadZipFile):
+    except _UNREADABLE:
         raise InputError("recording", where, "written by blocksim simulate") from None
-    expected = (len(recording.times), recording.arch.voussoirs, 3)
-    if header.get("format") != FORMAT or recording.poses.shape != expected:
+    expected = (recording.times.size, recording.arch.voussoirs, 3)
+    shaped = recording.times.ndim == 1 and recording.poses.shape == expected
+    if header.get("format") != FORMAT or not shaped:
         raise InputError("recording", where, f"of format {FORMAT}, poses of shape {expected}")
     if header.get("state_hash") != recording.state_hash:
         raise InputError("recording", where, "undamaged (its state hash does not match)")

@@ -1,0 +1,256 @@
+"""The generator, held to integrals over the continuous arch done here by quadrature.
+
+Every joint of the voussoirs must carry the resultant of the continuous arch, whatever the
+number of voussoirs; mass, centre of mass and inertia are those of the annular sector or of
+its mean line; mirror images are equal to the last bit.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import dblquad
+
+from blocksim.arch import GRAVITY, Arch
+from blocksim.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.errors import InputError
+
+arches = st.builds(
+    Arch,
+    half_angle=st.floats(0.01, 3.14),
+    eta=st.floats(1e-3, 2.0),
+    voussoirs=st.integers(3, 200),
+    weight=st.sampled_from(["centreline", "sector"]),
+    radius=st.floats(1e-2, 1e3),
+    depth=st.floats(1e-2, 1e3),
+    specific_weight=st.floats(1.0, 1e5),
+)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+
+
+def gauss(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+    half = (high - low) / 2
+    return (low + high) / 2 + half * NODES, half * WEIGHTS
+
+
+def continuous(arch: Arch, left: float, right: float) -> tuple[float, np.ndarray, float]:
+    """Mass, first moments and polar moment between two angles, by Gauss quadrature."""
+    angles, shares = gauss(left, right)
+    density = arch.specific_weight * arch.depth / GRAVITY
+    if arch.weight == "centreline":
+        radii, thick = np.array([arch.radius]), np.array([arch.radius * arch.thickness])
+    else:
+        half = arch.thickness / 2
+        radii, widths = gauss(arch.radius - half, arch.radius + half)
+        thick = radii * widths
+    rays = np.array([np.sin(angles), np.cos(angles)])
+    mass = density * shares.sum() * thick.sum()
+    first = density * (rays @ shares) * (thick @ radii)
+    polar = density * shares.sum() * (thick @ radii**2)
+    return float(mass), first, float(polar)
+
+
+@given(arches)
+def test_every_joint_carries_the_resultant_of_the_continuous_arch(arch: Arch) -> None:
+    blocks = arch.assembly().blocks
+    angles = arch.joint_angles
+    masses = np.cumsum([block.mass for block in blocks])
+    firsts = np.cumsum([block.mass * block.centre for block in blocks], axis=0)
+    for index in range(arch.voussoirs):
+        mass, first, _ = continuous(arch, angles[0], angles[index + 1])
+        assert masses[index] == pytest.approx(mass, rel=1e-13)
+        scale = mass * arch.radius
+        assert firsts[index] == pytest.approx(first, rel=0, abs=1e-13 * scale)
+
+
+@given(arches)
+def test_inertia_is_that_of_the_sector_or_of_its_mean_line(arch: Arch) -> None:
+    block = arch.assembly().blocks[-1]
+    mass, first, polar = continuous(arch, *arch.joint_angles[-2:])
+    expected = polar - first @ first / mass
+    # Inertia is a small difference of polar moments: to the round-off of those.
+    assert block.inertia == pytest.approx(expected, rel=1e-12, abs=4e-15 * polar)
+    assert block.inertia > 0
+
+
+def test_one_sector_against_adaptive_integration() -> None:
+    arch = Arch(half_angle=1.1, eta=0.4, voussoirs=5, weight="sector", radius=2.0)
+    block, (left, right) = arch.assembly().blocks[3], arch.joint_angles[3:5]
+    x, y = block.centre
+
+    def about_the_centre(radius: float, angle: float) -> float:
+        apart = (radius * math.sin(angle) - x) ** 2 + (radius * math.cos(angle) - y) ** 2
+        return radius * apart
+
+    area_moment, _ = dblquad(about_the_centre, left, right, 1.6, 2.4, epsabs=1e-13)
+    expected = area_moment * arch.specific_weight * arch.depth / GRAVITY
+    assert block.inertia == pytest.approx(expected, rel=1e-10)
+
+
+def test_inertia_of_a_thin_voussoir_is_that_of_a_rod() -> None:
+    """Closed form: a straight rod m L^2/12 in the limit of many voussoirs, order n^-2."""
+    errors = []
+    for voussoirs in (50, 100, 200):
+        arch = Arch(half_angle=1.0, eta=0.01, voussoirs=voussoirs)
+        block = arch.assembly().blocks[0]
+        rod = block.mass * (2 * arch.half_angle / voussoirs) ** 2 / 12
+        errors.append(abs(block.inertia / rod - 1))
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.01)
+    assert errors[1] / errors[2] == pytest.approx(4, rel=0.01)
+
+
+@given(arches)
+def test_mirror_symmetry_is_exact(arch: Arch) -> None:
+    assembly = arch.assembly()
+    flip = np.array([-1.0, 1.0])
+    for one, other in zip(assembly.blocks, reversed(assembly.blocks), strict=True):
+        assert np.array_equal(one.centre * flip, other.centre)
+        assert one.mass == other.mass
+        assert one.inertia == other.inertia
+        corners = {tuple(corner) for corner in (one.vertices * flip + 0.0).tolist()}
+        assert corners == {tuple(corner) for corner in (other.vertices + 0.0).tolist()}
+    for one, other in zip(assembly.joints, reversed(assembly.joints), strict=True):
+        assert np.array_equal(one.inner * flip, other.inner)
+        assert np.array_equal(one.outer * flip, other.outer)
+
+
+@given(arches)
+def test_joints_are_radial_and_point_from_before_to_after(arch: Arch) -> None:
+    assembly = arch.assembly()
+    assert len(assembly.joints) == len(assembly.blocks) + 1
+    assert assembly.joints[0].before == SUPPORT
+    assert assembly.joints[-1].after == SUPPORT
+    for index, (joint, angle) in enumerate(
+        zip(assembly.joints, arch.joint_angles, strict=True)
+    ):
+        assert joint.length == pytest.approx(arch.thickness, rel=1e-9)
+        ray = [math.sin(angle), math.cos(angle)]
+        assert joint.tangent == pytest.approx(ray, abs=1e-9)
+        assert joint.normal == pytest.approx([ray[1], -ray[0]], abs=1e-9)
+        middle = (joint.inner + joint.outer) / 2
+        if joint.before != SUPPORT:
+            assert joint.before == index - 1
+            assert (middle - assembly.blocks[joint.before].centre) @ joint.normal > 0
+        if joint.after != SUPPORT:
+            assert joint.after == index
+            assert (assembly.blocks[joint.after].centre - middle) @ joint.normal > 0
+
+
+def shoelace(vertices: np.ndarray) -> float:
+    x, y = vertices.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+@given(arches)
+def test_collision_polygons(arch: Arch) -> None:
+    """Counter-clockwise, and of the area of the chord-sided quadrilateral."""
+    angle = 2 * arch.half_angle / arch.voussoirs
+    outer, inner = arch.radius * (1 + arch.eta / 2), arch.radius * (1 - arch.eta / 2)
+    expected = (outer**2 - inner**2) * math.sin(angle) / 2
+    for block in arch.assembly().blocks:
+        assert shoelace(block.vertices) == pytest.approx(expected, rel=1e-9)
+        assert block.depth == arch.depth
+
+
+def test_thickest_arch_is_made_of_triangles() -> None:
+    for eta, corners in ((2.0, 3), (1.999, 4)):
+        assembly = Arch(half_angle=2.0, eta=eta, voussoirs=7).assembly()
+        assert {len(block.vertices) for block in assembly.blocks} == {corners}
+    outer = {
+        tuple(joint.inner) for joint in Arch(half_angle=2, eta=2, voussoirs=7).assembly().joints
+    }
+    assert all(np.hypot(*inner) == 0 for inner in outer)
+
+
+@given(arches, st.floats(0.1, 10))
+def test_scale(arch: Arch, factor: float) -> None:
+    """Lengths grow with the radius, mass with its square, inertia with its fourth power."""
+    values = {name: getattr(arch, name) for name in arch.__dataclass_fields__}
+    large = Arch(**{**values, "radius": arch.radius * factor}).assembly()
+    for one, other in zip(arch.assembly().blocks, large.blocks, strict=True):
+        assert other.mass == pytest.approx(one.mass * factor**2, rel=1e-12)
+        assert other.centre == pytest.approx(
+            one.centre * factor, rel=1e-12, abs=1e-12 * large.size
+        )
+        slack = 1e-14 * other.mass * large.size**2
+        assert other.inertia == pytest.approx(one.inertia * factor**4, rel=1e-9, abs=slack)
+
+
+@pytest.mark.parametrize("voussoirs", [3, 4, 27, 1000])
+def test_crown_joint(voussoirs: int) -> None:
+    arch = Arch(half_angle=1.0, eta=0.1, voussoirs=voussoirs)
+    assert (0.0 in arch.joint_angles) == (voussoirs % 2 == 0)
+    assert arch.joint_angles[0] == -1.0
+    assert arch.joint_angles[-1] == 1.0
+    assert np.array_equal(arch.joint_angles, -arch.joint_angles[::-1])
+
+
+WRONG: list[tuple[str, Any, str]] = [
+    *(("half_angle", value, "below pi") for value in (0, -1.0, math.pi, 4.0, math.nan, "1")),
+    *(("eta", value, "at most 2") for value in (0, -0.1, 2.0000001, math.nan, math.inf, None)),
+    *(("voussoirs", value, "3 to 1000") for value in (2, 0, -3, 1001, 3.5, math.nan, True)),
+    *(("weight", value, "centreline, sector") for value in ("", "Sector", "mean", None, 1)),
+    *(
+        (field, value, "finite")
+        for field in ("radius", "depth", "specific_weight")
+        for value in (0, -1.0, math.inf, math.nan, "1", False)
+    ),
+]
+
+
+@pytest.mark.parametrize(("field", "value", "allowed"), WRONG)
+def test_wrong_values_are_named_in_one_line(field: str, value: object, allowed: str) -> None:
+    good: dict[str, Any] = {"half_angle": 1.0, "eta": 0.1, "voussoirs": 9}
+    with pytest.raises(InputError) as caught:
+        Arch(**{**good, field: value})
+    message = str(caught.value)
+    assert caught.value.field == field
+    assert message.startswith(f"{field} = {value!r}: must be ")
+    assert allowed in message
+    assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("half_angle", math.nextafter(math.pi, 0)),
+        ("half_angle", 1e-9),
+        ("eta", 2),
+        ("eta", 1e-9),
+        ("voussoirs", 3),
+        ("voussoirs", 1000),
+    ],
+)
+def test_values_just_inside_are_taken(field: str, value: float) -> None:
+    good: dict[str, Any] = {"half_angle": 1.0, "eta": 0.1, "voussoirs": 9}
+    Arch(**{**good, field: value}).assembly()
+
+
+def test_arrays_cannot_be_changed() -> None:
+    assembly = Arch(half_angle=1.0, eta=0.1, voussoirs=5).assembly()
+    for array in (
+        assembly.blocks[0].vertices,
+        assembly.blocks[0].centre,
+        assembly.joints[0].inner,
+        assembly.centres,
+        assembly.reach,
+    ):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
+
+
+def test_reach_is_the_farthest_corner() -> None:
+    square = np.array([[0, 0], [2, 0], [2, 1], [0, 1]], dtype=float)
+    block = Block(vertices=square, centre=np.zeros(2), mass=1, inertia=1, depth=1)
+    assembly = Assembly(blocks=(block,), joints=(), size=1.0)
+    assert assembly.reach == pytest.approx([math.sqrt(5)])
+
+
+def test_shapes_of_arrays_are_checked() -> None:
+    with pytest.raises(ValueError, match="expected an array of shape"):
+        Joint(before=SUPPORT, after=0, inner=np.zeros(3), outer=np.zeros(2))

@@ -1,0 +1,157 @@
+"""The search for the least thickness, on judges whose answer is known beforehand.
+
+A judge with a threshold must be bracketed to the tolerance; one that goes dark near its
+threshold must leave a bracket that still holds it; one that never stands must say so.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from blocksim import limit, theory
+from blocksim.bracket import ETA_MAX, Search, bracket
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+from blocksim.verdict import Verdict
+
+tolerances = st.floats(1e-4, 0.3)
+thresholds = st.floats(1e-3, 1.99)
+guesses = st.floats(0.2, 5.0)
+"""Guess over threshold."""
+
+
+def run(judge, guess: float, tol: float) -> tuple[Search, list[float]]:
+    asked: list[float] = []
+
+    def listening(eta: float) -> Verdict:
+        asked.append(eta)
+        return judge(eta)
+
+    search = Search(judge=listening)
+    search.expand(min(guess, ETA_MAX))
+    search.bisect(tol)
+    return search, asked
+
+
+@given(thresholds, guesses, tolerances)
+def test_threshold_is_bracketed(threshold: float, guess: float, tol: float) -> None:
+    search, asked = run(
+        lambda eta: Verdict.STANDS if eta >= threshold else Verdict.COLLAPSES,
+        threshold * guess,
+        tol,
+    )
+    assert search.low < threshold <= search.high
+    assert 1 - search.low / search.high <= tol
+    assert search.undecided == 0
+    assert search.runs == len(asked) == len(set(asked))
+    # Doubling steps, then halves: logarithmic in what is asked for.
+    assert search.runs <= 14 + math.log2(1 / tol) + 4 * abs(math.log2(guess))
+    assert all(0 < eta <= ETA_MAX for eta in asked)
+
+
+@given(thresholds, st.floats(0.97, 1.03), tolerances, st.floats(1e-4, 0.05))
+def test_undecided_band_stays_inside_the_bracket(
+    threshold: float, guess: float, tol: float, band: float
+) -> None:
+    def judge(eta: float) -> Verdict:
+        if abs(eta / threshold - 1) < band:
+            return Verdict.UNDECIDED
+        return Verdict.STANDS if eta > threshold else Verdict.COLLAPSES
+
+    search, asked = run(judge, threshold * guess, tol)
+    dark = [eta for eta in asked if judge(eta) is Verdict.UNDECIDED]
+    assert search.undecided == len(dark)
+    assert search.runs == len(asked) < 80
+    if search.high is not None:
+        assert search.low < threshold < search.high
+        # Not wider than the band and the tolerance leave it.
+        width = 1 - search.low / search.high
+        assert width <= max(tol, 1 - (1 - band) / (1 + band) + tol)
+    else:
+        assert threshold * (1 + band) > ETA_MAX
+
+
+@given(st.floats(1e-3, 2.0), tolerances)
+def test_never_stands(guess: float, tol: float) -> None:
+    search, asked = run(lambda _eta: Verdict.COLLAPSES, guess, tol)
+    assert search.high is None
+    assert search.low == ETA_MAX == max(asked)
+    assert search.runs < 20
+
+
+@given(st.floats(1e-3, 2.0), tolerances)
+def test_always_stands(guess: float, tol: float) -> None:
+    search, asked = run(lambda _eta: Verdict.STANDS, guess, tol)
+    assert search.low is None
+    assert search.high == min(asked)
+    assert search.runs < 60
+
+
+@given(st.floats(1e-3, 2.0), tolerances)
+def test_never_an_answer(guess: float, tol: float) -> None:
+    search, asked = run(lambda _eta: Verdict.UNDECIDED, guess, tol)
+    assert (search.low, search.high) == (None, None)
+    assert search.undecided == search.runs == len(asked) < 60
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+@pytest.mark.parametrize(
+    ("degrees", "mu"), [(90, 0.7), (125, 0.9), (145, 1.6), (148, 1.8), (90, 0.35)]
+)
+def test_static_methods(degrees: float, mu: float, weight: str) -> None:
+    alpha = math.radians(degrees)
+    common = {"half_angle": alpha, "mu": mu, "voussoirs": 30, "weight": weight}
+    exact = theory.least_thickness(alpha, mu, weight)
+    built = limit.least_thickness(alpha, mu, 30, weight)
+    by_theory = bracket(method="theory", **common)
+    by_limit = bracket(method="limit", **common)
+    assert by_theory.eta_low == by_theory.eta_high == exact.eta
+    assert by_limit.eta_low == by_limit.eta_high == built.eta
+    assert (by_theory.mode, by_limit.mode) == (exact.mode, built.mode)
+    assert bracket(**common).method == "limit"
+    for found in (by_theory, by_limit):
+        assert (found.eta_theory, found.eta_limit) == (exact.eta, built.eta)
+        assert found.thrust == pytest.approx(exact.thrust, abs=0.1)
+        assert found.confirmed is None
+        assert found.runs == 0
+
+
+@pytest.mark.parametrize("method", ["theory", "limit", "pymunk"])
+def test_where_nothing_stands(method: str) -> None:
+    found = bracket(half_angle=math.pi / 2, mu=0.25, voussoirs=9, method=method)
+    assert found.eta_high is None
+    assert found.eta_low == 2
+    assert found.centre is None
+    assert found.mode is Mode.SS
+    assert found.eta_theory is None
+
+
+@pytest.mark.parametrize(
+    ("field", "wrong", "allowed"),
+    [
+        ("tol", 0.0, "at most 0.5"),
+        ("tol", 0.6, "at most 0.5"),
+        ("tol", math.nan, "at most 0.5"),
+        ("mu", 0.0, "above 0"),
+        ("method", "fem", "theory"),
+        ("half_angle", 4.0, "below pi"),
+        ("voussoirs", 2, "3 to 1000"),
+        ("weight", "mean", "sector"),
+    ],
+)
+def test_wrong_values(field: str, wrong: object, allowed: str) -> None:
+    good = {"half_angle": 1.0, "mu": 0.7, "voussoirs": 9}
+    with pytest.raises(InputError) as caught:
+        bracket(**{**good, field: wrong})
+    assert caught.value.field == field
+    assert allowed in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_tolerance_finer_than_an_engine_can_answer() -> None:
+    with pytest.raises(InputError, match=r"at least 0\.0001 for pymunk"):
+        bracket(half_angle=1.0, mu=0.7, voussoirs=9, method="pymunk", tol=1e-5)

@@ -1,0 +1,78 @@
+"""`check` asks every method the same question: both sides of what each knows as the limit."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from blocksim import limit, theory
+from blocksim.arch import Arch
+from blocksim.check import check
+from blocksim.errors import InputError
+from blocksim.joints import JointState
+from blocksim.modes import Mode
+from blocksim.verdict import Verdict
+
+
+@given(
+    st.floats(20, 155),
+    st.floats(0.2, 5.0),
+    st.integers(4, 50),
+    st.sampled_from(["centreline", "sector"]),
+    st.sampled_from(["theory", "limit"]),
+    st.sampled_from([0.5, 0.99, 1 - 1e-9, 1 + 1e-9, 1.01, 1.5]),
+)
+def test_static_methods_on_both_sides(
+    degrees: float, mu: float, count: int, weight: str, method: str, ratio: float
+) -> None:
+    alpha = math.radians(degrees)
+    least = {
+        "theory": theory.least_thickness(alpha, mu, weight).eta,
+        "limit": limit.least_thickness(alpha, mu, count, weight).eta,
+    }[method]
+    eta = (least or 1.0) * ratio
+    assume(eta <= 2)
+    arch = Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
+    seen = check(arch, mu=mu, method=method)
+    stands = least is not None and ratio > 1
+    assert seen.verdict is (Verdict.STANDS if stands else Verdict.COLLAPSES)
+    assert len(seen.joints) == count + 1
+    assert [joint.angle for joint in seen.joints] == pytest.approx(list(arch.joint_angles))
+    if stands:
+        assert seen.mode is None
+        assert {joint.state for joint in seen.joints} == {JointState.CLOSED}
+    assert seen.simulated is None
+    assert seen.state_hash is None
+    assert "\n" not in seen.reason
+
+
+def test_joints_of_the_limit_mechanism() -> None:
+    arch = Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=20)
+    seen = check(arch, mu=0.7, method="limit")
+    found = [(i, joint.state) for i, joint in enumerate(seen.joints)]
+    active = [(i, state) for i, state in found if state is not JointState.CLOSED]
+    outside, inside = JointState.HINGE_EXTRADOS, JointState.HINGE_INTRADOS
+    # beta_r = 54.5 deg: six joint spacings of 9 deg from the crown.
+    assert active == [(0, outside), (4, inside), (10, outside), (16, inside), (20, outside)]
+    assert seen.mode is Mode.RRR
+
+
+@pytest.mark.parametrize(("eta", "verdict"), [(0.1, "collapses"), (0.115, "stands")])
+def test_every_method_agrees_off_the_limit(eta: float, verdict: str) -> None:
+    arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=20)
+    for method in ("theory", "limit", "pymunk", "auto"):
+        seen = check(arch, mu=0.7, method=method)
+        assert seen.verdict.value == verdict
+        assert seen.mode is (Mode.RRR if verdict == "collapses" else None)
+        assert seen.method == ("limit" if method == "auto" else method)
+        assert (seen.state_hash is not None) == (method == "pymunk")
+
+
+@pytest.mark.parametrize(("field", "mu", "method"), [("mu", 0, "limit"), ("method", 1, "x")])
+def test_wrong_values(field: str, mu: float, method: str) -> None:
+    with pytest.raises(InputError) as caught:
+        check(Arch(half_angle=1.0, eta=0.2, voussoirs=9), mu=mu, method=method)
+    assert caught.value.field == field

@@ -1,0 +1,402 @@
+"""Limit analysis, held to an independent formulation and to the continuous arch.
+
+The independent formulation is a linear programme over the whole arch: no symmetry, three
+unknown forces at every joint, equilibrium of every block as the assembly gives it. It finds
+the least violation of strength, whose zero in eta is the least thickness. Convergence to
+the closed form is exact where the hinges fall on joints and of second order otherwise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq, linprog
+from scipy.sparse import coo_matrix
+
+from blocksim import limit, theory
+from blocksim.arch import Arch
+from blocksim.assembly import SUPPORT, Assembly
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+
+degrees = st.floats(10, 158)
+friction = st.one_of(st.floats(0.1, 10.0), st.just(math.inf))
+counts = st.integers(4, 60)
+"""Three voussoirs are a case of their own, below."""
+weights = st.sampled_from(["centreline", "sector"])
+
+ARCHES = [
+    (90, 0.7, 27, "centreline", Mode.RRR),
+    (90, 0.7, 20, "sector", Mode.RRR),
+    (60, math.inf, 15, "centreline", Mode.RRR),
+    (90, 0.35, 30, "centreline", Mode.SRR),
+    (110, 0.6, 28, "sector", Mode.SRR),
+    (125, 0.9, 25, "centreline", Mode.SRR),
+    (145, 1.6, 25, "centreline", Mode.RRS),
+    (145, 1.65, 28, "sector", Mode.RRS),
+    (155, 3.0, 24, "centreline", Mode.RS),
+    (148, 1.8, 23, "sector", Mode.RS),
+    (155, math.inf, 22, "centreline", Mode.R),
+]
+
+
+def violation(
+    assembly: Assembly, mu: float, thickness_used: float = 1.0, friction_used: float = 1.0
+) -> float:
+    """Least excess over strength at any joint, at most 0.01 below it, in units of weight.
+
+    Unknowns are the normal force, the shear and the moment about the middle of every
+    joint, as its `before` acts on its `after`, and the excess v:
+    |M| <= share L/2 N + v and |T| <= share mu N + v.
+    """
+    joints, blocks = assembly.joints, assembly.blocks
+    unit = sum(block.mass for block in blocks) / len(blocks)
+    entries: list[tuple[int, int, float]] = []
+    for index, joint in enumerate(joints):
+        middle = (joint.inner + joint.outer) / 2
+        for body, sign in ((joint.after, 1.0), (joint.before, -1.0)):
+            if body == SUPPORT:
+                continue
+            arm = (middle - blocks[body].centre) / assembly.size
+            for column, axis in ((0, joint.normal), (1, joint.tangent)):
+                turning = arm[0] * axis[1] - arm[1] * axis[0]
+                for row, value in enumerate((axis[0], axis[1], turning)):
+                    entries.append((3 * body + row, 3 * index + column, sign * value))
+            entries.append((3 * body + 2, 3 * index + 2, sign))
+    size = 3 * len(joints) + 1
+    rows, columns, values = zip(*entries, strict=True)
+    balance = coo_matrix((values, (rows, columns)), shape=(3 * len(blocks), size))
+    load = np.zeros((len(blocks), 3))
+    load[:, 1] = [block.mass / unit for block in blocks]
+    limits: list[np.ndarray] = []
+    for index, joint in enumerate(joints):
+        half = thickness_used * joint.length / assembly.size / 2
+        for offset, strength in ((2, half), (1, friction_used * mu)):
+            for sign in (1.0, -1.0):
+                if math.isinf(strength):
+                    continue
+                row = np.zeros(size)
+                row[3 * index + offset], row[3 * index], row[-1] = sign, -strength, -1.0
+                limits.append(row)
+    cost = np.zeros(size)
+    cost[-1] = 1.0
+    kinds = [(0, None), (None, None), (None, None)] * len(joints)
+    found = linprog(
+        cost,
+        A_ub=np.array(limits),
+        b_ub=np.zeros(len(limits)),
+        A_eq=balance.tocsr(),
+        b_eq=load.ravel(),
+        bounds=[*kinds, (-0.01, None)],
+        method="highs-ds",
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    assert found.status == 0, found.message
+    return float(found.fun)
+
+
+@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
+def test_against_the_whole_arch(
+    angle: float, mu: float, count: int, weight: str, mode: Mode
+) -> None:
+    alpha = math.radians(angle)
+    found = limit.least_thickness(alpha, mu, count, weight)
+    assert found.mode is mode
+
+    def excess(eta: float) -> float:
+        arch = Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
+        return violation(arch.assembly(), mu)
+
+    low, high = found.eta * 0.97, min(found.eta * 1.03, 2.0)
+    eta = brentq(excess, low, high, xtol=1e-13)
+    assert found.eta == pytest.approx(eta, rel=1e-9)
+
+
+@settings(max_examples=25)
+@given(degrees, friction, st.integers(4, 20), weights)
+def test_against_the_whole_arch_anywhere(
+    angle: float, mu: float, count: int, weight: str
+) -> None:
+    alpha = math.radians(angle)
+    found = limit.least_thickness(alpha, mu, count, weight)
+
+    def excess(eta: float) -> float:
+        arch = Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
+        return violation(arch.assembly(), mu)
+
+    if found.eta is None:
+        assert excess(2.0) > 0
+        return
+    assert excess(found.eta * (1 - 1e-6)) > 0
+    assert excess(min(found.eta * (1 + 1e-6), 2.0)) < 1e-10
+
+
+@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES[:10])
+@pytest.mark.parametrize("ratio", [0.9, 1.1])
+def test_slack_against_the_whole_arch(
+    angle: float, mu: float, count: int, weight: str, mode: Mode, ratio: float
+) -> None:
+    alpha = math.radians(angle)
+    least = limit.least_thickness(alpha, mu, count, weight)
+    assert least.mode is mode
+    arch = Arch(
+        half_angle=alpha, eta=min(least.eta * ratio, 2.0), voussoirs=count, weight=weight
+    )
+    spare = limit.slack(arch, mu)
+    assert (spare > 0) == (ratio > 1)
+    left = 1 - spare
+    assembly = arch.assembly()
+    assert violation(assembly, mu, left * (1 - 1e-6), left * (1 - 1e-6)) > 0
+    assert violation(assembly, mu, left * (1 + 1e-6), left * (1 + 1e-6)) < 1e-10
+
+
+@given(degrees, friction, counts, weights)
+def test_slack_is_zero_at_the_least_thickness(
+    angle: float, mu: float, count: int, weight: str
+) -> None:
+    alpha = math.radians(angle)
+    found = limit.least_thickness(alpha, mu, count, weight)
+    assume(found.eta is not None)
+    for ratio, sign in ((1 - 1e-6, -1), (1.0, 0), (1 + 1e-6, 1)):
+        eta = found.eta * ratio
+        if eta <= 2:
+            spare = limit.slack(
+                Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight), mu
+            )
+            if sign:
+                assert spare * sign > 0
+            else:
+                assert spare == pytest.approx(0, abs=1e-12)
+
+
+@given(degrees, friction, counts, weights)
+def test_stands_agrees_with_the_least_thickness(
+    angle: float, mu: float, count: int, weight: str
+) -> None:
+    alpha = math.radians(angle)
+    found = limit.least_thickness(alpha, mu, count, weight)
+
+    def stands(eta: float) -> bool:
+        arch = Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
+        return limit.stands(arch, mu)
+
+    if found.eta is None:
+        assert not any(stands(eta) for eta in np.linspace(0.05, 2, 40))
+        return
+    assert not stands(found.eta * (1 - 1e-9))
+    assert found.eta * (1 + 1e-9) > 2 or stands(found.eta * (1 + 1e-9))
+    # Between the least thickness and 2 there is no gap in what stands.
+    assert all(stands(eta) for eta in np.linspace(found.eta * (1 + 1e-9), 2, 20)[:-1])
+
+
+@given(degrees, friction, counts, weights)
+def test_voussoirs_need_no_more_than_the_continuous_arch(
+    angle: float, mu: float, count: int, weight: str
+) -> None:
+    """Fewer joints are fewer places to fail, and each carries the same resultant."""
+    continuous = theory.least_thickness(math.radians(angle), mu, weight)
+    assume(continuous.eta is not None)
+    built = limit.least_thickness(math.radians(angle), mu, count, weight)
+    assert built.eta is not None
+    assert built.eta <= continuous.eta * (1 + 1e-9)
+
+
+@given(degrees, friction, st.integers(4, 20), st.integers(2, 5), weights)
+def test_splitting_every_voussoir_asks_for_more(
+    angle: float, mu: float, count: int, pieces: int, weight: str
+) -> None:
+    alpha = math.radians(angle)
+    whole = limit.least_thickness(alpha, mu, count, weight).eta
+    # An odd number of pieces keeps every joint; an even one of an even count does too.
+    split = limit.least_thickness(alpha, mu, count * pieces, weight).eta
+    assert (split or math.inf) >= (whole or math.inf) * (1 - 1e-12)
+
+
+@given(degrees, st.floats(0.1, 10.0), st.floats(1.0, 3.0), counts, weights)
+def test_monotone_in_friction(
+    angle: float, mu: float, more: float, count: int, weight: str
+) -> None:
+    low = limit.least_thickness(math.radians(angle), mu, count, weight).eta
+    high = limit.least_thickness(math.radians(angle), mu * more, count, weight).eta
+    unbounded = limit.least_thickness(math.radians(angle), math.inf, count, weight).eta
+    assert (low or math.inf) >= (high or math.inf) >= (unbounded or math.inf)
+
+
+@given(
+    degrees,
+    st.floats(0.1, 5.0),
+    counts,
+    weights,
+    st.floats(1e-3, 1e3),
+    st.floats(1e-3, 1e3),
+    st.floats(0.2, 3.0),
+)
+def test_size_depth_and_material_do_not_matter(
+    angle: float,
+    mu: float,
+    count: int,
+    weight: str,
+    radius: float,
+    depth: float,
+    ratio: float,
+) -> None:
+    common = {"half_angle": math.radians(angle), "voussoirs": count, "weight": weight}
+    least = limit.least_thickness(common["half_angle"], mu, count, weight).eta or 1.0
+    eta = min(least * ratio, 2.0)
+    plain = Arch(eta=eta, **common)
+    other = Arch(eta=eta, radius=radius, depth=depth, specific_weight=radius * 7, **common)
+    assert limit.stands(plain, mu) == limit.stands(other, mu)
+    assert limit.slack(plain, mu) == limit.slack(other, mu)
+
+
+def rotational(alpha: float) -> tuple[float, float]:
+    return alpha, 3.0
+
+
+def shoulder_slides(mu: float) -> tuple[float, float]:
+    return math.pi / 2, mu
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+@pytest.mark.parametrize(
+    ("family", "low", "high", "mode", "share", "step"),
+    [
+        (rotational, math.radians(60), math.radians(110), Mode.RRR, 3 / 5, 10),
+        (rotational, math.radians(110), math.radians(135), Mode.RRR, 1 / 2, 8),
+        (shoulder_slides, 0.314, 0.392, Mode.SRR, 2 / 3, 12),
+    ],
+)
+def test_exact_where_the_hinges_fall_on_joints(
+    family: Callable[[float], tuple[float, float]],
+    low: float,
+    high: float,
+    mode: Mode,
+    share: float,
+    step: int,
+    weight: str,
+) -> None:
+    """The joints of the mechanism are all that matters: no discretisation error is left."""
+
+    def off_joint(parameter: float) -> float:
+        alpha, mu = family(parameter)
+        return theory.least_thickness(alpha, mu, weight).beta_r / alpha - share
+
+    alpha, mu = family(brentq(off_joint, low, high, xtol=1e-15))
+    continuous = theory.least_thickness(alpha, mu, weight)
+    assert continuous.modes == (mode,)
+    for count in (step, 3 * step, 6 * step):
+        built = limit.least_thickness(alpha, mu, count, weight)
+        assert built.eta == pytest.approx(continuous.eta, rel=1e-12)
+        assert built.mode is mode
+        assert built.thrust == pytest.approx(continuous.thrust, rel=1e-10)
+        assert built.hinges_intrados == pytest.approx((continuous.beta_r,), rel=1e-12)
+    # Both sides: one voussoir pair more puts the hinge between joints, and it shows.
+    off = limit.least_thickness(alpha, mu, step + 2, weight)
+    assert off.eta < continuous.eta * (1 - 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("angle", "mu", "weight"),
+    [
+        (90, 0.7, "centreline"),
+        (90, 0.35, "sector"),
+        (125, 0.9, "centreline"),
+        (145, 1.6, "centreline"),
+        (145, 1.7, "sector"),
+    ],
+)
+def test_second_order_in_the_number_of_voussoirs(angle: float, mu: float, weight: str) -> None:
+    """The error depends on where joints fall: its upper envelope over n shows the order."""
+    alpha = math.radians(angle)
+    exact = theory.least_thickness(alpha, mu, weight).eta
+    sizes = np.array([30, 60, 120, 240])
+    envelope = []
+    for size in sizes:
+        sample = np.unique(np.linspace(size, 1.3 * size, 24).astype(int))
+        errors = [
+            1 - limit.least_thickness(alpha, mu, int(count), weight).eta / exact
+            for count in sample
+        ]
+        envelope.append(max(errors))
+    order = -np.polyfit(np.log(sizes), np.log(envelope), 1)[0]
+    assert 1.75 < order < 2.25
+
+
+@settings(max_examples=60)
+@given(st.floats(0.1, 1.8), st.integers(20, 120), weights, st.floats(0.01, 0.1), st.booleans())
+def test_no_wrong_none(mu: float, count: int, weight: str, aside: float, stands: bool) -> None:
+    """Off the divide by a percent or more, voussoirs and closed form agree on None.
+
+    Up to mu = 1.8, where no thickness beyond 2 would be needed on either side.
+    """
+    divide = theory.regions.divide_half_angle(mu)
+    alpha = divide * (1 - aside if stands else 1 + aside)
+    continuous = theory.least_thickness(alpha, mu, weight).eta
+    built = limit.least_thickness(alpha, mu, count, weight)
+    assert (continuous is not None) == stands
+    if stands:
+        assert built.eta is not None
+    elif count >= 60:
+        assert built.eta is None
+        assert built.mode is Mode.SS
+        assert built.thrust is None
+
+
+def test_sliding_threshold_where_the_inner_joint_falls_on_a_joint() -> None:
+    """Purely sliding: mu at which nothing stands, exact where beta_s/alpha is rational."""
+
+    def share(mu: float) -> float:
+        return theory.critical.inner_sliding(mu)[1] / theory.regions.divide_half_angle(mu)
+
+    mu = brentq(lambda mu: share(mu) - 0.25, 0.2, 1.5, xtol=1e-15)
+    alpha = theory.regions.divide_half_angle(mu)
+    assert limit.least_thickness(alpha, mu * (1 + 1e-9), 16).eta is not None
+    failed = limit.least_thickness(alpha, mu * (1 - 1e-9), 16)
+    assert (failed.eta, failed.mode) == (None, Mode.SS)
+    assert failed.slides == pytest.approx((alpha / 4, alpha), rel=1e-12)
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+def test_three_voussoirs_stand_at_any_thickness(weight: str) -> None:
+    """Two joints on each half: a thrust and a moment always lead the line through both.
+
+    Four voussoirs have a joint at the crown, too, and need a thickness.
+    """
+    assert limit.least_thickness(1.5, math.inf, 3, weight).eta < 1e-300
+    assert limit.stands(Arch(half_angle=1.5, eta=1e-6, voussoirs=3, weight=weight), 1.0)
+    assert limit.least_thickness(1.5, math.inf, 4, weight).eta > 0.01
+    # Friction still has its say.
+    assert limit.least_thickness(1.5, 0.1, 3, weight).eta is None
+
+
+def test_overhanging_arch_that_never_stands() -> None:
+    """Beyond alpha_L = 159.65 deg each half overturns whatever friction and thickness."""
+    just_stands = limit.least_thickness(math.radians(159.6), math.inf, 40)
+    never = limit.least_thickness(math.radians(159.7), math.inf, 40)
+    assert just_stands.eta == pytest.approx(2, abs=0.02)
+    assert never.eta is None
+    assert limit.slack(Arch(half_angle=2.0, eta=0.5, voussoirs=9), 1e-3) < -100
+    assert limit.slack(Arch(half_angle=2.0, eta=0.5, voussoirs=9), 1e-9) == -math.inf
+
+
+@pytest.mark.parametrize(
+    ("field", "arguments"),
+    [
+        ("mu", (1.0, 0.0, 9)),
+        ("mu", (1.0, -1.0, 9)),
+        ("mu", (1.0, math.nan, 9)),
+        ("half_angle", (0.0, 1.0, 9)),
+        ("half_angle", (math.pi, 1.0, 9)),
+        ("voussoirs", (1.0, 1.0, 2)),
+        ("weight", (1.0, 1.0, 9, "mean")),
+    ],
+)
+def test_wrong_values(field: str, arguments: tuple) -> None:
+    with pytest.raises(InputError) as caught:
+        limit.least_thickness(*arguments)
+    assert caught.value.field == field

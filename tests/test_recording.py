@@ -1,0 +1,220 @@
+"""Recordings come back as they were, or are refused in one line; no half-written file."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from blocksim.arch import Arch
+from blocksim.engines.base import Settings
+from blocksim.errors import InputError
+from blocksim.files import make_folder, write_whole
+from blocksim.recording import Recording, displacement, load_recording
+
+ARCH = Arch(half_angle=1.2, eta=0.15, voussoirs=5, weight="sector", radius=4.0, depth=0.5)
+
+
+def recording(frames: int = 4) -> Recording:
+    random = np.random.default_rng(7)
+    return Recording(
+        arch=ARCH,
+        mu=math.inf,
+        engine="pymunk",
+        engine_version="7.3",
+        settings=Settings(step=0.005, sweeps=250, hold_sweeps=50_000),
+        times=np.linspace(0, 0.3, frames),
+        poses=random.normal(size=(frames, 5, 3)),
+    )
+
+
+def test_roundtrip_is_exact(tmp_path: Path) -> None:
+    one = recording()
+    path = tmp_path / "run.npz"
+    one.save(path)
+    two = load_recording(path)
+    assert np.array_equal(one.poses, two.poses)
+    assert np.array_equal(one.times, two.times)
+    assert (two.arch, two.mu, two.settings) == (one.arch, one.mu, one.settings)
+    assert (two.engine, two.engine_version) == (one.engine, one.engine_version)
+    assert two.state_hash == one.state_hash
+    assert [file.name for file in tmp_path.iterdir()] == ["run.npz"]
+
+
+def test_hash_sees_the_last_bit() -> None:
+    one = recording()
+    poses = one.poses.copy()
+    poses[2, 3, 1] = np.nextafter(poses[2, 3, 1], 2)
+    assert replace(one, poses=poses).state_hash != one.state_hash
+    assert replace(one, poses=np.asfortranarray(one.poses)).state_hash == one.state_hash
+
+
+def test_displacement_in_closed_form() -> None:
+    one = recording(3)
+    poses = np.zeros((3, 5, 3))
+    poses[1, 2, :2] = [3e-3, 4e-3]
+    poses[2, 4, 2] = -1e-2
+    assembly = ARCH.assembly()
+    expected = [0, 5e-3, 1e-2 * assembly.reach[4] / 4.0]
+    assert replace(one, poses=poses).displacement == pytest.approx(expected, rel=1e-12)
+    assert displacement(poses, assembly.reach / 4.0) == pytest.approx(expected, rel=1e-12)
+
+
+def test_seconds() -> None:
+    """Time unit sqrt(r/g)."""
+    assert recording().seconds(9.81)[-1] == pytest.approx(0.3 * math.sqrt(4 / 9.81), rel=1e-14)
+
+
+def refused(path: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        load_recording(path)
+    message = str(caught.value)
+    assert message.startswith(f"recording = {str(path)!r}: must be ")
+    assert "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.999])
+def test_truncated(tmp_path: Path, share: float) -> None:
+    path = tmp_path / "run.npz"
+    recording().save(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(len(whole) * share)])
+    refused(path)
+
+
+def test_every_damaged_byte_is_noticed_or_harmless(tmp_path: Path) -> None:
+    """One byte flipped: refused, or read back as it was (zip headers repeat themselves)."""
+    path = tmp_path / "run.npz"
+    recording().save(path)
+    whole = bytearray(path.read_bytes())
+    noticed = 0
+    places = range(0, len(whole), 7)
+    for place in places:
+        damaged = whole.copy()
+        damaged[place] ^= 0x5A
+        path.write_bytes(bytes(damaged))
+        try:
+            same = load_recording(path)
+        except InputError:
+            noticed += 1
+        else:
+            assert np.array_equal(same.poses, recording().poses)
+            assert np.array_equal(same.times, recording().times)
+            assert same.arch == ARCH
+    assert noticed > len(places) / 2
+
+
+def test_foreign_files(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    refused(path)
+    refused(tmp_path)
+    path.write_text("not a recording")
+    refused(path)
+    np.savez(path, other=np.zeros(3))
+    refused(path)
+    with path.open("wb") as file:
+        np.save(file, np.zeros(3))
+    refused(path)
+
+
+class Trap:
+    """Would run on unpickling."""
+
+    def __reduce__(self) -> tuple:
+        return (Path.touch, (Path("trap-was-run"),))
+
+
+def test_pickles_are_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "run.npz"
+    np.savez(path, header=np.array([Trap()], dtype=object), times=[0.0], poses=[0.0])
+    refused(path)
+    with path.open("wb") as file:
+        np.save(file, np.array([Trap()], dtype=object))
+    refused(path)
+    assert not (tmp_path / "trap-was-run").exists()
+
+
+def altered(path: Path, **changes: object) -> None:
+    recording().save(path)
+    with np.load(path) as archive:
+        parts = dict(archive)
+    header = json.loads(str(parts["header"]))
+    header.update({k: v for k, v in changes.items() if k not in parts})
+    parts.update({k: v for k, v in changes.items() if k in parts})
+    parts["header"] = np.array(json.dumps(header))
+    np.savez(path, **parts)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"format": 2}, "of format 1"),
+        ({"poses": np.zeros((4, 6, 3))}, "poses of shape"),
+        ({"times": np.zeros(3)}, "poses of shape"),
+        ({"times": np.array(1.0)}, "poses of shape"),
+        ({"poses": np.zeros((4, 5, 3))}, "undamaged"),
+        ({"state_hash": "0" * 16}, "undamaged"),
+        ({"mu": "much"}, "written by blocksim simulate"),
+        ({"arch": {"half_angle": 1.0}}, "written by blocksim simulate"),
+        ({"arch": {"half_angle": 9.0, "eta": 1, "voussoirs": 5}}, "written by blocksim"),
+        ({"settings": {"unknown": 1}}, "written by blocksim simulate"),
+        ({"settings": None}, "written by blocksim simulate"),
+    ],
+)
+def test_altered_contents(tmp_path: Path, changes: dict[str, object], words: str) -> None:
+    path = tmp_path / "run.npz"
+    altered(path, **changes)
+    assert words in refused(path)
+
+
+def test_header_that_is_no_table(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    for text in ("[]", "1", "null", "{", '"text"'):
+        np.savez(path, header=np.array(text), times=np.zeros(1), poses=np.zeros((1, 5, 3)))
+        refused(path)
+
+
+def test_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "run.npz"
+    recording().save(path)
+    monkeypatch.setattr("blocksim.recording.LARGEST_FILE", path.stat().st_size - 1)
+    assert "bytes" in refused(path)
+    monkeypatch.setattr("blocksim.recording.LARGEST_FILE", path.stat().st_size)
+    load_recording(path)
+
+
+def test_folder_missing_or_not_writable(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_text("kept")
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    for path in (tmp_path / "none" / "run.npz", file / "run.npz", folder):
+        with pytest.raises(InputError, match="writable") as caught:
+            recording().save(path)
+        assert "\n" not in str(caught.value)
+        assert caught.value.field == "--out"
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["file", "folder"]
+    assert file.read_text() == "kept"
+    with pytest.raises(InputError, match="writable folder"):
+        make_folder(file / "inside")
+
+
+def test_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    recording().save(path)
+    before = path.read_bytes()
+
+    def fail(file: object) -> None:
+        file.write(b"half")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(InputError, match="No space left"):
+        write_whole(path, fail)
+    assert path.read_bytes() == before
+    assert [each.name for each in tmp_path.iterdir()] == ["run.npz"]

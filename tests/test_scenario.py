@@ -1,0 +1,163 @@
+"""Shipped scenarios say what theory says; wrong files are refused in one line."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from blocksim import limit, theory
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+from blocksim.scenario import LARGEST_FILE, load_scenario, shipped
+from blocksim.validate import scenarios
+
+GOOD = """\
+title = "A semicircle"
+source = "none"
+[arch]
+half_angle_deg = 90
+voussoirs = 27
+eta = 0.12
+[contact]
+mu = 0.7
+[expect]
+modes = ["rrr"]
+eta = 0.1
+"""
+
+
+ACROSS_THE_LINE = {
+    "fig20_junction_point": {Mode.RRS},
+    "fig25_low_overturning_152": {Mode.RRR},
+}
+"""Where a region ends, voussoirs show the mode of the next: they see a hinge half a joint
+spacing off, here farther than the region is wide."""
+
+
+def written(folder: Path, text: str) -> str:
+    path = folder / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_shipped_scenarios_agree_with_theory(name: str) -> None:
+    scenario = load_scenario(name)
+    assert scenario.name == name
+    assert scenario.title
+    assert scenario.source
+    found = theory.least_thickness(scenario.half_angle, scenario.mu, scenario.weight)
+    if scenario.expected_eta is None:
+        assert found.eta is None
+    else:
+        assert found.eta == pytest.approx(scenario.expected_eta, rel=1e-12)
+    modes = set(scenario.expected_modes)
+    assert modes <= set(found.modes)
+    # What ties beyond the caption is its line's other mode; away from lines, nothing.
+    assert found.modes if len(modes) > 1 else set(found.modes) == modes
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_shipped_voussoirs_show_a_published_mode(name: str) -> None:
+    scenario = load_scenario(name)
+    built = limit.least_thickness(
+        scenario.half_angle, scenario.mu, scenario.voussoirs, scenario.weight
+    )
+    assert built.mode in {*scenario.expected_modes, *ACROSS_THE_LINE.get(name, ())}
+    assert (built.eta is None) <= (Mode.SS in scenario.expected_modes)
+
+
+def test_scenarios_cover_the_map() -> None:
+    every = scenarios(quick=False)
+    assert {mode for scenario in every for mode in scenario.expected_modes} == set(Mode)
+    assert {scenario.weight for scenario in every} == {"centreline", "sector"}
+    assert {scenario.voussoirs % 2 for scenario in every} == {0, 1}
+    quick = scenarios(quick=True)
+    assert 0 < len(quick) < len(every)
+    assert {scenario.name for scenario in quick} < {scenario.name for scenario in every}
+
+
+def test_a_file_becomes_an_arch(tmp_path: Path) -> None:
+    scenario = load_scenario(written(tmp_path, GOOD))
+    assert scenario.name == "scene"
+    assert scenario.half_angle == math.pi / 2
+    arch = scenario.arch(scenario.eta)
+    assert (arch.eta, arch.voussoirs, arch.weight) == (0.12, 27, "centreline")
+    assert (arch.radius, arch.depth, arch.specific_weight) == (1.0, 1.0, 20_000.0)
+    assert scenario.expected_modes == (Mode.RRR,)
+    unbounded = load_scenario(written(tmp_path, GOOD.replace("mu = 0.7", "mu = inf")))
+    assert unbounded.mu == math.inf
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field", "shown", "allowed"),
+    [
+        ("half_angle_deg = 90", "half_angle_deg = 180", "arch.half_angle_deg", "180", "less"),
+        ("half_angle_deg = 90", "half_angle_deg = 0", "arch.half_angle_deg", "0", "greater"),
+        (
+            "half_angle_deg = 90",
+            'half_angle_deg = "90"',
+            "arch.half_angle_deg",
+            "'90'",
+            "number",
+        ),
+        (
+            "half_angle_deg = 90",
+            "half_angle_deg = nan",
+            "arch.half_angle_deg",
+            "nan",
+            "must be",
+        ),
+        ("half_angle_deg = 90\n", "", "arch.half_angle_deg", "(missing)", "given"),
+        ("voussoirs = 27", "voussoirs = 2", "arch.voussoirs", "2", "3"),
+        ("voussoirs = 27", "voussoirs = 1001", "arch.voussoirs", "1001", "1000"),
+        ("voussoirs = 27", "voussoirs = 9.0", "arch.voussoirs", "9.0", "integer"),
+        ("eta = 0.12", "eta = 2.5", "arch.eta", "2.5", "2"),
+        ("eta = 0.12", "eta = 0", "arch.eta", "0", "0"),
+        ("eta = 0.12", 'weight = "mean"', "arch.weight", "'mean'", "'sector'"),
+        ("eta = 0.12", "radius = inf", "arch.radius", "inf", "finite"),
+        ("eta = 0.12", "depth = -1", "arch.depth", "-1", "0"),
+        ("eta = 0.12", "thickness = 1", "arch.thickness", "1", "no such key"),
+        ("mu = 0.7", "mu = 0", "contact.mu", "0", "greater"),
+        ("mu = 0.7", "mu = true", "contact.mu", "True", "number"),
+        ("mu = 0.7", "friction = 0.7", "contact.friction", "0.7", "no such key"),
+        ('["rrr"]', "[]", "expect.modes", "[]", "at least 1"),
+        ('["rrr"]', '["rrq"]', "expect.modes.0", "'rrq'", "'rrr'"),
+        ("eta = 0.1\n", "eta = 3\n", "expect.eta", "3", "2"),
+        ('title = "A semicircle"', 'title = ""', "title", "''", "1"),
+        ('title = "A semicircle"', 'title = "A"\nquick = 1', "quick", "1", "boolean"),
+        ("[contact]\nmu = 0.7\n", "", "contact", "(missing)", "given"),
+        ("[arch]", "[arch", "file", "", "valid TOML"),
+    ],
+)
+def test_wrong_files_are_named_in_one_line(
+    tmp_path: Path, old: str, new: str, field: str, shown: str, allowed: str
+) -> None:
+    assert old in GOOD
+    name = written(tmp_path, GOOD.replace(old, new, 1))
+    with pytest.raises(InputError) as caught:
+        load_scenario(name)
+    message = str(caught.value)
+    assert message.startswith(f"{name}: {field} = ")
+    assert "\n" not in message
+    assert shown in message
+    assert allowed in message.partition("must be")[2] or allowed == "must be"
+
+
+def test_file_that_is_not_there_or_too_large(tmp_path: Path) -> None:
+    for name in ("no_such_scenario", str(tmp_path / "none.toml"), str(tmp_path), ""):
+        with pytest.raises(InputError, match=r"an existing \.toml file"):
+            load_scenario(name)
+    padding = "#" * (LARGEST_FILE - len(GOOD))
+    assert load_scenario(written(tmp_path, GOOD + padding)).voussoirs == 27
+    with pytest.raises(InputError, match="at most 65536 bytes"):
+        load_scenario(written(tmp_path, GOOD + padding + "#"))
+
+
+def test_file_that_is_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="valid TOML"):
+        load_scenario(str(path))

@@ -1,0 +1,115 @@
+"""The semicircular arch, as published.
+
+@article{CocchettiRizzi2020,
+  author  = {Cocchetti, Giuseppe and Rizzi, Egidio},
+  title   = {Analytical and numerical analysis on the collapse modes of least-thickness
+             circular masonry arches at decreasing friction},
+  journal = {Frattura ed Integrita Strutturale},
+  volume  = {14}, number = {51}, pages = {356--375}, year = {2020},
+  doi     = {10.3221/IGF-ESIS.51.26},
+}
+@article{Heyman1969,
+  author  = {Heyman, Jacques},
+  title   = {The safety of masonry arches},
+  journal = {International Journal of Mechanical Sciences},
+  volume  = {11}, number = {4}, pages = {363--385}, year = {1969},
+  doi     = {10.1016/0020-7403(69)90070-8},
+}
+
+Six printed digits, so half a unit of the sixth is asked for. Heyman's and Couplet's values
+are those of the same moment balances with a wrong inner hinge; 0.1075 at 54.5 deg is
+Milankovitch's, with the weight at the centroids of the true voussoirs.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+from blocksim import limit, theory
+from blocksim.modes import Mode
+from blocksim.theory.equations import lower_thrust, tangency_thrust, whole_thrust
+from blocksim.theory.regions import divide, divide_half_angle, first_sliding
+
+QUARTER = math.pi / 2
+SIX = 5.001e-7
+"""Half a unit of the sixth decimal."""
+
+
+def test_purely_rotational() -> None:
+    found = theory.least_thickness(QUARTER, 0.7)
+    assert found.modes == (Mode.RRR,)
+    assert found.eta == pytest.approx(0.107426, abs=SIX)
+    assert found.thrust == pytest.approx(0.621772, abs=SIX)
+    assert math.degrees(found.beta_r) == pytest.approx(54.4963, abs=5.001e-5)
+    assert found.beta_s is None
+
+
+def test_friction_limits() -> None:
+    assert first_sliding(np.array([QUARTER])).mu[0] == pytest.approx(0.395832, abs=SIX)
+    mu = brentq(lambda mu: divide_half_angle(mu) - QUARTER, 0.1, 1.0, xtol=1e-14)
+    assert mu == pytest.approx(0.309215, abs=SIX)
+    assert divide(np.array([mu])).eta[0] == pytest.approx(0.200637, abs=SIX)
+    assert theory.least_thickness(QUARTER, 0.309214).modes == (Mode.SS,)
+    assert theory.least_thickness(QUARTER, 0.309214).eta is None
+    assert theory.least_thickness(QUARTER, 0.309216).modes == (Mode.SRR,)
+    assert theory.least_thickness(QUARTER, 0.395831).modes == (Mode.SRR,)
+    assert theory.least_thickness(QUARTER, 0.395833).modes == (Mode.RRR,)
+
+
+def test_at_the_lower_friction_limit() -> None:
+    mu = brentq(lambda mu: divide_half_angle(mu) - QUARTER, 0.1, 1.0, xtol=1e-15)
+    found = theory.least_thickness(QUARTER, mu)
+    assert set(found.modes) == {Mode.SRR, Mode.SS}
+    assert found.eta == pytest.approx(0.200637, abs=SIX)
+    assert found.thrust == pytest.approx(0.485714, abs=SIX)
+    assert math.degrees(found.beta_r) == pytest.approx(60.5134, abs=5.001e-5)
+    assert math.degrees(found.beta_s) == pytest.approx(28.6362, abs=5.001e-5)
+
+
+def test_milankovitch_weight() -> None:
+    found = theory.least_thickness(QUARTER, math.inf, "sector")
+    assert found.eta == pytest.approx(0.1075, abs=5e-5)
+    assert math.degrees(found.beta_r) == pytest.approx(54.5, abs=0.05)
+    fine = limit.least_thickness(QUARTER, math.inf, 600, "sector")
+    assert fine.eta == pytest.approx(0.107477, abs=2e-6)
+
+
+def hinged_at(beta: float) -> float:
+    """Thickness at which (1) and (3) agree for a given inner hinge."""
+    return brentq(
+        lambda eta: lower_thrust(beta, eta) - whole_thrust(QUARTER, eta), 1e-6, 1, xtol=1e-14
+    )
+
+
+def test_couplet_and_heyman_are_unsafe() -> None:
+    """Hinges at 45 deg (Couplet) and 58.8 deg (Heyman): 0.101 and 0.1060."""
+    least = theory.least_thickness(QUARTER, math.inf).eta
+    couplet = hinged_at(math.pi / 4)
+    assert couplet == pytest.approx(0.101, abs=5e-4)
+
+    def heyman(beta: float) -> float:
+        # Heyman's tangency leaves out eta/(2 - eta) of (4).
+        return beta / math.tan(beta) - lower_thrust(beta, heyman_eta(beta))
+
+    def heyman_eta(beta: float) -> float:
+        wanted = beta / math.tan(beta)
+        return brentq(lambda eta: whole_thrust(QUARTER, eta) - wanted, 1e-6, 1.9)
+
+    beta = brentq(heyman, math.radians(55), math.radians(62))
+    assert math.degrees(beta) == pytest.approx(58.8, abs=0.05)
+    assert heyman_eta(beta) == pytest.approx(0.1060, abs=5e-5)
+    assert couplet < heyman_eta(beta) < least
+
+
+@given(st.floats(20, 85))
+def test_the_true_hinge_asks_for_the_most(degrees: float) -> None:
+    least = theory.least_thickness(QUARTER, math.inf)
+    assert hinged_at(math.radians(degrees)) <= least.eta + 1e-12
+    assert hinged_at(least.beta_r) == pytest.approx(least.eta, rel=1e-12)
+    assert tangency_thrust(least.beta_r, least.eta) == pytest.approx(least.thrust, rel=1e-10)
