@@ -14,6 +14,8 @@ from blocksim.errors import InputError
 Weight = Literal["centreline", "sector"]
 WEIGHTS: tuple[str, ...] = get_args(Weight)
 
+SMALL = 0.1
+"""Angle below which a series is better than a difference [rad]."""
 GRAVITY = 9.81
 """Standard gravity [m/s^2], to turn specific weight into mass."""
 
@@ -129,9 +131,11 @@ class Arch:
         half = self.half_angle / self.voussoirs
         arm = self.radius * self.centroid_factor * math.sin(half) / half
         mass = self.voussoir_weight / GRAVITY
-        # Polar moment about the centre of the arch, then the parallel-axis theorem.
-        polar = 1.0 if self.weight == "centreline" else 1.0 + self.eta**2 / 4
-        inertia = mass * (self.radius**2 * polar - arm**2)
+        # Polar moment about the centre of the arch (1, or 1 + eta^2/4 for the sector) less
+        # the parallel-axis term, with 1 - (sin x/x)^2 kept apart: it is x^2/3 for small x.
+        factor = self.centroid_factor
+        thick = 0.0 if self.weight == "centreline" else 1.0 + self.eta**2 / 4 - factor**2
+        inertia = mass * self.radius**2 * (thick + factor**2 * _sine_deficit(half))
         middle = (angles[:-1] + angles[1:]) / 2
         centres = arm * np.column_stack([np.sin(middle), np.cos(middle)])
         blocks = tuple(
@@ -168,6 +172,15 @@ def crown_width(half_angle: float, voussoirs: int) -> float:
     """
     share = 1.0 if voussoirs % 2 else 1e-9
     return half_angle / voussoirs * share * (1 + 1e-9)
+
+
+def _sine_deficit(x: float) -> float:
+    """Return 1 - (sin x/x)^2, without cancellation for small x."""
+    if x > SMALL:
+        return 1.0 - (math.sin(x) / x) ** 2
+    square = x * x
+    series = 1 / 3 - square * (2 / 45 - square * (1 / 315 - square * (2 / 14175)))
+    return square * series
 
 
 def _corners(inner: Array, outer: Array) -> Array:

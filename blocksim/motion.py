@@ -44,7 +44,7 @@ FINER = 4
 REPEATS = 2
 FRAME = 0.05
 """Time between frames."""
-EARLY = 1e-3
+EARLY = 3e-4
 """Displacement at which the motion still is the collapse mechanism."""
 
 

@@ -359,13 +359,14 @@ def test_a_block_rests_on_a_slope(degrees: float, share: float, width: float) ->
 
 @pytest.mark.parametrize("degrees", [5, 20, 45, 60])
 def test_friction_threshold_on_a_slope(degrees: float) -> None:
-    """Both sides of tan(phi) = mu, a part in 10^5 away: sqrt(mu) twice loses nothing."""
+    """Both sides of tan(phi) = mu, twice as far as the onset test can tell from rest."""
     angle = math.radians(degrees)
+    share = 2 * STILL / math.sin(angle)
     assembly = on_a_slope(angle, 1.0, 0.2)
-    assert held(assembly, math.tan(angle) * (1 + 1e-5))[0] is Verdict.STANDS
-    verdict, start = held(assembly, math.tan(angle) * (1 - 1e-5))
+    assert held(assembly, math.tan(angle) * (1 + share))[0] is Verdict.STANDS
+    verdict, start = held(assembly, math.tan(angle) * (1 - share))
     assert verdict is Verdict.COLLAPSES
-    assert np.hypot(*start[0, :2]) == pytest.approx(1e-5 * math.sin(angle), rel=0.02)
+    assert np.hypot(*start[0, :2]) == pytest.approx(share * math.sin(angle), rel=0.02)
 
 
 @settings(max_examples=40)

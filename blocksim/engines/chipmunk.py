@@ -160,7 +160,9 @@ def _outline(
     corners: list[Array] = [v / size for v in vertices if not _on_a_face(v, faces)]
     for joint in faces:
         inward = _side(joint, index) * joint.normal * inset
-        ledge = min(LEDGE, LEDGE_SHARE * joint.length / size) if joint.after == index else 0.0
+        # A support is wider than any joint; only between blocks one has to give way.
+        wider = joint.after == index and joint.before != SUPPORT
+        ledge = min(LEDGE, LEDGE_SHARE * joint.length / size) if wider else 0.0
         for end, along in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
             cut = max(-ledge, _crowding(end, along, faces, size, inset))
             corners.append(end / size + inward + along * cut)
