@@ -199,7 +199,8 @@ def _rotational(weight: Weight) -> _Rotational:
         more = excess(middle, alpha) > 0
         low, high = np.where(more, middle, low), np.where(more, high, middle)
     short = (low + high) / 2
-    eta, hinge = inner_hinges(short, np.zeros_like(alpha), alpha, weight)
+    # Near alpha_l the thickness the crown asks for is all but undetermined.
+    eta, hinge = inner_hinges(short, alpha, alpha, weight)
     values = np.stack([short / square, eta / square**2, hinge / square], axis=1)
     pieces: list[Array] = [
         np.asarray(chebyshev.chebfit(points, piece, NODES - 1), dtype=float)
