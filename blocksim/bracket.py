@@ -263,9 +263,9 @@ class Search:
             step *= 2
             eta = min(eta * (1 + step), ETA_MAX)
             self.probe(eta)
-        if self.high is None:
+        if self._ceiling() is None:
             return
-        step, eta = FIRST_STEP, min(guess, self.high)
+        step, eta = FIRST_STEP, guess
         while self.low is None and eta > THINNEST:
             eta *= 1 - min(step, 0.5)
             step *= 2
@@ -282,19 +282,22 @@ class Search:
             self._progress(0.9 * share, f"trying eta = {middle:.6g}")
             self.probe(middle)
 
+    def _ceiling(self) -> float | None:
+        """Upper end of the search: what stood, or the thickest arch if it is undecided."""
+        return ETA_MAX if self.high is None and ETA_MAX in self._dark else self.high
+
     def _width(self) -> float:
         """Relative width of the bracket, 0 while there is none."""
-        if self.low is None or self.high is None:
-            return 0.0
-        return 1 - self.low / self.high
+        high = self._ceiling()
+        return 0.0 if self.low is None or high is None else 1 - self.low / high
 
     def _next(self, tol: float) -> float | None:
         """Middle of the wider end part; nothing is to be learnt between undecided ratios."""
-        if self.low is None or self.high is None:
+        floor, ceiling = self.low, self._ceiling()
+        if floor is None or ceiling is None:
             return None
-        dark = [eta for eta in self._dark if self.low < eta < self.high]
-        below, above = min(dark, default=self.high), max(dark, default=self.low)
-        low, high = max(
-            (self.low, below), (above, self.high), key=lambda part: part[1] - part[0]
-        )
-        return (low + high) / 2 if high - low > tol * self.high / 4 else None
+        dark = [eta for eta in self._dark if floor < eta < ceiling]
+        below, above = min(dark, default=ceiling), max(dark, default=floor)
+        parts = ((floor, below), (above, ceiling))
+        low, high = max(parts, key=lambda part: part[1] - part[0])
+        return (low + high) / 2 if high - low > tol * ceiling / 4 else None

@@ -5,6 +5,9 @@ Outcomes (stands, collapses, undecided) are values and never exceptions.
 
 from __future__ import annotations
 
+MISSING = object()
+"""Stands for a value that was not given."""
+
 
 class BlocksimError(Exception):
     """Base of everything blocksim raises on purpose."""
@@ -18,7 +21,7 @@ class InputError(BlocksimError, ValueError):
     field : str
         Name of the field or option, e.g. ``eta``.
     value : object
-        What was given.
+        What was given; `MISSING` if nothing was.
     allowed : str
         What would have been accepted, as a phrase.
     where : str, optional
@@ -33,7 +36,8 @@ class InputError(BlocksimError, ValueError):
         self.allowed = allowed
         self.where = where
         place = f"{where}: " if where else ""
-        super().__init__(f"{place}{field} = {value!r}: must be {allowed}")
+        is_so = "is missing" if value is MISSING else f"= {value!r}"
+        super().__init__(f"{place}{field} {is_so}: must be {allowed}")
 
 
 class MissingPart(BlocksimError):

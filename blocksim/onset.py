@@ -5,10 +5,11 @@ takes. Its answer is read as one of two certificates, both from the engine's own
 
 - *stands*: the largest acceleration falls below `STILL` (in g). The contact forces found
   balance the weights and respect contact and friction.
-- *collapses*: the accelerations form a mechanism, that is, no joint closes further
-  (overlap below `OVERLAP` of the motion). Before the sweeps have converged the
-  accelerations press blocks into each other, by percents and more; once they have, by
-  a millionth. An arch that stands has no such motion at any number of sweeps.
+- *collapses*: the accelerations form a mechanism that the weight drives. No joint closes
+  further (overlap below `OVERLAP` of the motion), and the weight's work on it is at least
+  what goes into the motion (`WORK`): more where joints slide, the same where they turn.
+  Before the sweeps have converged blocks press into each other by percents, or forces at
+  parting joints do work that nobody pays for; afterwards by a millionth.
 
 If neither is reached within the sweeps allowed the test is undecided, and says so.
 """
@@ -28,6 +29,7 @@ from blocksim.verdict import Verdict
 
 STILL = 1e-7
 OVERLAP = 1e-3
+WORK = 0.95
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
 FIRST_SWEEPS = 1000
@@ -99,7 +101,7 @@ def onset(
         mechanism = rest + accelerations * (PROBE / largest if largest > 0 else 0.0)
         if largest < STILL:
             verdict = Verdict.STANDS
-        elif overlap_share(assembly, mechanism) < OVERLAP:
+        elif overlap_share(assembly, mechanism) < OVERLAP and _driven(assembly, accelerations):
             verdict = Verdict.COLLAPSES
         else:
             verdict = Verdict.UNDECIDED
@@ -109,3 +111,13 @@ def onset(
             )
         progress(np.log(total / first) / np.log(hold_sweeps / first), "onset test")
         sweeps = min(int(total * (GROWTH - 1)), hold_sweeps - total)
+
+
+def _driven(assembly: Assembly, accelerations: Array) -> bool:
+    """Whether the weight does the work of the motion, from rest over one step."""
+    masses = np.array([block.mass for block in assembly.blocks])
+    inertias = np.array([block.inertia for block in assembly.blocks]) / assembly.size**2
+    x, y, turn = accelerations.T
+    of_weight = -float(masses @ y)
+    of_motion = float(masses @ (x**2 + y**2) + inertias @ turn**2)
+    return of_weight > WORK * of_motion

@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, TypeAdapter, ValidationError
 
 from blocksim.arch import Arch, Weight
-from blocksim.errors import InputError
+from blocksim.errors import MISSING, InputError
 from blocksim.modes import Mode
 
 LARGEST_FILE = 64 * 1024
@@ -174,7 +174,7 @@ def _first_of(error: ValidationError, where: str) -> InputError:
     if first["type"] == "unexpected_keyword_argument":
         return InputError(field, first["input"], "left out: there is no such key", where=where)
     if first["type"] in {"missing", "missing_argument"}:
-        return InputError(field, "(missing)", "given", where=where)
+        return InputError(field, MISSING, "given", where=where)
     return InputError(
         field, first["input"], first["msg"].removeprefix("Input should be "), where=where
     )

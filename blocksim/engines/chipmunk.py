@@ -6,8 +6,11 @@ How a near-critical arch has to be put into it (each point measured, see ARCHITE
   set back by `INSET` and the shape given a radius that closes the joint again with an
   overlap of an eighth of it, less than the slop: contacts exist from the start, their
   levers are those of the true corners, and no position correction acts.
-- Corners that coincide make the collision routine return a wrong normal now and then:
-  one face of each joint is shorter by `TRIM` at both ends.
+- Corners that coincide make the collision routine return a wrong normal now and then,
+  and corners that pass each other as a joint slips make it forget the impulses of a
+  contact, from which a moving arch does not recover. One face of each joint reaches beyond
+  the other by a `LEDGE`: the contacts are those of the shorter face, whose corners are
+  true, until the joint has slipped that far.
 - A pair's friction is the product of its two shapes' values: each takes sqrt(mu).
 - A contact that was open for a moment would come back with its old impulse:
   collision_persistence is 1.
@@ -29,8 +32,10 @@ INSET = 1e-6
 INSET_SHARE = 1e-4
 OVERLAP = 0.25
 """Overlap of two closed shapes, in units of the inset."""
-TRIM = 0.01
-"""Shortening of one face of each joint, in units of the inset."""
+LEDGE = 2e-3
+"""Most that one face of each joint reaches beyond the other [size]."""
+LEDGE_SHARE = 0.05
+"""The same, in units of the joint's length."""
 CLEARANCE = 6.0
 """Least width of a block between two faces, in units of the inset."""
 LONGEST_STEP = 1 / 100
@@ -155,20 +160,20 @@ def _outline(
     corners: list[Array] = [v / size for v in vertices if not _on_a_face(v, faces)]
     for joint in faces:
         inward = _side(joint, index) * joint.normal * inset
-        trim = TRIM * inset if joint.before == index else 0.0
+        ledge = min(LEDGE, LEDGE_SHARE * joint.length / size) if joint.after == index else 0.0
         for end, along in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
-            cut = max(trim, _crowding(end, along, faces, size, inset))
+            cut = max(-ledge, _crowding(end, along, faces, size, inset))
             corners.append(end / size + inward + along * cut)
     return np.array(corners)
 
 
 def _crowding(end: Array, along: Array, faces: list[Joint], size: float, inset: float) -> float:
-    """How far a face must end short of a corner that is closer to another face than wide.
+    """Return how far a face must end short of a corner, for the block to be wide enough.
 
     Where the intrados shrinks to a point (eta near 2) faces set back would cross there,
-    and voussoirs that do not share a joint would touch.
+    and voussoirs that do not share a joint would touch. Negative where there is room.
     """
-    cut = 0.0
+    cut = -math.inf
     for joint in faces:
         for other, direction in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
             apart = float(np.hypot(*(other - end))) / size

@@ -1,0 +1,5 @@
+"""Run blocksim as `python -m blocksim`."""
+
+from blocksim.cli import main
+
+main()

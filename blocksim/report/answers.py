@@ -1,0 +1,130 @@
+"""Answers as JSON objects and as text for people."""
+
+from __future__ import annotations
+
+import math
+
+from blocksim.arch import GRAVITY
+from blocksim.bracket import Bracket
+from blocksim.check import Check
+from blocksim.joints import JointState
+
+
+def plain(value: object) -> object:
+    """Return a value as JSON has it: inf, which JSON lacks, becomes a text."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value
+
+
+def check_record(answer: Check) -> dict[str, object]:
+    """Return a check as `check --json` prints it."""
+    arch = answer.arch
+    seconds = None
+    if answer.simulated is not None:
+        seconds = answer.simulated * math.sqrt(arch.radius / GRAVITY)
+    return {
+        "method": answer.method,
+        "verdict": answer.verdict.value,
+        "reason": answer.reason,
+        "eta": arch.eta,
+        "mu": plain(answer.mu),
+        "half_angle_deg": math.degrees(arch.half_angle),
+        "voussoirs": arch.voussoirs,
+        "weight": arch.weight,
+        "eta_limit": answer.eta_limit,
+        "eta_theory": answer.eta_theory,
+        "mode": answer.mode,
+        "joints": [
+            {"angle_deg": math.degrees(joint.angle), "state": joint.state.value}
+            for joint in answer.joints
+        ],
+        "simulated_s": seconds,
+        "state_hash": answer.state_hash,
+        "wall_s": answer.wall_s,
+    }
+
+
+def bracket_record(answer: Bracket) -> dict[str, object]:
+    """Return a bracket as `bracket --json` prints it."""
+    return {
+        "method": answer.method,
+        "half_angle_deg": math.degrees(answer.half_angle),
+        "mu": plain(answer.mu),
+        "voussoirs": answer.voussoirs,
+        "weight": answer.weight,
+        "tol": answer.tol,
+        "eta_low": answer.eta_low,
+        "eta_high": answer.eta_high,
+        "eta_limit": answer.eta_limit,
+        "eta_theory": answer.eta_theory,
+        "mode": answer.mode,
+        "mode_limit": answer.mode_limit,
+        "mode_theory": answer.mode_theory,
+        "thrust": answer.thrust,
+        "beta_r_deg": _degrees(answer.beta_r),
+        "beta_s_deg": _degrees(answer.beta_s),
+        "confirmed": answer.confirmed,
+        "runs": answer.runs,
+        "undecided": answer.undecided,
+        "reason": answer.reason,
+        "wall_s": answer.wall_s,
+    }
+
+
+def _degrees(angle: float | None) -> float | None:
+    return None if angle is None else math.degrees(angle)
+
+
+def check_lines(answer: Check) -> list[str]:
+    """Return a check in words."""
+    arch = answer.arch
+    lines = [
+        f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
+        f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
+        f"mu {answer.mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}",
+        f"  because {answer.reason}",
+        f"  least   eta {ratio(answer.eta_limit)} as built, "
+        f"{ratio(answer.eta_theory)} continuous",
+    ]
+    if answer.mode:
+        lines.append(f"  mode    {answer.mode.value}, {answer.mode.description}")
+    active = [joint for joint in answer.joints if joint.state is not JointState.CLOSED]
+    if active:
+        told = ", ".join(f"{math.degrees(j.angle):+.1f} deg {j.state.value}" for j in active)
+        lines.append(f"  joints  {told}")
+    return lines
+
+
+def bracket_lines(answer: Bracket) -> list[str]:
+    """Return a bracket in words."""
+    if answer.eta_high is None:
+        head = "NOTHING STANDS up to eta = 2"
+    elif answer.eta_low == answer.eta_high:
+        head = f"LEAST ETA {answer.eta_high:.12g}"
+    else:
+        head = f"LEAST ETA between {answer.eta_low or 0:.6g} and {answer.eta_high:.6g}"
+    lines = [
+        f"{head}  ({answer.method}, {answer.wall_s:.2g} s)",
+        f"  arch    alpha {math.degrees(answer.half_angle):g} deg, mu {answer.mu:g}, "
+        f"{answer.voussoirs} voussoirs, weight {answer.weight}",
+        f"  because {answer.reason}",
+        f"  exact   eta {ratio(answer.eta_limit)} as built, "
+        f"{ratio(answer.eta_theory)} continuous",
+    ]
+    if answer.mode:
+        lines.append(f"  mode    {answer.mode.value}, {answer.mode.description}")
+    if answer.thrust is not None:
+        lines.append(f"  thrust  h = {answer.thrust:.9g}")
+    if answer.beta_r is not None:
+        lines.append(f"  hinge   {math.degrees(answer.beta_r):.4f} deg from the crown")
+    if answer.beta_s is not None:
+        lines.append(f"  slides  {math.degrees(answer.beta_s):.4f} deg from the crown")
+    if answer.undecided:
+        lines.append(f"  unsure  {answer.undecided} of {answer.runs} ratios undecided")
+    return lines
+
+
+def ratio(eta: float | None) -> str:
+    """Return a ratio in six digits, or a dash."""
+    return "-" if eta is None else f"{eta:.6g}"

@@ -1,0 +1,204 @@
+# matplotlib's own annotations leave keyword arguments open.
+# pyright: reportUnknownMemberType=false
+"""The mode map: thickness-to-radius ratio against friction (Figs 6-11)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import BinaryIO
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from blocksim import theory
+from blocksim.assembly import Array
+from blocksim.modes import Mode
+from blocksim.theory import regions
+from blocksim.view.style import FONT, MISS, MODES, UNNAMED
+
+SMALLEST_MU, LARGEST_MU = 0.002, 4.0
+LAST_ANGLE = 2.635
+"""Half-angle at which the line of first sliding has left the picture [rad]."""
+POINTS = 160
+"""Points on each line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapPoint:
+    """An arch on the map.
+
+    Parameters
+    ----------
+    mu, eta : float
+    mode : Mode or None
+        As observed.
+    label : str
+        Number or letter written beside it.
+    miss : bool
+        Whether something disagrees.
+    note : str
+        Line of the legend that explains the label.
+    """
+
+    mu: float
+    eta: float
+    mode: Mode | None
+    label: str
+    miss: bool
+    note: str
+
+
+def map_figure(points: Sequence[MapPoint] = (), *, title: str = "") -> Figure:
+    """Draw the regions of the map (Fig. 9), with points in front.
+
+    Parameters
+    ----------
+    points : sequence of MapPoint
+    title : str
+
+    Returns
+    -------
+    Figure
+    """
+    with mpl.rc_context(FONT):
+        figure = Figure(figsize=(11.0, 7.2) if points else (8.6, 7.0), layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.add_subplot()
+        draw_regions(axes)
+        _draw_points(axes, points)
+        axes.set_title(title or "Least thickness and collapse modes of circular arches", pad=12)
+        if points:
+            _legend(figure, points)
+    return figure
+
+
+def draw_regions(axes: Axes) -> None:
+    """Fill the regions of the six modes at finite friction, and name them."""
+    marks = theory.landmarks()
+    mu = np.linspace(SMALLEST_MU, LARGEST_MU, 4 * POINTS)
+    divide = regions.divide(np.linspace(SMALLEST_MU, marks["B"].mu, POINTS))
+    # Denser towards the wide arches, where friction runs off to infinity.
+    angles = LAST_ANGLE * (1 - np.linspace(0.95, 0.0, POINTS) ** 2)
+    first = regions.first_sliding(angles)
+    equal = regions.equal_angles(np.linspace(marks["S"].mu + 1e-6, LARGEST_MU, POINTS // 2))
+    crown = regions.crown_hinge(np.linspace(marks["J"].mu + 1e-6, LARGEST_MU, POINTS // 2))
+
+    top = np.where(mu <= marks["B"].mu, np.interp(mu, divide.mu, divide.eta), 2.0)
+    low = np.minimum(np.interp(mu, first.mu, first.eta), top)
+    between = np.where(mu < marks["S"].mu, top, np.interp(mu, equal.mu, equal.eta))
+    over = np.where(mu < marks["J"].mu, top, np.interp(mu, crown.mu, crown.eta))
+    left = mu <= marks["T"].mu
+    parts: list[tuple[Mode, Array, Array, NDArray[np.bool_]]] = [
+        (Mode.RRR, np.zeros_like(mu), low, mu > 0),
+        (Mode.SRR, low, top, left),
+        (Mode.RRS, low, between, ~left),
+        (Mode.RSR, between, over, ~left),
+        (Mode.RS, over, top, ~left),
+        (Mode.SS, top, np.full_like(mu, 2.0), mu > 0),
+    ]
+    for mode, bottom, ceiling, where in parts:
+        axes.fill_between(mu, bottom, ceiling, where=where, color=MODES[mode].tint, lw=0)
+    for curve, style in ((divide, "-"), (first, "-"), (equal, ":"), (crown, "--")):
+        axes.plot(curve.mu, curve.eta, style, color="#222222", lw=1.1)
+    _name_regions(axes)
+    for mark in marks.values():
+        axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec="#222222", zorder=4)
+        place = {"S": (-11, -9), "B": (6, -12)}.get(mark.name, (-11, 3))
+        axes.annotate(
+            mark.name,
+            (mark.mu, mark.eta),
+            xytext=place,
+            textcoords="offset points",
+            fontweight="bold",
+            annotation_clip=False,
+        )
+    axes.set(xlim=(0, LARGEST_MU), ylim=(0, 2.0))
+    axes.set_xlabel(r"friction coefficient $\mu$")
+    axes.set_ylabel(r"thickness-to-radius ratio $\eta = t/r$")
+
+
+def _name_regions(axes: Axes) -> None:
+    places = {
+        Mode.RRR: (2.3, 0.35),
+        Mode.SS: (0.75, 1.35),
+        Mode.SRR: (0.72, 0.355),
+        Mode.RRS: (2.45, 0.885),
+        Mode.RS: (3.2, 1.45),
+    }
+    for mode, (x, y) in places.items():
+        axes.text(x, y, mode.value, color=MODES[mode].colour, ha="center", va="center",
+                  fontsize=13 if mode is not Mode.SRR else 10, fontweight="bold")  # fmt: skip
+    axes.annotate(
+        Mode.RSR.value,
+        (3.4, 0.987),
+        xytext=(3.4, 1.16),
+        ha="center",
+        color=MODES[Mode.RSR].colour,
+        fontweight="bold",
+        arrowprops={"arrowstyle": "-", "color": MODES[Mode.RSR].colour, "lw": 0.8},
+    )
+
+
+def _draw_points(axes: Axes, points: Sequence[MapPoint]) -> None:
+    for point in points:
+        style = MODES[point.mode] if point.mode else UNNAMED
+        axes.plot(
+            point.mu,
+            point.eta,
+            style.marker,
+            ms=8,
+            mfc=style.colour,
+            mec=MISS if point.miss else "white",
+            mew=1.8 if point.miss else 0.8,
+            zorder=5,
+            clip_on=False,
+        )
+        if point.miss:
+            axes.plot(point.mu, point.eta, "o", ms=16, mfc="none", mec=MISS, mew=1.4, zorder=5)
+        axes.annotate(
+            point.label,
+            (point.mu, point.eta),
+            xytext=(8, -3),
+            textcoords="offset points",
+            fontsize=8,
+            zorder=6,
+            annotation_clip=False,
+        )
+
+
+def _legend(figure: Figure, points: Sequence[MapPoint]) -> None:
+    """Tell modes by colour and shape, and number the arches, beside the picture."""
+    seen = sorted({p.mode for p in points if p.mode}, key=list(Mode).index)
+    handles = [
+        Line2D([], [], ls="", marker=MODES[m].marker, mfc=MODES[m].colour, mec="white", ms=8,
+               label=f"{m.value}  {m.description.split(' (')[0]}")
+        for m in seen
+    ]  # fmt: skip
+    if any(point.mode is None for point in points):
+        handles.append(Line2D([], [], ls="", marker="*", mfc="k", ms=9, label="mode unnamed"))
+    if any(point.miss for point in points):
+        ring = Line2D([], [], ls="", marker="o", mfc="none", mec=MISS, ms=11, label="a miss")
+        handles.append(ring)
+    handles += [Line2D([], [], ls="", label=f"{p.label:>2}  {p.note}") for p in points]
+    figure.legend(
+        handles=handles,
+        loc="outside right upper",
+        frameon=False,
+        fontsize=8,
+        title="Observed mode, drawn at the bracket",
+        alignment="left",
+        handletextpad=0.4,
+    )
+
+
+def save_figure(figure: Figure, file: BinaryIO, kind: str) -> None:
+    """Write a figure as png or svg, without the date, so that equal figures are equal."""
+    with mpl.rc_context(FONT):
+        metadata = {"Date": None} if kind == "svg" else {"Software": "blocksim"}
+        figure.savefig(file, format=kind, dpi=150, metadata=metadata)

@@ -1,0 +1,34 @@
+"""Every study runs, and its headline numbers hold."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+STUDIES = Path(__file__).parent.parent / "analysis"
+
+
+def study(name: str) -> ModuleType:
+    """Import a study from the checkout; studies are no part of the package."""
+    spec = importlib.util.spec_from_file_location(f"analysis_{name}", STUDIES / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> None:
+    result = study("random_arches").main(tmp_path, quick=True)
+    assert result.arches == 4
+    assert result.false == 0
+    assert result.worst_error < 0.002
+    assert (tmp_path / "random_arches.png").stat().st_size > 0
+
+
+def test_every_study_is_listed_with_its_claim() -> None:
+    listed = (STUDIES / "README.md").read_text(encoding="utf-8")
+    assert [path.name for path in STUDIES.glob("*.py") if path.name not in listed] == []

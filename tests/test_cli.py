@@ -1,0 +1,164 @@
+"""The command line keeps its contract: exit codes, one line of error, JSON alone."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from blocksim import load_recording
+
+ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
+
+
+def blocksim(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "blocksim", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=cwd,
+    )
+
+
+@pytest.mark.parametrize("method", ["auto", "theory", "limit", "pymunk"])
+@pytest.mark.parametrize(
+    ("eta", "verdict", "code"), [("0.12", "stands", 0), ("0.1", "collapses", 1)]
+)
+def test_check_answers_with_its_exit_code(
+    method: str, eta: str, verdict: str, code: int
+) -> None:
+    done = blocksim("check", *ARCH, "--eta", eta, "--method", method, "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == code
+    assert done.stderr == ""
+    assert answer["verdict"] == verdict
+    assert answer["mode"] == (None if code == 0 else "rrr")
+    assert len(answer["joints"]) == 28
+    promised = "method reason eta mu half_angle_deg voussoirs weight eta_limit eta_theory"
+    assert {*promised.split(), "simulated_s", "state_hash", "wall_s"} <= set(answer)
+
+
+def test_check_exits_with_3_where_it_cannot_tell() -> None:
+    thin = ("--alpha", "20", "--eta", "0.00031", "--mu", "0.5", "--voussoirs", "9")
+    done = blocksim("check", *thin, "--method", "pymunk", "--json")
+    answer = json.loads(done.stdout)
+    exit_codes = {"stands": 0, "collapses": 1, "undecided": 3}
+    assert done.returncode == exit_codes[answer["verdict"]]
+    assert answer["verdict"] == "undecided"
+
+
+def test_bracket_holds_the_contract() -> None:
+    done = blocksim("bracket", *ARCH, "--method", "pymunk", "--tol", "0.005", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 0
+    assert answer["eta_high"] - answer["eta_low"] <= 0.005 * answer["eta_high"]
+    assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
+    assert answer["mode"] == answer["mode_theory"] == "rrr"
+    assert answer["confirmed"] is True
+    assert answer["undecided"] == 0
+    assert answer["thrust"] is None
+
+
+def test_bracket_where_nothing_stands() -> None:
+    answer = json.loads(blocksim("bracket", "--alpha", "90", "--mu", "0.3", "--json").stdout)
+    assert answer["eta_high"] is None
+    assert answer["mode"] == "ss"
+
+
+def test_unbounded_friction_is_valid_json() -> None:
+    done = blocksim("bracket", "--alpha", "90", "--mu", "inf", "--json")
+    assert json.loads(done.stdout, parse_constant=pytest.fail)["mu"] == "inf"
+
+
+def test_options_override_the_scenario() -> None:
+    done = blocksim("bracket", "semicircle", "--alpha", "125", "--mu", "0.9", "--json")
+    answer = json.loads(done.stdout)
+    assert answer["half_angle_deg"] == pytest.approx(125)
+    assert answer["mode_theory"] == "srr"
+
+
+WRONG = {
+    "--eta 0": ("check", "--alpha", "90", "--mu", "1", "--eta", "0"),
+    "--eta 2.5": ("check", "--alpha", "90", "--mu", "1", "--eta", "2.5"),
+    "--alpha 180": ("check", "--alpha", "180", "--mu", "1", "--eta", "1"),
+    "--mu -1": ("check", "--alpha", "90", "--mu", "-1", "--eta", "1"),
+    "--mu nan": ("check", "--alpha", "90", "--mu", "nan", "--eta", "1"),
+    "--voussoirs 2": ("check", "--alpha", "90", "--mu", "1", "--eta", "1", "--voussoirs", "2"),
+    "--weight x": ("check", "--alpha", "90", "--mu", "1", "--eta", "1", "--weight", "x"),
+    "--method x": ("check", "--alpha", "90", "--mu", "1", "--eta", "1", "--method", "x"),
+    "--eta text": ("check", "--alpha", "90", "--mu", "1", "--eta", "thin"),
+    "--tol 0": ("bracket", "--alpha", "90", "--mu", "1", "--tol", "0"),
+    "--tol too fine": ("bracket", *ARCH, "--method", "pymunk", "--tol", "1e-9"),
+    "no alpha": ("check", "--mu", "1", "--eta", "1"),
+    "no eta": ("check", "--alpha", "90", "--mu", "1"),
+    "missing file": ("check", "missing.toml"),
+    "unknown scenario": ("check", "no_such_scenario"),
+    "unknown option": ("check", "--nope"),
+    "unknown command": ("nope",),
+    "static simulate": (
+        "simulate",
+        *ARCH,
+        "--eta",
+        ".1",
+        "--method",
+        "limit",
+        "--out",
+        "x.npz",
+    ),
+    "--out in no folder": ("simulate", *ARCH, "--eta", ".1", "--out", "none/x.npz"),
+    "--out no npz": ("simulate", *ARCH, "--eta", ".1", "--out", "x.mp4"),
+    "map no picture": ("map", "--out", "map.docx"),
+    "map unwritable": ("map", "--out", "none/map.png"),
+    "validate unwritable": ("validate", "--quick", "--out", "/proc/none"),
+}
+
+
+@pytest.mark.parametrize("arguments", WRONG.values(), ids=WRONG.keys())
+def test_wrong_input_is_one_line_and_leaves_nothing(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    done = blocksim(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert re.fullmatch(r"blocksim: [^\n]+\n", done.stderr)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_misspelt_key_is_named_with_its_file(tmp_path: Path) -> None:
+    scene = tmp_path / "typo.toml"
+    scene.write_text(
+        'title = "t"\nsource = "s"\n[arch]\nhalf_angle_deg = 90\nvousoirs = 9\n'
+        "[contact]\nmu = 1\n",
+        encoding="utf-8",
+    )
+    done = blocksim("bracket", str(scene))
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "typo.toml: arch.vousoirs = 9" in done.stderr
+
+
+def test_simulate_writes_a_recording_of_the_time_asked_for(tmp_path: Path) -> None:
+    out = tmp_path / "run.npz"
+    done = blocksim("simulate", *ARCH, "--eta", "0.1", "--seconds", "0.5", "--out", str(out))
+    recording = load_recording(out)
+    assert done.returncode == 0
+    assert recording.state_hash in done.stdout
+    assert recording.seconds(9.81)[-1] == pytest.approx(0.5, abs=0.02)
+    assert recording.displacement[-1] > 0.1
+    assert [path.name for path in tmp_path.iterdir()] == ["run.npz"]
+
+
+def test_map_and_doctor(tmp_path: Path) -> None:
+    out = tmp_path / "map.svg"
+    assert blocksim("map", "--out", str(out)).returncode == 0
+    first = out.read_bytes()
+    assert b"<svg" in first
+    assert blocksim("map", "--out", str(out)).returncode == 0
+    assert out.read_bytes() == first
+    assert "pymunk" in blocksim("doctor").stdout
+    assert "fig18_triple_point" in blocksim("scenarios").stdout

@@ -1,0 +1,70 @@
+"""Validation rows say what was found, mark misses as misses, and are written whole."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+from blocksim.report.tables import write_results
+from blocksim.scenario import load_scenario
+from blocksim.validate import scenarios, validate, validate_one
+from blocksim.verdict import Verdict
+
+
+def test_quick_scenarios_are_spread_over_the_map() -> None:
+    quick = scenarios(quick=True)
+    modes = {mode for scenario in quick for mode in scenario.expected_modes}
+    assert len(quick) >= 10
+    assert modes >= {Mode.RRR, Mode.SS, Mode.SRR, Mode.RRS, Mode.RSR, Mode.RS}
+    assert len(scenarios(quick=False)) > len(quick)
+
+
+def test_rows_agree_with_limit_analysis_and_are_written(tmp_path: Path) -> None:
+    chosen = [load_scenario(name) for name in ("semicircle", "semicircle_sliding")]
+    rows = validate(chosen, workers=1)
+    first, second = rows
+    assert abs(first.error or 1) < 0.002
+    assert (first.below, first.above) == (Verdict.COLLAPSES, Verdict.STANDS)
+    assert first.mode_observed is Mode.RRR
+    assert second.eta_high is None
+    assert second.mode_observed is Mode.SS
+    assert [row.miss for row in rows] == ["", ""]
+
+    write_results(rows, tmp_path / "deep" / "out")
+    folder = tmp_path / "deep" / "out"
+    written = {path.name for path in folder.iterdir()}
+    assert written == {"validate.json", "validate.csv", "map.png", "map.svg"}
+    document = json.loads((folder / "validate.json").read_text(), parse_constant=pytest.fail)
+    assert [row["scenario"] for row in document["rows"]] == ["semicircle", "semicircle_sliding"]
+    assert document["machine"]["pymunk"]
+    with (folder / "validate.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    assert lines[0]["eta_limit"] == str(rows[0].eta_limit)
+    assert lines[1]["eta_high"] == ""
+
+
+def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shift the exact value by 1 %: the row must say so."""
+    module = importlib.import_module("blocksim.bracket")
+    real = module.limit.least_thickness
+
+    def shifted(*arguments: object) -> object:
+        state = real(*arguments)  # type: ignore[arg-type]
+        return replace(state, eta=state.eta * 1.01, mode=Mode.SRR)
+
+    monkeypatch.setattr(module.limit, "least_thickness", shifted)
+    row = validate_one(load_scenario("semicircle"), "pymunk")
+    assert "error -1.0" in row.miss or "error -0.9" in row.miss
+    assert "mode rrr, limit says srr" in row.miss
+
+
+def test_results_in_a_folder_that_cannot_be_are_one_line() -> None:
+    with pytest.raises(InputError, match="writable folder"):
+        write_results([], Path("/proc/none"))
