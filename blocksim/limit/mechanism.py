@@ -82,7 +82,7 @@ class Mechanism:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Program:
+class Conditions:
     """Conditions A x + b <= 0 at some joints, four rows a joint."""
 
     matrix: Array
@@ -115,7 +115,7 @@ def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
     require_friction(mu)
     angles = arch.joint_angles
     half = angles >= 0 if symmetric else np.full(angles.size, True)
-    program = _program(angles[half], arch.eta, mu, arch.centroid_factor, symmetric=symmetric)
+    program = conditions(angles[half], arch.eta, mu, arch.centroid_factor, symmetric=symmetric)
     state, extra, rates = _solve(program)
     if extra < -AT_LIMIT:
         rates = np.zeros_like(rates)
@@ -136,7 +136,7 @@ def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
         thrust=float(state[0]),
         crown_shear=float(state[1]),
         crown_moment=float(state[2]),
-        motions=_motions(angles, rates, arch.eta, mu),
+        motions=motions_of(angles, rates, arch.eta, mu),
         mode=_mode(arch, rates),
     )
 
@@ -179,7 +179,7 @@ def least_thickness_by_program(
 
     def value(eta: float) -> tuple[float, float]:
         factor = centroid_factor(eta, weight)
-        program = _program(angles, eta, mu, factor, symmetric=symmetric)
+        program = conditions(angles, eta, mu, factor, symmetric=symmetric)
         state, extra, rates = _solve(program)
         hinges = rates.reshape(-1, 4)[:, :2]
         force = program.force @ state + program.force_offset
@@ -204,9 +204,9 @@ def least_thickness_by_program(
     return eta
 
 
-def _program(
+def conditions(
     angles: Array, eta: float, mu: float, factor: float, *, symmetric: bool
-) -> _Program:
+) -> Conditions:
     """Write the conditions in h, v and m, or in h and m alone."""
     size = np.abs(angles)
     side = np.where(angles < 0, -1.0, 1.0)
@@ -235,7 +235,7 @@ def _program(
     ]
     matrix = np.stack(rows, axis=1).reshape(-1, 3)
     columns = [0, 2] if symmetric else [0, 1, 2]
-    return _Program(
+    return Conditions(
         matrix=matrix[:, columns],
         offset=np.stack(offsets, axis=1).reshape(-1),
         force=force[:, columns],
@@ -244,7 +244,7 @@ def _program(
     )
 
 
-def _solve(program: _Program) -> tuple[Array, float, Array]:
+def _solve(program: Conditions) -> tuple[Array, float, Array]:
     """Solve the program: unknowns x, value s, rates."""
     rows, unknowns = program.matrix.shape
     matrix = np.column_stack([program.matrix, np.full(rows, -1.0)])
@@ -275,7 +275,7 @@ def _solve(program: _Program) -> tuple[Array, float, Array]:
     return state[:-1], float(state[-1]), rates
 
 
-def _motions(angles: Array, rates: Array, eta: float, mu: float) -> Array:
+def motions_of(angles: Array, rates: Array, eta: float, mu: float) -> Array:
     """Velocities of the voussoirs: relative motions at the joints, added up."""
     sine, cosine = np.sin(angles), np.cos(angles)
     along = np.column_stack([cosine, -sine])
