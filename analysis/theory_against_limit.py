@@ -97,7 +97,8 @@ def from_lines(
 
 def slides(half_angle: Array, mu: Array, thrust: Array) -> NDArray[np.bool_]:
     """Whether shoulder and inner joint slide at a thrust: columns 0 and 1."""
-    x = np.linspace(0, 1, 2001) * half_angle[:, None]
+    # Denser at the crown: there the sliding joint is at large frictions.
+    x = np.linspace(0, 1, 2001) ** 2 * half_angle[:, None]
     h = thrust[:, None]
     with np.errstate(invalid="ignore"):
         ratio = (h * np.sin(x) - x * np.cos(x)) / (h * np.cos(x) + x * np.sin(x))

@@ -23,6 +23,7 @@ from blocksim.limit.collapse import collapse_of_mode
 from blocksim.limit.mechanism import mechanism
 from blocksim.modes import Mode
 from blocksim.theory.critical import Critical, inner_sliding
+from blocksim.theory.equations import normal_force
 from blocksim.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.view.style import FONT
 
@@ -30,6 +31,7 @@ THRUST, FRICTION, MECHANISM, STONE = "#D55E00", "#0072B2", "#009E73", "#222222"
 MOVED = 0.16
 """Largest displacement drawn, in mean radii."""
 FINE = 400
+FORCELESS = 1e-9
 FAINT = 1e-7
 """Share of the largest rate below which a joint counts as closed."""
 
@@ -111,8 +113,9 @@ def picture_of_theory(
         mode, half_angle, eta, mu,
         beta_r=critical.beta_r, beta_s=inner_sliding(mu)[1], weight=weight,
     )  # fmt: skip
+    name = mode.description.split(" (")[0]
     return ArchPicture(
-        title=f"{mode.description} [{mode.value}]: {_figures(half_angle, eta, mu)}",
+        title=f"{name} [{mode.value}]: {_figures(half_angle, eta, mu)}",
         half_angle=half_angle,
         eta=eta,
         mu=mu,
@@ -160,6 +163,7 @@ def draw_arch(axes: Axes, picture: ArchPicture) -> None:
         axes.plot(*_radius(float(angle), inner, outer), color=STONE, lw=0.5, zorder=2)
     size = np.linspace(-picture.half_angle, picture.half_angle, 2 * FINE + 1)
     # An overturning arch has no thrust: at its crown the lines have no place.
+    forceless = normal_force(np.abs(size), picture.thrust) < FORCELESS
     with np.errstate(divide="ignore", invalid="ignore"):
         pressure = thrust_line(
             np.abs(size), picture.thrust, picture.crown_moment, picture.eta, picture.weight
@@ -170,6 +174,7 @@ def draw_arch(axes: Axes, picture: ArchPicture) -> None:
         (shear, FRICTION, (0, (5, 1.6)), 1.5),
     ):
         radius = 1 - np.clip(np.asarray(line), -1.6, 1.6) * picture.eta / 2
+        radius[forceless] = np.nan
         axes.plot(radius * np.sin(size), radius * np.cos(size), color=colour, ls=style,
                   lw=width, zorder=5)  # fmt: skip
     _mark_joints(axes, picture, inner, outer)
