@@ -26,13 +26,21 @@ from blocksim.theory.critical import Critical, hinge_slope, inner_sliding, rotat
 from blocksim.theory.map import divide_friction, iso_half_angle, special_angles
 from blocksim.view.archfigure import arch_figure, picture_of_theory
 from blocksim.view.mapfigure import LARGEST_MU, draw_regions, save_figure
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, MODES
 
 TOLERANCE = 1e-12
 DASHED = (0, (5, 2))
 ISO_DEGREES = (60, 90, 110, 125, 135, 142.5, 145, 149.2, 155, 159)
 ZOOMS = {6: (0.0, 2.0), 7: (0.0, 1.0), 8: (0.6, 2.0)}
 FILLED = {9: ((0, 4), (0, 2)), 10: ((0, 4), (0, 2)), 11: ((1.2, 2.4), (0.6, 1.2))}
+ZOOM_NAMES = {
+    Mode.SS: (1.45, 1.0),
+    Mode.RS: (2.15, 1.1),
+    Mode.RRS: (2.1, 0.87),
+    Mode.RRR: (2.0, 0.66),
+    Mode.SRR: (1.235, 0.618),
+}
+LABELS = {"S": (6, -12), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
 
 TABLE_1 = {
     "T": (0.6796047320988860, 1.415270827756886, 2.487161163767182, 0.09780581933963814,
@@ -220,10 +228,17 @@ def _figure(number: int) -> Figure:
         axes = figure.add_subplot()
         draw_regions(axes)
         axes.set(xlim=FILLED[number][0], ylim=FILLED[number][1])
-        for text in [*axes.texts]:
-            x, y = text.xy if hasattr(text, "xy") else text.get_position()
-            (x0, x1), (y0, y1) = FILLED[number]
-            text.set_visible(x0 <= x <= x1 and y0 <= y <= y1)
+        for text in axes.texts:
+            # Fig. 10 is without words; the zoom has its own places for them.
+            text.set_visible(number == 9 or (number == 11 and len(text.get_text()) == 1))
+        if number == 11:
+            axes.texts[-1].set_visible(False)  # B is outside
+            for mode, (x, y) in ZOOM_NAMES.items():
+                axes.text(x, y, mode.value, color=MODES[mode].colour, fontsize=12,
+                          fontweight="bold", ha="center", va="center")  # fmt: skip
+            axes.annotate("rsr", (2.2, 0.974), xytext=(2.24, 1.02), fontweight="bold",
+                          color=MODES[Mode.RSR].colour,
+                          arrowprops={"arrowstyle": "-", "lw": 0.8})  # fmt: skip
         return figure
     rows = {3: 3, 4: 2, 5: 3}[number]
     figure = Figure(figsize=(7.0, 2.6 * rows), layout="constrained")
@@ -237,7 +252,8 @@ def _figure(number: int) -> Figure:
 def _rotational(panels: list[Axes]) -> None:
     """Fig. 3: beta_r, eta and h of the rotational mode."""
     special = special_angles()
-    alpha = np.linspace(0.01, special.zero_thrust, 400)
+    # Denser towards alpha_l, where the hinge falls back to the crown.
+    alpha = special.zero_thrust * (1 - np.linspace(0.995, 0.0, 400) ** 2)
     state = least_thicknesses(alpha, math.inf)
     curves = ((state.beta_r, r"$\beta_r$"), (state.eta, r"$\eta$"), (state.thrust, "$h$"))
     for axes, (values, name) in zip(panels, curves, strict=True):
@@ -264,7 +280,7 @@ def _inner_sliding(panels: list[Axes]) -> None:
 
 def _sliding(panels: list[Axes]) -> None:
     """Fig. 5: beta_s, mu and h of the sliding mode; dashed beyond eta = 2."""
-    mu = np.tan(np.linspace(0.02, 1.45, 400))
+    mu = np.tan(np.geomspace(1e-3, 1.45, 400))
     alpha = np.array([regions.divide_half_angle(float(m)) for m in mu])
     thrust, beta_s = np.array([inner_sliding(float(m)) for m in mu]).T
     real = alpha <= landmarks()["B"].half_angle
@@ -275,6 +291,7 @@ def _sliding(panels: list[Axes]) -> None:
                       label="purely sliding" if style == "-" else None)  # fmt: skip
         axes.set(ylabel=name, xlim=(0, math.pi), ylim=(0, None))
     panels[1].set_ylim(0, 5)
+    panels[2].set_ylim(0, 1.02)
     angles = np.linspace(0.05, special_angles().zero_thrust, 200)
     free = [rotational_thrust(float(a), "centreline") for a in angles]
     panels[2].plot(
@@ -312,11 +329,12 @@ def _line_map(span: tuple[float, float]) -> Figure:
     for mark in marks.values():
         if span[0] <= mark.eta <= span[1]:
             axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec="#222222", zorder=4)
-            axes.annotate(mark.name, (mark.mu, mark.eta), xytext=(-12, 4), fontweight="bold",
-                          textcoords="offset points", annotation_clip=False)  # fmt: skip
+            axes.annotate(mark.name, (mark.mu, mark.eta), xytext=LABELS[mark.name],
+                          fontweight="bold", textcoords="offset points",
+                          annotation_clip=False)  # fmt: skip
     axes.set(xlim=(0, LARGEST_MU), ylim=span, xlabel=r"friction coefficient $\mu$",
              ylabel=r"thickness-to-radius ratio $\eta = t/r$")  # fmt: skip
-    axes.legend(loc="lower right", frameon=True, framealpha=1, fontsize=8)
+    figure.legend(loc="outside upper center", ncols=5, frameon=False, fontsize=8.5)
     return figure
 
 

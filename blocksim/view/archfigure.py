@@ -213,7 +213,8 @@ def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -
     for angle, rates in zip(picture.angles.tolist(), picture.rates, strict=True):
         out, into, *slides = (rates > FAINT * largest).tolist()
         for turns, radius in ((out, outer), (into, inner)):
-            if turns:
+            # A joint that opens at both ends parts: no hinge is left.
+            if turns and not (out and into):
                 axes.plot(radius * math.sin(angle), radius * math.cos(angle), "o", ms=7,
                           mfc="white", mec=STONE, mew=1.5, zorder=7)  # fmt: skip
         if any(slides):
