@@ -16,7 +16,12 @@ from blocksim.arch import WEIGHTS, Weight, require
 from blocksim.assembly import Array
 from blocksim.modes import Mode
 from blocksim.theory.critical import CROWN_TIE, ETA_MAX, TIE
-from blocksim.theory.rotation import inner_hinges, rotational_mode, sine_series
+from blocksim.theory.rotation import (
+    inner_hinges,
+    rotational_mode,
+    sine_series,
+    widest_rotational,
+)
 
 CHUNK = 8192
 """Points worked on at once; their temporaries stay in the cache."""
@@ -113,7 +118,7 @@ def least_thicknesses(
 
 def _solve(alpha: Array, mu: Array, weight: Weight) -> tuple[Array, NDArray[np.uint8]]:
     """Solve one chunk: rows eta, thrust, beta_r, beta_s, and the modes as bits."""
-    lower, upper, beta_s = _thrust_intervals(alpha, mu)
+    lower, upper, beta_s = thrust_intervals(alpha, mu)
     short, eta, square = rotational_mode(alpha, weight)
     free = 1.0 - short
     stands = lower <= upper + TIE
@@ -127,7 +132,8 @@ def _solve(alpha: Array, mu: Array, weight: Weight) -> tuple[Array, NDArray[np.u
                 1.0 - thrust[where], extrados, alpha[where], weight
             )
     beta_r = np.where(stands, np.sqrt(square), np.nan)
-    modes = _modes(free, thrust, lower, upper, beta_r, beta_s)
+    left = widest_rotational(weight) - alpha
+    modes = _modes(free, left, thrust, lower, upper, beta_r, beta_s)
     eta = np.where(stands & (eta <= ETA_MAX * (1 + TIE)), np.minimum(eta, ETA_MAX), np.nan)
     inner = BIT[Mode.RS] | BIT[Mode.RRS] | BIT[Mode.RSR] | BIT[Mode.SS]
     beta_s = np.where(modes & inner, beta_s, np.nan)
@@ -135,7 +141,13 @@ def _solve(alpha: Array, mu: Array, weight: Weight) -> tuple[Array, NDArray[np.u
 
 
 def _modes(
-    free: Array, thrust: Array, lower: Array, upper: Array, beta_r: Array, beta_s: Array
+    free: Array,
+    short_of_overturning: Array,
+    thrust: Array,
+    lower: Array,
+    upper: Array,
+    beta_r: Array,
+    beta_s: Array,
 ) -> NDArray[np.uint8]:
     """Name the modes by where the thrust lies; comparisons with nan are False."""
     turns = np.abs(thrust - free) <= TIE
@@ -144,8 +156,9 @@ def _modes(
     below = beta_r >= beta_s - TIE
     above = (beta_r <= beta_s + TIE) & (beta_r > 0)
     conditions = {
-        Mode.RRR: turns & (thrust > TIE),
-        Mode.R: turns & (thrust <= TIE),
+        # The thrust falls to nothing like a square: it is told from 0 by the angle.
+        Mode.RRR: turns & (short_of_overturning >= -TIE),
+        Mode.R: turns & (short_of_overturning <= TIE),
         Mode.SRR: upper <= free + TIE,
         Mode.RS: inner & at_crown,
         Mode.RRS: inner & ~at_crown & below,
@@ -192,8 +205,8 @@ def inner_slidings(mu: Array) -> tuple[Array, Array]:
     return thrust, np.sin(angle) / 2
 
 
-def _thrust_intervals(alpha: Array, mu: Array) -> tuple[Array, Array, Array]:
-    """Thrusts that friction allows, as `thrust_interval`, and the inner sliding angle."""
+def thrust_intervals(alpha: Array, mu: Array) -> tuple[Array, Array, Array]:
+    """Give the thrusts that friction allows, as `thrust_interval`, and the sliding angle."""
     friction_angle = np.arctan(mu)
     lower, beta_s = inner_slidings(mu)
     flat = np.flatnonzero(beta_s > alpha)

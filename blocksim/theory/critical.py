@@ -203,7 +203,7 @@ def least_thickness(half_angle: float, mu: float, weight: Weight = "centreline")
     eta, beta_r = max((crown, crown_hinge), (shoulder, shoulder_hinge))
     modes: list[Mode] = []
     if abs(thrust - free) <= TIE:
-        modes.append(Mode.RRR if thrust > TIE else Mode.R)
+        modes.append(Mode.RRR if free > 0 else Mode.R)
     if upper <= free + TIE:
         modes.append(Mode.SRR)
     if lower >= free - TIE and thrust > TIE:

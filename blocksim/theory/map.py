@@ -21,13 +21,15 @@ from scipy.optimize import brentq
 from blocksim.arch import WEIGHTS, Weight, centroid_factor, require
 from blocksim.assembly import Array
 from blocksim.modes import Mode
-from blocksim.theory.arrays import BIT, ORDER, least_thicknesses
-from blocksim.theory.critical import ETA_MAX, TIE, TINY
+from blocksim.theory.arrays import BIT, ORDER, least_thicknesses, thrust_intervals
+from blocksim.theory.critical import ETA_MAX, TINY
 from blocksim.theory.equations import shape
 from blocksim.theory.regions import Curve, divide_half_angle
 from blocksim.theory.rotation import rotational_mode
 
 HALVINGS = 64
+ON_DIVIDE = 1e-10
+"""Thickness ratios closer to the divide than this are on it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,17 +102,27 @@ def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> M
     ratio, friction = np.broadcast_arrays(
         np.asarray(eta, dtype=float), np.asarray(mu, dtype=float)
     )
+    shape_asked = ratio.shape
+    ratio, friction = ratio.reshape(-1), friction.reshape(-1)
     wrong = ~((ratio > 0) & (ratio <= ETA_MAX))
     if wrong.any():
         require(False, "eta", float(ratio[wrong].flat[0]), "above 0 and at most 2")
+    least_thicknesses(1.0, friction, weight)  # names a wrong friction or weight
     low, high = np.zeros(ratio.shape), np.full(ratio.shape, math.pi)
     for _ in range(HALVINGS):
         middle = (low + high) / 2
+        lower, upper, _ = thrust_intervals(middle, friction)
         enough = least_thicknesses(middle, friction, weight).eta <= ratio  # False for nan
+        # The slack that counts as a tie would lead beyond the divide.
+        enough &= lower <= upper
         low, high = np.where(enough, middle, low), np.where(enough, high, middle)
     critical = least_thicknesses(low, friction, weight)
-    spare = critical.eta < ratio * (1 - math.sqrt(TIE))
-    return MapPoints(half_angle=low, modes=np.where(spare, BIT[Mode.SS], critical.modes))
+    # On the left of the divide it is friction that stops wider arches, whatever their eta.
+    lower, upper, _ = thrust_intervals(high, friction)
+    slides = lower > upper
+    spare = slides & (critical.eta < ratio - ON_DIVIDE)
+    modes = np.where(spare, BIT[Mode.SS], critical.modes)
+    return MapPoints(half_angle=low.reshape(shape_asked), modes=modes.reshape(shape_asked))
 
 
 def names_of(bits: int) -> tuple[Mode, ...]:

@@ -175,6 +175,11 @@ def rotational_mode(alpha: Array, weight: Weight) -> tuple[Array, Array, Array]:
     return short, eta, hinge
 
 
+def widest_rotational(weight: Weight) -> float:
+    """Half-angle alpha_l at which the thrust of the rotational mode vanishes [rad]."""
+    return _rotational(weight).widest
+
+
 @cache
 def _rotational(weight: Weight) -> _Rotational:
     """Solve eqs (1), (3) and (4) at the Chebyshev nodes of every piece."""
