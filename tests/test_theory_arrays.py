@@ -74,6 +74,15 @@ def test_flat_arches_keep_their_digits() -> None:
     assert (np.abs(found.beta_r * math.sqrt(2) / half_angle - 1) <= small + 1e-12).all()
 
 
+def test_flat_arches_one_by_one() -> None:
+    for half_angle in (0.04, 1e-4, 1e-9):
+        one = least_thickness(half_angle, 0.7)
+        assert one.mode is Mode.RRR
+        assert one.eta == pytest.approx(half_angle**4 / 48, rel=half_angle**2 + 1e-12)
+    assert least_thickness(0.04, 1e-6).eta is None
+    assert least_thickness(0.04, 1e-6).mode is Mode.SS
+
+
 @pytest.mark.parametrize("weight", WEIGHTS)
 def test_limits(weight: str) -> None:
     angles = [

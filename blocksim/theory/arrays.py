@@ -64,9 +64,19 @@ class CriticalArrays:
         return names[lowest]
 
     @property
+    def names(self) -> tuple[Mode, ...]:
+        """Modes of a single arch."""
+        return names_of(int(self.modes))
+
+    @property
     def tied(self) -> NDArray[np.bool_]:
         """Where several modes coincide."""
         return (self.modes & (self.modes - np.uint8(1))) != 0
+
+
+def names_of(bits: int) -> tuple[Mode, ...]:
+    """Modes of one entry of `CriticalArrays.modes`."""
+    return tuple(mode for mode in ORDER if bits & int(BIT[mode]))
 
 
 def least_thicknesses(

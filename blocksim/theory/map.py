@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 from blocksim.arch import WEIGHTS, Weight, centroid_factor, require
 from blocksim.assembly import Array
 from blocksim.modes import Mode
-from blocksim.theory.arrays import BIT, ORDER, least_thicknesses, thrust_intervals
+from blocksim.theory.arrays import BIT, least_thicknesses, names_of, thrust_intervals
 from blocksim.theory.critical import ETA_MAX, TINY
 from blocksim.theory.equations import shape
 from blocksim.theory.regions import Curve, divide_half_angle
@@ -123,11 +123,6 @@ def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> M
     spare = slides & (critical.eta < ratio - ON_DIVIDE)
     modes = np.where(spare, BIT[Mode.SS], critical.modes)
     return MapPoints(half_angle=low.reshape(shape_asked), modes=modes.reshape(shape_asked))
-
-
-def names_of(bits: int) -> tuple[Mode, ...]:
-    """Modes of one entry of `CriticalArrays.modes`."""
-    return tuple(mode for mode in ORDER if bits & int(BIT[mode]))
 
 
 def region(eta: float, mu: float, weight: Weight = "centreline") -> tuple[Mode, ...]:
