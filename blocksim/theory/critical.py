@@ -26,6 +26,8 @@ TIE = 1e-12
 """Thrusts and angles closer than this coincide."""
 CROWN_TIE = 1e-6
 """Inner hinges closer to the crown are at it: the angle goes as the root of a thrust."""
+FLAT = 0.05
+"""Half-angle below which eta ~ alpha^4/48 drowns in the round-off of these formulas [rad]."""
 TINY = 4 * np.finfo(float).eps
 
 
@@ -192,6 +194,8 @@ def least_thickness(half_angle: float, mu: float, weight: Weight = "centreline")
     """
     Arch(half_angle=half_angle, eta=1.0, voussoirs=3, weight=weight)
     require_friction(mu)
+    if half_angle < FLAT:
+        return _flat(half_angle, mu, weight)
     lower, upper = thrust_interval(half_angle, mu)
     beta_s = inner_sliding(mu)[1]
     if lower > upper + TIE:
@@ -203,7 +207,7 @@ def least_thickness(half_angle: float, mu: float, weight: Weight = "centreline")
     eta, beta_r = max((crown, crown_hinge), (shoulder, shoulder_hinge))
     modes: list[Mode] = []
     if abs(thrust - free) <= TIE:
-        modes.append(Mode.RRR if thrust > TIE else Mode.R)
+        modes.append(Mode.RRR if free > 0 else Mode.R)
     if upper <= free + TIE:
         modes.append(Mode.SRR)
     if lower >= free - TIE and thrust > TIE:
@@ -218,6 +222,18 @@ def least_thickness(half_angle: float, mu: float, weight: Weight = "centreline")
         beta_r=beta_r,
         beta_s=beta_s if sliding else None,
     )
+
+
+def _flat(half_angle: float, mu: float, weight: Weight) -> Critical:
+    """Solve a flat arch by the array formulas, in which nothing cancels."""
+    from blocksim.theory.arrays import least_thicknesses  # built on this module
+
+    found = least_thicknesses(half_angle, mu, weight)
+    eta, thrust, beta_r, beta_s = (
+        None if math.isnan(value) else float(value)
+        for value in (found.eta, found.thrust, found.beta_r, found.beta_s)
+    )
+    return Critical(eta=eta, modes=found.names, thrust=thrust, beta_r=beta_r, beta_s=beta_s)
 
 
 def _inner_modes(beta_r: float, beta_s: float) -> list[Mode]:

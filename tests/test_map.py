@@ -1,0 +1,131 @@
+"""The map as an object: regions, ties, inverse look-up and special angles."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+from blocksim.theory import landmarks, least_thickness, least_thicknesses, regions
+from blocksim.theory.map import (
+    at_points,
+    divide_friction,
+    half_angle_at,
+    iso_half_angle,
+    region,
+    special_angles,
+)
+
+WEIGHTS = ("centreline", "sector")
+
+
+def test_special_angles_as_published() -> None:
+    found = special_angles()
+    assert found.hinge == pytest.approx(1.129085087576187, rel=1e-13)
+    assert found.widest_hinge == pytest.approx(2.230312828619947, rel=1e-13)
+    assert found.zero_thrust == pytest.approx(2.648388899151005, rel=1e-13)
+    assert found.limit == pytest.approx(2.786498150651177, rel=1e-13)
+
+
+def test_special_angles_of_the_sector() -> None:
+    """alpha_L of the sector is alpha_l of the centreline: A = 2/3 in both (sector.md, S9)."""
+    found = special_angles("sector")
+    assert found.limit == pytest.approx(special_angles().zero_thrust, rel=1e-14)
+    near = np.array([found.widest_hinge - 1e-4, found.widest_hinge, found.widest_hinge + 1e-4])
+    hinges = least_thicknesses(near, math.inf, "sector").beta_r
+    assert hinges[1] == pytest.approx(found.hinge, abs=1e-12)
+    assert hinges[1] > max(hinges[0], hinges[2])
+    beside = found.zero_thrust + np.array([-1e-9, 0, 1e-9])
+    modes = [least_thicknesses(angle, math.inf, "sector").mode for angle in beside]
+    assert modes == ["rrr", "rrr", "r"]
+    assert bool(least_thicknesses(beside[1], math.inf, "sector").tied)
+
+
+@pytest.mark.parametrize(
+    ("eta", "mu", "mode"),
+    [
+        (0.3, 2.0, "rrr"),
+        (0.3, 0.3, "ss"),
+        (1.5, 1.0, "ss"),
+        (0.3, 0.6, "srr"),
+        (0.85, 2.5, "rrs"),
+        (0.963, 1.79, "rsr"),
+        (1.4, 3.0, "rs"),
+        (1.4, math.inf, "r"),
+        (0.7, math.inf, "rrr"),
+        (1e-9, 0.2, "rrr"),
+    ],
+)
+def test_regions_of_fig_9(eta: float, mu: float, mode: str) -> None:
+    assert region(eta, mu) == (Mode(mode),)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_landmarks_belong_to_all_their_regions(weight: str) -> None:
+    around = {"T": 4, "S": 3, "J": 3, "B": 2}
+    for name, mark in landmarks(weight).items():
+        point = at_points(mark.eta, mark.mu, weight)
+        assert len(point.regions[()]) == around[name], name
+        assert float(point.half_angle) == pytest.approx(mark.half_angle, abs=1e-11)
+
+
+def test_beside_the_lines() -> None:
+    """A billionth beside a line is on its own side; on it, both sides are named."""
+    alpha = np.array([1.0, 1.8, 2.4])
+    first = regions.first_sliding(alpha)
+    on = at_points(first.eta, first.mu)
+    assert all({Mode.RRR, Mode.SRR} == set(names) for names in on.regions)
+    assert all(names == (Mode.RRR,) for names in at_points(first.eta, first.mu + 1e-9).regions)
+    assert all(names == (Mode.SRR,) for names in at_points(first.eta, first.mu - 1e-9).regions)
+    mu = np.array([0.5, 1.6, 2.2])
+    divide = regions.divide(mu)
+    assert all(Mode.SS in names for names in at_points(divide.eta, mu).regions)
+    assert all(names == (Mode.SS,) for names in at_points(divide.eta, mu - 1e-9).regions)
+    assert all(Mode.SS not in names for names in at_points(divide.eta, mu + 1e-9).regions)
+    mu = np.array([1.9, 3.0])
+    equal = regions.equal_angles(mu).eta
+    assert all({Mode.RRS, Mode.RSR} == set(names) for names in at_points(equal, mu).regions)
+    assert all(names == (Mode.RRS,) for names in at_points(equal - 1e-9, mu).regions)
+    assert all(names == (Mode.RSR,) for names in at_points(equal + 1e-9, mu).regions)
+    crown = regions.crown_hinge(mu).eta
+    assert all({Mode.RS, Mode.RSR} >= set(names) for names in at_points(crown, mu).regions)
+    assert all(names == (Mode.RSR,) for names in at_points(crown - 1e-9, mu).regions)
+    assert all(names == (Mode.RS,) for names in at_points(crown + 1e-9, mu).regions)
+
+
+@given(
+    half_angle=st.floats(0.05, 2.75),
+    friction_angle=st.floats(0.02, math.pi / 2),
+    weight=st.sampled_from(WEIGHTS),
+)
+@settings(max_examples=60, deadline=None)
+def test_look_up_inverts_least_thickness(
+    half_angle: float, friction_angle: float, weight: str
+) -> None:
+    mu = math.tan(friction_angle)
+    critical = least_thickness(half_angle, mu, weight)
+    if critical.eta is None or critical.eta > 1.99:
+        return
+    assert half_angle_at(critical.eta, mu, weight) == pytest.approx(half_angle, rel=1e-7)
+
+
+def test_iso_lines_and_divide() -> None:
+    alpha = math.radians(125)
+    assert divide_friction(alpha) == pytest.approx(0.8477497839674316, rel=1e-13)
+    line = iso_half_angle(alpha, np.linspace(0.1, 4, 200))
+    assert line.mu.min() > divide_friction(alpha)
+    assert (np.diff(line.eta) <= 0).all()
+    # Fig. 13: constant from the line of first sliding on.
+    assert line.eta[-1] == pytest.approx(0.3849612500740051, rel=1e-13)
+    assert iso_half_angle(3.0, np.array([1.0, math.inf])).mu.size == 0
+
+
+@pytest.mark.parametrize(
+    ("field", "values"), [("eta", (0.0, 1.0)), ("eta", (2.1, 1.0)), ("mu", (1.0, -1.0))]
+)
+def test_wrong_input_is_named(field: str, values: tuple) -> None:
+    with pytest.raises(InputError, match=field):
+        at_points(*values)
