@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.assembly import Array, Assembly
-from blocksim.engines.base import World
+from blocksim.engines.base import World, trusted
 from blocksim.joints import overlap_share
 from blocksim.progress import Progress, silent
 from blocksim.recording import Recording, displacement
@@ -129,11 +129,16 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
             break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = _verdict(times, moved) if overlap <= OVERLAP else Verdict.UNDECIDED
+    reason = _reason(verdict, times, moved, overlap)
+    quality = world.quality()
+    if not trusted(world, setup.settings):
+        verdict = Verdict.UNDECIDED
+        reason = f"released, a contact was left with a residual of {quality.residual:.1e}"
     return Motion(
         verdict=verdict,
-        reason=_reason(verdict, times, moved, overlap),
+        reason=reason,
         overlap=overlap,
-        recording=setup.record(times, poses),
+        recording=setup.record(times, poses, quality),
     )
 
 

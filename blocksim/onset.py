@@ -3,7 +3,7 @@
 The engine solves the contacts of a single step, in place, with as many sweeps as it
 takes. Its answer is read as one of two certificates, both from the engine's own solution:
 
-- *stands*: the largest acceleration falls below `STILL` (in g). The contact forces found
+- *stands*: the largest acceleration falls below `still` of the settings (in g). The contact forces found
   balance the weights and respect contact and friction.
 - *collapses*: the accelerations form a mechanism, that is, no joint closes further
   (overlap below `OVERLAP` of the motion). Before the sweeps have converged the
@@ -20,13 +20,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.assembly import Array, Assembly
-from blocksim.engines.base import World
+from blocksim.engines.base import Settings, World, trusted
 from blocksim.joints import overlap_share
 from blocksim.progress import Progress, silent
 from blocksim.recording import displacement
 from blocksim.verdict import Verdict
 
-STILL = 1e-7
 OVERLAP = 1e-3
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
@@ -69,7 +68,7 @@ class Onset:
 
 
 def onset(
-    world: World, assembly: Assembly, hold_sweeps: int, progress: Progress = silent
+    world: World, assembly: Assembly, settings: Settings, progress: Progress = silent
 ) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
@@ -78,8 +77,8 @@ def onset(
     world : World
     assembly : Assembly
         What the world was built from.
-    hold_sweeps : int
-        Most sweeps to spend.
+    settings : Settings
+        What counts as at rest, and the most sweeps to spend.
     progress : Progress, optional
 
     Returns
@@ -87,17 +86,20 @@ def onset(
     Onset
         The world keeps its impulses and can be released from there.
     """
+    hold_sweeps = settings.hold_sweeps
     rest = world.poses()
     reach = assembly.reach / assembly.size
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
-    first = max(FIRST_SWEEPS, len(assembly.blocks) ** 2)
+    first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), hold_sweeps)
     total, sweeps = 0, first
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
         largest = float(displacement(accelerations, reach))
         mechanism = rest + accelerations * (PROBE / largest if largest > 0 else 0.0)
-        if largest < STILL:
+        if not trusted(world, settings):
+            verdict = Verdict.UNDECIDED
+        elif largest < settings.still:
             verdict = Verdict.STANDS
         elif overlap_share(assembly, mechanism) < OVERLAP:
             verdict = Verdict.COLLAPSES
