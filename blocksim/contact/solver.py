@@ -36,7 +36,7 @@ BALANCE = 1e-11
 """Forces out of balance at which a minimisation ends, in mean weights."""
 ROUND_OFF = 1e-14
 CLOSED = 1e-16
-"""Largest violation of a constraint at which the multipliers are done [g]."""
+"""Violation of a constraint that is round-off, with accelerations of 1 [g]."""
 MOST_NEWTON = 100
 MOST_SLIDING_NEWTON = 12
 MOST_OUTER = 30
@@ -114,6 +114,7 @@ class ContactProblem:
         normal_rate: Array,
         slip_rate: Array,
         start: Solution | None = None,
+        precision: float = CLOSED,
     ) -> Solution:
         """Solve one step.
 
@@ -127,12 +128,14 @@ class ContactProblem:
             What the contacts' velocities are without acceleration, over the step (n0, t0).
         start : Solution, optional
             Of a similar step.
+        precision : float
+            Largest violation of a constraint at which the step counts as solved [g].
 
         Returns
         -------
         Solution
         """
-        return _Step(self, normal, tangent, free, normal_rate, slip_rate).solve(start)
+        return _Step(self, normal, tangent, free, normal_rate, slip_rate, precision).solve(start)
 
 
 class _Step:
@@ -146,6 +149,7 @@ class _Step:
         free: Array,
         normal_rate: Array,
         slip_rate: Array,
+        precision: float,
     ) -> None:
         self._problem = problem
         self._normal = normal * problem._scale
@@ -160,6 +164,7 @@ class _Step:
         self._normal_rate, self._slip_rate = normal_rate, slip_rate
         self._free = free.ravel() * problem._root
         self._iterations = 0
+        self._precision = precision
 
     def solve(self, start: Solution | None) -> Solution:
         """Pass after pass until the slip assumed is the slip found."""
@@ -169,25 +174,25 @@ class _Step:
         else:
             x = start.acceleration.ravel() * self._problem._root
             forces = start.multipliers
-        # From a step that slid, its slip is the better guess.
-        slip = np.zeros((joints, 2)) if start is None else np.abs(self._slip(x))
-        x, forces = self._multipliers(x, forces, slip, cold=start is None)
-        passes = 1
+        slip = np.zeros((joints, 2))
+        passes = 0
         while passes < MOST_PASSES:
             found = np.abs(self._slip(x))
             pressed = (forces[:, :2] + forces[:, 2:]) > 0
-            change = np.abs(found - slip) * pressed
             largest = float(found[pressed].max(initial=0.0))
-            if change.max(initial=0.0) <= max(1e-15, 1e-11 * largest):
+            change = float(np.abs(found - slip)[pressed].max(initial=0.0))
+            if passes and change <= max(10 * self._precision, 1e-11 * largest):
                 break
-            follow = found > SLIDING * largest
-            newton = self._sliding(x, forces, np.where(pressed, found, slip), follow)
-            if newton is not None:
-                x, forces = newton
-                slip = np.abs(self._slip(x))
-            else:
+            follow, newton = pressed, None
+            if passes or start is not None:
                 slip = np.where(pressed, found, slip)
-                x, forces = self._multipliers(x, forces, slip, cold=False)
+                follow = found > SLIDING * largest
+                newton = self._sliding(x, forces, slip, follow)
+            if newton is None:
+                x, forces = self._multipliers(x, forces, slip, cold=start is None and not passes)
+            else:
+                x, forces = newton
+                slip = np.where(follow, np.abs(self._slip(x)), slip)
             passes += 1
         return Solution(
             acceleration=(x / self._problem._root).reshape(-1, 3),
@@ -219,7 +224,7 @@ class _Step:
             x, found = self._minimise(x, forces, self._offset + widened, stiffness)
             violation = np.abs(found - forces).max() / stiffness
             forces = found
-            if violation <= CLOSED * max(1.0, np.abs(x).max()):
+            if violation <= self._precision * max(1.0, np.abs(x).max()):
                 break
             stiffness = self._stiffness(x)
         return x, forces
@@ -288,7 +293,7 @@ class _Step:
             found = np.maximum(trial, 0.0)
             violation = np.abs(found - forces).max() / stiffness
             forces = found
-            if violation <= CLOSED * max(1.0, np.abs(x).max()):
+            if violation <= self._precision * max(1.0, np.abs(x).max()):
                 return x, forces
         return None
 

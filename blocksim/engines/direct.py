@@ -21,6 +21,10 @@ STEP = 0.01
 STILL = 1e-11
 """Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
 RESIDUAL = 1e-8
+EXACT = 1e-16
+"""Violation of contact and friction left in the onset test [g]."""
+PRECISION = 1e-12
+"""Violation of contact and friction left in a moving step [g]."""
 CLOSED = 1e-12
 """Gap that counts as none: round-off of the corners' places."""
 
@@ -78,7 +82,7 @@ class Blocks:
         """Solve the contacts of a step from rest; the blocks stay."""
         touch = self._geometry.touch(self._poses)
         closed = np.zeros_like(touch.gap)
-        return self._solve(touch, closed, closed).acceleration
+        return self._solve(touch, closed, closed, EXACT).acceleration
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
@@ -93,6 +97,7 @@ class Blocks:
                 touch,
                 approach / step + opening / step**2,
                 self._rates(touch.tangent) / step,
+                PRECISION,
             )
             self._velocities = self._velocities + step * solution.acceleration
             self._poses = self._poses + step * self._velocities
@@ -124,9 +129,17 @@ class Blocks:
         padded = np.vstack([self._velocities, np.zeros(3)])
         return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
 
-    def _solve(self, touch: Touch, normal_rate: Array, slip_rate: Array) -> Solution:
+    def _solve(
+        self, touch: Touch, normal_rate: Array, slip_rate: Array, precision: float
+    ) -> Solution:
         solution = self._problem.solve(
-            touch.normal, touch.tangent, self._gravity, normal_rate, slip_rate, self._solution
+            touch.normal,
+            touch.tangent,
+            self._gravity,
+            normal_rate,
+            slip_rate,
+            self._solution,
+            precision,
         )
         self._solution = solution
         self._residual = max(self._residual, solution.residual)
