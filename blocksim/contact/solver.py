@@ -38,9 +38,11 @@ ROUND_OFF = 1e-14
 CLOSED = 1e-16
 """Violation of a constraint that is round-off, with accelerations of 1 [g]."""
 MOST_NEWTON = 100
-MOST_SLIDING_NEWTON = 12
+MOST_SLIDING_NEWTON = 8
 MOST_OUTER = 30
 MOST_PASSES = 100
+PLAIN = 5
+"""Every so many passes the slip found is taken as it is, lest guesses go round."""
 SLIDING = 1e-6
 """Share of the largest slip from which a contact counts as sliding."""
 
@@ -188,6 +190,8 @@ class _Step:
                 slip = np.where(pressed, found, slip)
                 follow = found > SLIDING * largest
                 newton = self._sliding(x, forces, slip, follow)
+                if newton is None and passes % PLAIN:
+                    slip = self._guess(x, forces, slip, follow)
             if newton is None:
                 x, forces = self._multipliers(x, forces, slip, cold=start is None and not passes)
             else:
@@ -264,8 +268,7 @@ class _Step:
         self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]
     ) -> tuple[Array, Array] | None:
         """Newton's method with the slip of sliding contacts as an unknown; None if it fails."""
-        problem, edges = self._problem, self._edges
-        follows = np.concatenate([follow, follow], axis=1)
+        edges = self._edges
         for _ in range(MOST_OUTER):
             stiffness = self._stiffness(x)
             for _ in range(MOST_SLIDING_NEWTON):
@@ -276,18 +279,7 @@ class _Step:
                 gradient = x - self._free - self._pull(edges, np.maximum(trial, 0.0))
                 if np.abs(gradient).max() <= self._balance(x, stiffness):
                     break
-                sign = np.tile(np.sign(found), 2) * follows
-                seen = edges + sign[:, :, None] * self._slope
-                active = stiffness * (trial > 0)
-                blocks = np.matmul(edges.transpose(0, 2, 1) * active[:, None, :], seen).ravel()
-                rows = 2 * problem._band + 1
-                band = np.bincount(
-                    problem._whole_at, blocks[problem._whole], rows * problem._size
-                ).reshape(rows, -1)
-                band[problem._band] += 1.0
-                self._iterations += 1
-                both = (problem._band, problem._band)
-                x = x - solve_banded(both, band, gradient, check_finite=False)
+                x = x + self._way(gradient, stiffness * (trial > 0), np.sign(found) * follow)
             else:
                 return None
             found = np.maximum(trial, 0.0)
@@ -296,6 +288,33 @@ class _Step:
             if violation <= self._precision * max(1.0, np.abs(x).max()):
                 return x, forces
         return None
+
+    def _guess(self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]) -> Array:
+        """Slip at which assumed and found agree if no contact changes what it does."""
+        stiffness = self._stiffness(x)
+        found = self._slip(x)
+        widened = self._friction * np.where(follow, np.abs(found), slip)
+        rate = self._offset + np.tile(widened, 2) + self._at(self._edges, x)
+        active = forces > 0
+        held = np.where(active, forces - stiffness * rate, 0.0)
+        gradient = x - self._free - self._pull(self._edges, held)
+        ahead = self._slip(x + self._way(gradient, stiffness * active, np.sign(found) * follow))
+        kept = follow & (ahead * found > 0)
+        return np.where(kept, np.abs(ahead), slip)
+
+    def _way(self, gradient: Array, weight: Array, sign: Array) -> Array:
+        """Newton step where contacts with a sign slide that way, the slip being unknown."""
+        problem, edges = self._problem, self._edges
+        seen = edges + np.tile(sign, 2)[:, :, None] * self._slope
+        blocks = np.matmul(edges.transpose(0, 2, 1) * weight[:, None, :], seen).ravel()
+        rows = 2 * problem._band + 1
+        band = np.bincount(
+            problem._whole_at, blocks[problem._whole], rows * problem._size
+        ).reshape(rows, -1)
+        band[problem._band] += 1.0
+        self._iterations += 1
+        both = (problem._band, problem._band)
+        return -solve_banded(both, band, gradient, check_finite=False)
 
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
