@@ -53,7 +53,9 @@ class Geometry:
         self._arms = np.concatenate([ends, ends]) - centres[self._sides][:, None]
         self._lengths = np.array([joint.length for joint in joints]) / size
         self._moves = (self._sides != SUPPORT).astype(np.float64)[:, None, None]
-        self._signs = np.concatenate([-np.ones(len(joints)), np.ones(len(joints))])[:, None, None]
+        self._signs = np.concatenate([-np.ones(len(joints)), np.ones(len(joints))])[
+            :, None, None
+        ]
 
     def touch(self, poses: Array) -> Touch:
         """Find the contacts.
@@ -80,7 +82,9 @@ class Geometry:
         along = np.matmul(apart, tangents[:count, :, None])[:, :, 0]
         # Over the face of `before` lies the corner of `after` that is nearer to its middle.
         after_over = along * np.array([1.0, -1.0]) >= 0
-        tangent = np.where(after_over[:, :, None], tangents[:count, None], tangents[count:, None])
+        tangent = np.where(
+            after_over[:, :, None], tangents[:count, None], tangents[count:, None]
+        )
         normal = np.stack([tangent[:, :, 1], -tangent[:, :, 0]], axis=-1)
         gap = (apart * normal).sum(axis=-1)
         overlapping = self._lengths - np.maximum(along[:, 0], 0) + np.minimum(along[:, 1], 0)

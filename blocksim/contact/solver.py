@@ -137,7 +137,9 @@ class ContactProblem:
         -------
         Solution
         """
-        return _Step(self, normal, tangent, free, normal_rate, slip_rate, precision).solve(start)
+        return _Step(self, normal, tangent, free, normal_rate, slip_rate, precision).solve(
+            start
+        )
 
 
 class _Step:
@@ -193,7 +195,9 @@ class _Step:
                 if newton is None and passes % PLAIN:
                     slip = self._guess(x, forces, slip, follow)
             if newton is None:
-                x, forces = self._multipliers(x, forces, slip, cold=start is None and not passes)
+                x, forces = self._multipliers(
+                    x, forces, slip, cold=start is None and not passes
+                )
             else:
                 x, forces = newton
                 slip = np.where(follow, np.abs(self._slip(x)), slip)
@@ -256,7 +260,9 @@ class _Step:
             way = solveh_banded(band, -gradient, lower=True, check_finite=False)
             self._iterations += 1
             turn = -stiffness * self._at(edges, way)
-            length = _line_search(float(way @ gradient), float(way @ way), trial, turn, stiffness)
+            length = _line_search(
+                float(way @ gradient), float(way @ way), trial, turn, stiffness
+            )
             x = x + length * way
             trial = forces - stiffness * (offset + self._at(edges, x))
         return x, np.maximum(trial, 0.0)

@@ -41,9 +41,7 @@ class Direct:
 
     def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002
         """Return the same settings for every assembly."""
-        return Settings(
-            step=STEP, sweeps=1, hold_sweeps=1, still=STILL, residual=RESIDUAL
-        )
+        return Settings(step=STEP, sweeps=1, hold_sweeps=1, still=STILL, residual=RESIDUAL)
 
     def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
         """Put an assembly at rest."""
