@@ -3,8 +3,8 @@
 The engine solves the contacts of a single step, in place, with as many sweeps as it
 takes. Its answer is read as one of two certificates, both from the engine's own solution:
 
-- *stands*: the largest acceleration falls below `still` of the settings (in g). The contact forces found
-  balance the weights and respect contact and friction.
+- *stands*: the largest acceleration falls below `still` of the settings (in g). The
+  contact forces found balance the weights and respect contact and friction.
 - *collapses*: the accelerations form a mechanism, that is, no joint closes further
   (overlap below `OVERLAP` of the motion). Before the sweeps have converged the
   accelerations press blocks into each other, by percents and more; once they have, by

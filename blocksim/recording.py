@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 import zipfile
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
@@ -49,7 +49,7 @@ class Recording:
     settings: Settings
     times: Array
     poses: Array
-    quality: Quality = Quality()
+    quality: Quality = field(default_factory=Quality)
 
     @property
     def state_hash(self) -> str:

@@ -23,10 +23,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import solve_banded, solveh_banded
+from numpy.typing import ArrayLike, NDArray
 
 from blocksim.assembly import Array
+from blocksim.contact.banded import Bands, line_search
 
 SOFT, STIFF = 1e3, 1e9
 """Least and largest weight of the constraints."""
@@ -87,26 +87,10 @@ class ContactProblem:
     def __init__(
         self, before: NDArray[np.int64], after: NDArray[np.int64], mass: Array, mu: float
     ) -> None:
-        self._mu = mu
-        self._norm = math.sqrt(1 + mu * mu)
-        self._root = np.sqrt(mass).ravel()
-        self._size = mass.size
-        pair = np.repeat(np.stack([before, after], 1), 3, axis=1)
-        place = 3 * pair + np.tile(np.arange(3), 2)
-        # Entries of the ground go to one place past the end and are dropped.
-        self._place = np.where(pair < 0, self._size, place)
-        self._flat = self._place.ravel()
-        padded = np.append(1 / self._root, 0.0)
-        self._scale = padded[self._place][:, None, :]
-        row, column = np.broadcast_arrays(self._place[:, :, None], self._place[:, None, :])
-        inside = (row < self._size) & (column < self._size)
-        apart = row - column
-        self._band = int(np.abs(apart[inside]).max())
-        lower = inside & (apart >= 0)
-        self._lower = np.flatnonzero(lower)
-        self._lower_at = (apart * self._size + column)[lower]
-        self._whole = np.flatnonzero(inside)
-        self._whole_at = ((self._band + apart) * self._size + column)[inside]
+        self.mu = mu
+        self.root = np.sqrt(mass)
+        self.bands = Bands(before, after, len(mass))
+        self.scale = self.bands.of_joints(1 / self.root.ravel())[:, None, :]
 
     def solve(
         self,
@@ -155,18 +139,18 @@ class _Step:
         slip_rate: Array,
         precision: float,
     ) -> None:
-        self._problem = problem
-        self._normal = normal * problem._scale
-        self._tangent = tangent * problem._scale
-        self._friction = problem._mu / problem._norm
+        self._bands, self._root, self._mu = problem.bands, problem.root, problem.mu
+        self._normal, self._tangent = normal * problem.scale, tangent * problem.scale
+        self._norm = math.sqrt(1 + self._mu**2)
+        self._friction = self._mu / self._norm
         slope = self._friction * self._tangent
         self._slope = np.concatenate([slope, slope], axis=1)
-        upright = self._normal / problem._norm
+        upright = self._normal / self._norm
         self._edges = np.concatenate([upright + slope, upright - slope], axis=1)
-        rate, lean = normal_rate / problem._norm, self._friction * slip_rate
+        rate, lean = normal_rate / self._norm, self._friction * slip_rate
         self._offset = np.concatenate([rate + lean, rate - lean], axis=1)
         self._normal_rate, self._slip_rate = normal_rate, slip_rate
-        self._free = free.ravel() * problem._root
+        self._free = (free * self._root).ravel()
         self._iterations = 0
         self._precision = precision
 
@@ -176,7 +160,7 @@ class _Step:
         if start is None:
             x, forces = np.zeros_like(self._free), np.zeros((joints, 4))
         else:
-            x = start.acceleration.ravel() * self._problem._root
+            x = (start.acceleration * self._root).ravel()
             forces = start.multipliers
         slip = np.zeros((joints, 2))
         passes = 0
@@ -203,24 +187,15 @@ class _Step:
                 slip = np.where(follow, np.abs(self._slip(x)), slip)
             passes += 1
         return Solution(
-            acceleration=(x / self._problem._root).reshape(-1, 3),
+            acceleration=x.reshape(-1, 3) / self._root,
             multipliers=forces,
             residual=self._residual(x, forces),
             iterations=self._iterations,
             passes=passes,
         )
 
-    def _at(self, rows: Array, x: Array) -> Array:
-        """Velocities along rows, shape (joints, rows)."""
-        return np.matmul(rows, np.append(x, 0.0)[self._problem._place][:, :, None])[:, :, 0]
-
-    def _pull(self, rows: Array, forces: Array) -> Array:
-        """Forces along rows, summed on the blocks."""
-        parts = np.matmul(forces[:, None, :], rows).ravel()
-        return np.bincount(self._problem._flat, parts, self._problem._size + 1)[:-1]
-
     def _slip(self, x: Array) -> Array:
-        return self._slip_rate + self._at(self._tangent, x)
+        return self._slip_rate + self._bands.along(self._tangent, x)
 
     def _multipliers(
         self, x: Array, forces: Array, slip: Array, *, cold: bool
@@ -244,27 +219,20 @@ class _Step:
         self, x: Array, forces: Array, offset: Array, stiffness: float
     ) -> tuple[Array, Array]:
         """Minimise |x - f|^2 / 2 + stiffness/2 |max(0, forces/stiffness - rate)|^2."""
-        problem, edges = self._problem, self._edges
-        trial = forces - stiffness * (offset + self._at(edges, x))
+        edges = self._edges
+        trial = forces - stiffness * (offset + self._bands.along(edges, x))
         for _ in range(MOST_NEWTON):
-            gradient = x - self._free - self._pull(edges, np.maximum(trial, 0.0))
+            gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
             if np.abs(gradient).max() <= self._balance(x, stiffness):
                 break
-            active = stiffness * (trial > 0)
-            blocks = np.matmul(edges.transpose(0, 2, 1) * active[:, None, :], edges).ravel()
-            rows = problem._band + 1
-            band = np.bincount(
-                problem._lower_at, blocks[problem._lower], rows * problem._size
-            ).reshape(rows, -1)
-            band[0] += 1.0
-            way = solveh_banded(band, -gradient, lower=True, check_finite=False)
+            way = self._bands.solve_symmetric(edges, stiffness * (trial > 0), -gradient)
             self._iterations += 1
-            turn = -stiffness * self._at(edges, way)
-            length = _line_search(
+            turn = -stiffness * self._bands.along(edges, way)
+            length = line_search(
                 float(way @ gradient), float(way @ way), trial, turn, stiffness
             )
             x = x + length * way
-            trial = forces - stiffness * (offset + self._at(edges, x))
+            trial = forces - stiffness * (offset + self._bands.along(edges, x))
         return x, np.maximum(trial, 0.0)
 
     def _balance(self, x: Array, stiffness: float) -> float:
@@ -280,9 +248,9 @@ class _Step:
             for _ in range(MOST_SLIDING_NEWTON):
                 found = self._slip(x)
                 widened = self._friction * np.where(follow, np.abs(found), slip)
-                rate = self._offset + np.tile(widened, 2) + self._at(edges, x)
+                rate = self._offset + np.tile(widened, 2) + self._bands.along(edges, x)
                 trial = forces - stiffness * rate
-                gradient = x - self._free - self._pull(edges, np.maximum(trial, 0.0))
+                gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
                 if np.abs(gradient).max() <= self._balance(x, stiffness):
                     break
                 x = x + self._way(gradient, stiffness * (trial > 0), np.sign(found) * follow)
@@ -300,67 +268,29 @@ class _Step:
         stiffness = self._stiffness(x)
         found = self._slip(x)
         widened = self._friction * np.where(follow, np.abs(found), slip)
-        rate = self._offset + np.tile(widened, 2) + self._at(self._edges, x)
+        rate = self._offset + np.tile(widened, 2) + self._bands.along(self._edges, x)
         active = forces > 0
         held = np.where(active, forces - stiffness * rate, 0.0)
-        gradient = x - self._free - self._pull(self._edges, held)
+        gradient = x - self._free - self._bands.pull(self._edges, held)
         ahead = self._slip(x + self._way(gradient, stiffness * active, np.sign(found) * follow))
         kept = follow & (ahead * found > 0)
         return np.where(kept, np.abs(ahead), slip)
 
-    def _way(self, gradient: Array, weight: Array, sign: Array) -> Array:
+    def _way(self, gradient: Array, weight: ArrayLike, sign: Array) -> Array:
         """Newton step where contacts with a sign slide that way, the slip being unknown."""
-        problem, edges = self._problem, self._edges
-        seen = edges + np.tile(sign, 2)[:, :, None] * self._slope
-        blocks = np.matmul(edges.transpose(0, 2, 1) * weight[:, None, :], seen).ravel()
-        rows = 2 * problem._band + 1
-        band = np.bincount(
-            problem._whole_at, blocks[problem._whole], rows * problem._size
-        ).reshape(rows, -1)
-        band[problem._band] += 1.0
+        seen = self._edges + np.tile(sign, 2)[:, :, None] * self._slope
         self._iterations += 1
-        both = (problem._band, problem._band)
-        return -solve_banded(both, band, gradient, check_finite=False)
+        return self._bands.solve(self._edges, weight, seen, -gradient)
 
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
-        problem = self._problem
-        imbalance = np.abs(x - self._free - self._pull(self._edges, forces)).max()
+        imbalance = np.abs(x - self._free - self._bands.pull(self._edges, forces)).max()
         plus, minus = forces[:, :2], forces[:, 2:]
-        pressure, friction = (plus + minus) / problem._norm, (plus - minus) * self._friction
-        rate = self._normal_rate + self._at(self._normal, x)
+        pressure, friction = (plus + minus) / self._norm, (plus - minus) * self._friction
+        rate = self._normal_rate + self._bands.along(self._normal, x)
         slip = self._slip(x)
         unilateral = np.abs(np.minimum(pressure, rate)).max()
         # Friction at the edge of the cone, against the slip, or no slip.
-        against = problem._mu * pressure + np.sign(slip) * friction
+        against = self._mu * pressure + np.sign(slip) * friction
         coulomb = np.minimum(against, np.abs(slip)).max()
         return float(max(imbalance, unilateral, coulomb))
-
-
-def _line_search(
-    slope: float, curvature: float, trial: Array, turn: Array, stiffness: float
-) -> float:
-    """Step along a Newton direction to the minimum, exact as the function is piecewise quadratic.
-
-    The derivative along the way is slope + curvature t plus, for each constraint while it is
-    active, (turn^2 t)/stiffness; here `slope` holds all terms at t = 0.
-    """
-    ahead = trial + turn
-    bends = np.flatnonzero(((trial > 0) != (ahead > 0)).ravel())
-    if not len(bends):
-        return 1.0
-    flat, change = trial.ravel(), turn.ravel()
-    moving = change != 0
-    flat, change = flat[moving], change[moving]
-    weight = change * change / stiffness
-    active = (flat > 0) | ((flat == 0) & (change > 0))
-    where = -flat / change
-    bends = np.flatnonzero(where > 0)
-    order = bends[np.argsort(where[bends])]
-    edges = np.append(0.0, where[order])
-    steepness = np.cumsum(
-        np.append(curvature + weight[active].sum(), np.sign(change[order]) * weight[order])
-    )
-    values = slope + np.append(0.0, np.cumsum(steepness[:-1] * np.diff(edges)))
-    last = max(int(np.searchsorted(values, 0.0)) - 1, 0)
-    return float(edges[last] - values[last] / steepness[last])

@@ -140,5 +140,6 @@ class Blocks:
             precision,
         )
         self._solution = solution
-        self._residual = max(self._residual, solution.residual)
+        # Unlike max, this keeps nan.
+        self._residual = float(np.maximum(self._residual, solution.residual))
         return solution
