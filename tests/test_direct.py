@@ -28,7 +28,7 @@ CASES = [
     (125, 0.9, 27, "centreline"),
     (150, 2.0, 40, "centreline"),
     (145, 1.6, 40, "centreline"),
-    (152, 2.6, 27, "sector"),
+    (152, 2.6, 27, "centreline"),
     (100, math.inf, 20, "centreline"),
     (154, 3.0, 7, "centreline"),
 ]
@@ -143,9 +143,7 @@ def test_over_its_residual_the_answer_is_undecided():
 
 
 def test_a_recording_keeps_its_quality(tmp_path):
-    recording = simulate(
-        built(90, 0.9, 20, ratio=0.9), mu=0.9, method="direct", duration=1.5
-    )
+    recording = simulate(built(90, 0.9, 20, ratio=0.9), mu=0.9, method="direct", duration=1.5)
     path = tmp_path / "run.npz"
     recording.save(path)
     quality = load_recording(path).quality

@@ -37,6 +37,8 @@ BALANCE = 1e-11
 ROUND_OFF = 1e-14
 CLOSED = 1e-16
 """Violation of a constraint that is round-off, with accelerations of 1 [g]."""
+STEEPEST = 3.0
+"""Edges of friction cones steeper than that are not scaled to length 1: normals would fade."""
 MOST_NEWTON = 100
 MOST_SLIDING_NEWTON = 8
 MOST_OUTER = 30
@@ -141,7 +143,7 @@ class _Step:
     ) -> None:
         self._bands, self._root, self._mu = problem.bands, problem.root, problem.mu
         self._normal, self._tangent = normal * problem.scale, tangent * problem.scale
-        self._norm = math.sqrt(1 + self._mu**2)
+        self._norm = min(math.sqrt(1 + self._mu**2), STEEPEST)
         self._friction = self._mu / self._norm
         slope = self._friction * self._tangent
         self._slope = np.concatenate([slope, slope], axis=1)
@@ -236,7 +238,8 @@ class _Step:
         return x, np.maximum(trial, 0.0)
 
     def _balance(self, x: Array, stiffness: float) -> float:
-        return max(BALANCE, ROUND_OFF * stiffness * float(np.abs(x).max()))
+        steep = max(1.0, self._friction)
+        return steep * max(BALANCE, ROUND_OFF * steep * stiffness * float(np.abs(x).max()))
 
     def _sliding(
         self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]

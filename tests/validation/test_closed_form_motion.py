@@ -106,7 +106,7 @@ def test_a_block_rocks_about_its_corner():
 
 def test_a_rocking_block_loses_energy_at_the_impact_only_as_housner_says():
     # Angular velocity after over before: 1 - 3/2 sin(lean)^2 for a slender block.
-    width, height, spin = 0.2, 1.0, -0.3
+    width, height, spin = 0.2, 1.0, -0.1
     lean = math.atan2(width, height)
     assembly, _ = standing_block(width, height)
     ratios = []
@@ -121,5 +121,6 @@ def test_a_rocking_block_loses_energy_at_the_impact_only_as_housner_says():
                 break
         rates = np.array(rates)
         at = int(np.argmax(np.abs(np.diff(rates))))
-        ratios.append(rates[at + 1] / rates[at])
+        # An impact within a step takes two: one up to the touch, one that stops there.
+        ratios.append(rates[at + 2] / rates[at - 1])
     assert ratios[-1] == pytest.approx(1 - 1.5 * math.sin(lean) ** 2, abs=0.01)
