@@ -28,6 +28,8 @@ from numpy.typing import ArrayLike, NDArray
 from blocksim.assembly import Array
 from blocksim.contact.banded import Bands, line_search
 
+COLD = 1e8
+"""Weight of the constraints to start with when nothing is known."""
 SOFT, STIFF = 1e3, 1e9
 """Least and largest weight of the constraints."""
 STIFFNESS = 1e4
@@ -35,6 +37,9 @@ STIFFNESS = 1e4
 BALANCE = 1e-11
 """Forces out of balance at which a minimisation ends, in mean weights."""
 ROUND_OFF = 1e-14
+"""The same, in units of the stiffest forces."""
+STALLED = 1e3
+"""Multiple of that below which an imbalance that no longer halves is round-off."""
 CLOSED = 1e-16
 """Violation of a constraint that is round-off, with accelerations of 1 [g]."""
 STEEPEST = 3.0
@@ -204,7 +209,7 @@ class _Step:
     ) -> tuple[Array, Array]:
         """Solve a pass by the method of multipliers, ever stiffer as it comes to rest."""
         widened = self._friction * np.concatenate([slip, slip], axis=1)
-        stiffness = SOFT if cold else self._stiffness(x)
+        stiffness = COLD if cold else self._stiffness(x)
         for _ in range(MOST_OUTER):
             x, found = self._minimise(x, forces, self._offset + widened, stiffness)
             violation = np.abs(found - forces).max() / stiffness
@@ -215,7 +220,8 @@ class _Step:
         return x, forces
 
     def _stiffness(self, x: Array) -> float:
-        return float(np.clip(STIFFNESS / max(np.abs(x).max(), 1e-9), SOFT, STIFF))
+        steep = max(1.0, self._friction)
+        return float(np.clip(STIFFNESS / steep / max(np.abs(x).max(), 1e-9), SOFT, STIFF))
 
     def _minimise(
         self, x: Array, forces: Array, offset: Array, stiffness: float
@@ -223,9 +229,11 @@ class _Step:
         """Minimise |x - f|^2 / 2 + stiffness/2 |max(0, forces/stiffness - rate)|^2."""
         edges = self._edges
         trial = forces - stiffness * (offset + self._bands.along(edges, x))
+        size = math.inf
         for _ in range(MOST_NEWTON):
             gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
-            if np.abs(gradient).max() <= self._balance(x, stiffness):
+            size, last = float(np.abs(gradient).max()), size
+            if self._balanced(size, last, x, stiffness):
                 break
             way = self._bands.solve_symmetric(edges, stiffness * (trial > 0), -gradient)
             self._iterations += 1
@@ -237,9 +245,11 @@ class _Step:
             trial = forces - stiffness * (offset + self._bands.along(edges, x))
         return x, np.maximum(trial, 0.0)
 
-    def _balance(self, x: Array, stiffness: float) -> float:
-        steep = max(1.0, self._friction)
-        return steep * max(BALANCE, ROUND_OFF * steep * stiffness * float(np.abs(x).max()))
+    def _balanced(self, size: float, last: float, x: Array, stiffness: float) -> bool:
+        """Whether a gradient is as small as it gets."""
+        least = max(BALANCE, ROUND_OFF * stiffness * float(np.abs(x).max()))
+        stalled = STALLED * max(1.0, self._friction) * least
+        return size <= least or last / 2 <= size <= stalled
 
     def _sliding(
         self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]
@@ -248,13 +258,15 @@ class _Step:
         edges = self._edges
         for _ in range(MOST_OUTER):
             stiffness = self._stiffness(x)
+            size = math.inf
             for _ in range(MOST_SLIDING_NEWTON):
                 found = self._slip(x)
                 widened = self._friction * np.where(follow, np.abs(found), slip)
                 rate = self._offset + np.tile(widened, 2) + self._bands.along(edges, x)
                 trial = forces - stiffness * rate
                 gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
-                if np.abs(gradient).max() <= self._balance(x, stiffness):
+                size, last = float(np.abs(gradient).max()), size
+                if self._balanced(size, last, x, stiffness):
                     break
                 x = x + self._way(gradient, stiffness * (trial > 0), np.sign(found) * follow)
             else:

@@ -20,7 +20,7 @@ from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 STEP = 0.01
 STILL = 1e-11
 """Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
-RESIDUAL = 1e-8
+RESIDUAL = 1e-7
 EXACT = 1e-16
 """Violation of contact and friction left in the onset test [g]."""
 PRECISION = 1e-12
