@@ -38,7 +38,7 @@ BALANCE = 1e-11
 """Forces out of balance at which a minimisation ends, in mean weights."""
 ROUND_OFF = 1e-14
 """The same, in units of the stiffest forces."""
-STALLED = 1e3
+STALLED = 30.0
 """Multiple of that below which an imbalance that no longer halves is round-off."""
 CLOSED = 1e-16
 """Violation of a constraint that is round-off, with accelerations of 1 [g]."""
@@ -247,9 +247,9 @@ class _Step:
 
     def _balanced(self, size: float, last: float, x: Array, stiffness: float) -> bool:
         """Whether a gradient is as small as it gets."""
-        least = max(BALANCE, ROUND_OFF * stiffness * float(np.abs(x).max()))
-        stalled = STALLED * max(1.0, self._friction) * least
-        return size <= least or last / 2 <= size <= stalled
+        noise = ROUND_OFF * stiffness * float(np.abs(x).max())
+        stalled = STALLED * max(1.0, self._friction) * noise
+        return size <= max(BALANCE, noise) or last / 2 <= size <= stalled
 
     def _sliding(
         self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]
