@@ -15,7 +15,7 @@ import numpy as np
 
 from blocksim.assembly import Array, Assembly
 from blocksim.contact import ContactProblem, Geometry, Solution, Touch
-from blocksim.engines.base import Quality, Settings, World
+from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 
 STEP = 0.01
 STILL = 1e-11
@@ -25,8 +25,6 @@ EXACT = 1e-16
 """Violation of contact and friction left in the onset test [g]."""
 PRECISION = 1e-12
 """Violation of contact and friction left in a moving step [g]."""
-STEEPEST = 100.0
-"""Largest friction coefficient: steeper cones cost digits and time, and hold no more."""
 CLOSED = 1e-12
 """Gap that counts as none: round-off of the corners' places."""
 
@@ -68,7 +66,7 @@ class Blocks:
         self._step = settings.step
         self._geometry = Geometry(assembly)
         self._problem = ContactProblem(
-            self._geometry.before, self._geometry.after, self._mass, min(mu, STEEPEST)
+            self._geometry.before, self._geometry.after, self._mass, min(mu, FRICTION_CAP)
         )
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(mass))])
         self._velocities = np.zeros_like(self._poses)
@@ -124,6 +122,11 @@ class Blocks:
     def push(self, velocities: Array) -> None:
         """Set the velocities, shape (blocks, 3)."""
         self._velocities = np.array(velocities, dtype=np.float64)
+
+    def start_from(self, other: Blocks) -> None:
+        """Take poses, velocities and contact forces from the same blocks in another world."""
+        self._poses, self._velocities = other._poses.copy(), other._velocities.copy()
+        self._solution = other._solution
 
     def _rates(self, rows: Array) -> Array:
         padded = np.vstack([self._velocities, np.zeros(3)])
