@@ -36,6 +36,8 @@ STIFFNESS = 1e4
 """Weight of the constraints times accelerations, limited by round-off."""
 BALANCE = 1e-11
 """Forces out of balance at which a minimisation ends, in mean weights."""
+STIFFER = 1e3
+"""Largest factor on the stiffness where progress is slow."""
 ROUND_OFF = 1e-14
 """The same, in units of the stiffest forces."""
 STALLED = 30.0
@@ -210,13 +212,17 @@ class _Step:
         """Solve a pass by the method of multipliers, ever stiffer as it comes to rest."""
         widened = self._friction * np.concatenate([slip, slip], axis=1)
         stiffness = COLD if cold else self._stiffness(x)
+        stiffer, last = 1.0, math.inf
         for _ in range(MOST_OUTER):
             x, found = self._minimise(x, forces, self._offset + widened, stiffness)
             violation = np.abs(found - forces).max() / stiffness
             forces = found
             if violation <= self._precision * max(1.0, np.abs(x).max()):
                 break
-            stiffness = self._stiffness(x)
+            # Slow progress asks for stiffness, at the cost of digits.
+            stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
+            last = violation
+            stiffness = stiffer * self._stiffness(x)
         return x, forces
 
     def _stiffness(self, x: Array) -> float:
@@ -256,8 +262,9 @@ class _Step:
     ) -> tuple[Array, Array] | None:
         """Newton's method with the slip of sliding contacts as an unknown; None if it fails."""
         edges = self._edges
+        stiffer, last = 1.0, math.inf
         for _ in range(MOST_OUTER):
-            stiffness = self._stiffness(x)
+            stiffness = stiffer * self._stiffness(x)
             size = math.inf
             for _ in range(MOST_SLIDING_NEWTON):
                 found = self._slip(x)
@@ -276,6 +283,8 @@ class _Step:
             forces = found
             if violation <= self._precision * max(1.0, np.abs(x).max()):
                 return x, forces
+            stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
+            last = violation
         return None
 
     def _guess(self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]) -> Array:

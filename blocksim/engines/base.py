@@ -36,6 +36,8 @@ class Settings:
         Most sweeps the onset test may spend.
     still : float
         Acceleration below which an arch held at rest counts as at rest [g].
+    rest : float
+        Displacement below which an arch let go counts as at rest [size].
     residual : float
         Worst residual of the contacts at which an answer still counts.
     """
@@ -44,6 +46,7 @@ class Settings:
     sweeps: int
     hold_sweeps: int
     still: float = 1e-7
+    rest: float = 1e-5
     residual: float = math.inf
 
 

@@ -20,6 +20,8 @@ from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 STEP = 0.01
 STILL = 1e-11
 """Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
+REST = 1e-9
+"""Let go 1e-8 below its limit an arch moves 1e-7 and more in the time watched."""
 RESIDUAL = 1e-7
 EXACT = 1e-16
 """Violation of contact and friction left in the onset test [g]."""
@@ -41,7 +43,9 @@ class Direct:
 
     def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002
         """Return the same settings for every assembly."""
-        return Settings(step=STEP, sweeps=1, hold_sweeps=1, still=STILL, residual=RESIDUAL)
+        return Settings(
+            step=STEP, sweeps=1, hold_sweeps=1, still=STILL, rest=REST, residual=RESIDUAL
+        )
 
     def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
         """Put an assembly at rest."""
