@@ -47,6 +47,11 @@ METHODS = {
             finest=0.0,
         ),
         Method(
+            name="direct",
+            sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
+            finest=1e-8,
+        ),
+        Method(
             name="pymunk",
             sees="motion in the plane: onset and collapse with Coulomb friction",
             finest=1e-4,

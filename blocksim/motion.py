@@ -5,9 +5,9 @@ it rests on the largest displacement d of any corner, in units of r, and on time
 of sqrt(r/g):
 
 - *collapses* as soon as d > `MOVED`;
-- *stands* if d < `REST` at time `QUIET`. Near the limit an unstable arch starts slowly, but
-  its displacement grows e-fold in about half a unit of time: from an acceleration of
-  1e-6 g it would have passed `MOVED` by then;
+- *stands* if d < `rest` of the settings at time `QUIET`. Near the limit an unstable arch
+  starts slowly, but its displacement grows e-fold in about half a unit of time: from an
+  acceleration of 1e-6 g it would have passed `MOVED` by then;
 - otherwise it is watched until `LONGEST` and is then *undecided*: it creeps if its
   displacement grew less than threefold over the second half (steady drift doubles it), or
   else starts too slowly.
@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.assembly import Array, Assembly
-from blocksim.engines.base import World
+from blocksim.engines.base import World, trusted
 from blocksim.joints import overlap_share
 from blocksim.progress import Progress, silent
 from blocksim.recording import Recording, displacement
@@ -33,7 +33,6 @@ from blocksim.setup import Setup
 from blocksim.verdict import Verdict
 
 MOVED = 0.02
-REST = 1e-5
 QUIET = 10.0
 LONGEST = 40.0
 CREEP = 3.0
@@ -113,7 +112,7 @@ def moving_run(
 
 def _released(setup: Setup, world: World, until: float | None, progress: Progress) -> Motion:
     """Record one release, as far as its blocks do not overlap."""
-    assembly, step = setup.assembly, setup.settings.step
+    assembly, step, rest = setup.assembly, setup.settings.step, setup.settings.rest
     stride = max(1, round(FRAME / step))
     times, poses, moved = [0.0], [world.poses()], [0.0]
     end = LONGEST if until is None else until
@@ -125,15 +124,20 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
         moved.append(_moved(assembly, poses))
         if moved[-1] > NOISE and moved[-2] < EARLY:
             overlap = max(overlap, overlap_share(assembly, poses[-1]))
-        if until is None and _verdict(times, moved) is not Verdict.UNDECIDED:
+        if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
             break
         progress(min(1.0, times[-1] / end), "moving run")
-    verdict = _verdict(times, moved) if overlap <= OVERLAP else Verdict.UNDECIDED
+    verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
+    reason = _reason(verdict, times, moved, overlap)
+    quality = world.quality()
+    if not trusted(world, setup.settings):
+        verdict = Verdict.UNDECIDED
+        reason = f"released, a contact was left with a residual of {quality.residual:.1e}"
     return Motion(
         verdict=verdict,
-        reason=_reason(verdict, times, moved, overlap),
+        reason=reason,
         overlap=overlap,
-        recording=setup.record(times, poses),
+        recording=setup.record(times, poses, quality),
     )
 
 
@@ -141,10 +145,10 @@ def _moved(assembly: Assembly, poses: list[Array]) -> float:
     return float(displacement(poses[-1] - poses[0], assembly.reach / assembly.size))
 
 
-def _verdict(times: list[float], moved: list[float]) -> Verdict:
+def _verdict(times: list[float], moved: list[float], rest: float) -> Verdict:
     if moved[-1] > MOVED:
         return Verdict.COLLAPSES
-    if times[-1] >= QUIET and moved[-1] < REST:
+    if times[-1] >= QUIET and moved[-1] < rest:
         return Verdict.STANDS
     return Verdict.UNDECIDED
 

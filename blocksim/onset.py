@@ -3,13 +3,14 @@
 The engine solves the contacts of a single step, in place, with as many sweeps as it
 takes. Its answer is read as one of two certificates, both from the engine's own solution:
 
-- *stands*: the largest acceleration falls below `STILL` (in g). The contact forces found
-  balance the weights and respect contact and friction.
+- *stands*: the largest acceleration falls below `still` of the settings (in g). The
+  contact forces found balance the weights and respect contact and friction.
 - *collapses*: the accelerations form a mechanism that the weight drives. No joint closes
   further (overlap below `OVERLAP` of the motion), and the weight's work on it is at least
   what goes into the motion (`WORK`): more where joints slide, the same where they turn.
   Before the sweeps have converged blocks press into each other by percents, or forces at
-  parting joints do work that nobody pays for; afterwards by a millionth.
+  parting joints do work that nobody pays for; afterwards by a millionth. An engine that
+  states the residual of its contacts is held to that instead of to the work.
 
 If neither is reached within the sweeps allowed the test is undecided, and says so.
 """
@@ -21,13 +22,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.assembly import Array, Assembly
-from blocksim.engines.base import World
+from blocksim.engines.base import Settings, World, trusted
 from blocksim.joints import overlap_share
 from blocksim.progress import Progress, silent
 from blocksim.recording import displacement
 from blocksim.verdict import Verdict
 
-STILL = 1e-6
 OVERLAP = 1e-3
 WORK = 0.99
 PROBE = 1e-6
@@ -71,7 +71,7 @@ class Onset:
 
 
 def onset(
-    world: World, assembly: Assembly, hold_sweeps: int, progress: Progress = silent
+    world: World, assembly: Assembly, settings: Settings, progress: Progress = silent
 ) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
@@ -80,8 +80,8 @@ def onset(
     world : World
     assembly : Assembly
         What the world was built from.
-    hold_sweeps : int
-        Most sweeps to spend.
+    settings : Settings
+        What counts as at rest, and the most sweeps to spend.
     progress : Progress, optional
 
     Returns
@@ -89,19 +89,24 @@ def onset(
     Onset
         The world keeps its impulses and can be released from there.
     """
+    hold_sweeps = settings.hold_sweeps
     rest = world.poses()
     reach = assembly.reach / assembly.size
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
-    first = max(FIRST_SWEEPS, len(assembly.blocks) ** 2)
+    first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), hold_sweeps)
     total, sweeps = 0, first
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
         largest = float(displacement(accelerations, reach))
         mechanism = rest + accelerations * (PROBE / largest if largest > 0 else 0.0)
-        if largest < STILL:
+        if not trusted(world, settings):
+            verdict = Verdict.UNDECIDED
+        elif largest < settings.still:
             verdict = Verdict.STANDS
-        elif overlap_share(assembly, mechanism) < OVERLAP and _driven(assembly, accelerations):
+        elif overlap_share(assembly, mechanism) < OVERLAP and (
+            world.quality().residual is not None or _driven(assembly, accelerations)
+        ):
             verdict = Verdict.COLLAPSES
         else:
             verdict = Verdict.UNDECIDED

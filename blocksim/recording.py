@@ -7,7 +7,7 @@ import json
 import math
 import zipfile
 import zlib
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from blocksim.arch import Arch
 from blocksim.assembly import Array
-from blocksim.engines.base import Settings
+from blocksim.engines.base import Quality, Settings
 from blocksim.errors import InputError
 from blocksim.files import write_whole
 
@@ -50,6 +50,8 @@ class Recording:
         In units of sqrt(r/g), from the release.
     poses : (frames, voussoirs, 3) float
         Centres of mass x, y in units of r and rotations [rad].
+    quality : Quality
+        How well contact and friction were kept.
     """
 
     arch: Arch
@@ -59,6 +61,7 @@ class Recording:
     settings: Settings
     times: Array
     poses: Array
+    quality: Quality = field(default_factory=Quality)
 
     @property
     def state_hash(self) -> str:
@@ -91,6 +94,7 @@ class Recording:
             "engine": self.engine,
             "engine_version": self.engine_version,
             "settings": asdict(self.settings),
+            "quality": asdict(self.quality),
             "state_hash": self.state_hash,
         }
         text = np.array(json.dumps(header))
@@ -147,6 +151,7 @@ def load_recording(path: Path) -> Recording:
             settings=Settings(**header["settings"]),
             times=np.asarray(times, dtype=np.float64),
             poses=np.asarray(poses, dtype=np.float64),
+            quality=Quality(**header.get("quality", {})),
         )
     except _UNREADABLE:
         raise InputError("recording", where, "written by blocksim simulate") from None

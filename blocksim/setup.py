@@ -11,7 +11,7 @@ import numpy as np
 from blocksim.arch import Arch
 from blocksim.assembly import Array, Assembly
 from blocksim.engines import get_engine
-from blocksim.engines.base import Engine, Settings, World
+from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.recording import Recording
 
 
@@ -52,7 +52,9 @@ class Setup:
         settings = replace(self.settings, sweeps=self.settings.sweeps * factor)
         return replace(self, settings=settings)
 
-    def record(self, times: Sequence[float], poses: Sequence[Array]) -> Recording:
+    def record(
+        self, times: Sequence[float], poses: Sequence[Array], quality: Quality
+    ) -> Recording:
         """Return frames as a recording."""
         return Recording(
             arch=self.arch,
@@ -62,4 +64,5 @@ class Setup:
             settings=self.settings,
             times=np.array(times),
             poses=np.array(poses),
+            quality=quality,
         )

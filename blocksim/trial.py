@@ -64,7 +64,7 @@ def trial(
     """
     setup = Setup.of(arch, mu, engine)
     world = setup.world()
-    first = onset(world, setup.assembly, setup.settings.hold_sweeps, progress)
+    first = onset(world, setup.assembly, setup.settings, progress)
     verdict, reason, motion = first.verdict, first.reason, None
     if moving and verdict is not Verdict.UNDECIDED:
         motion = moving_run(setup, world, first.sweeps, progress=progress)
@@ -117,5 +117,5 @@ def simulate(
         raise InputError("method", method, f"one of {', '.join(ENGINES)}: others move nothing")
     setup = Setup.of(arch, mu, method)
     world = setup.world()
-    first = onset(world, setup.assembly, setup.settings.hold_sweeps, progress)
+    first = onset(world, setup.assembly, setup.settings, progress)
     return moving_run(setup, world, first.sweeps, until=duration, progress=progress).recording

@@ -22,11 +22,12 @@ from blocksim.arch import Arch
 from blocksim.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.bracket import bracket
 from blocksim.engines import get_engine
+from blocksim.engines.base import Settings
 from blocksim.errors import InputError, MissingPart
 from blocksim.joints import joint_motion
 from blocksim.modes import Mode
 from blocksim.motion import moving_run
-from blocksim.onset import STILL, onset
+from blocksim.onset import onset
 from blocksim.setup import Setup
 from blocksim.trial import simulate, trial
 from blocksim.verdict import Verdict
@@ -65,7 +66,7 @@ def test_both_sides_of_the_least_thickness(
     assert thin.mode is not None
     thick = trial(arch_at(1.01, angle, mu, count, weight), mu, "pymunk")
     assert thick.verdict is Verdict.STANDS
-    assert thick.onset.acceleration < STILL
+    assert thick.onset.acceleration < Settings.still
     assert thick.mode is None
 
 
@@ -118,7 +119,8 @@ def test_thin_arches_are_never_answered_wrongly() -> None:
         arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=27)
         setup = Setup.of(arch, 0.7, "pymunk")
         for sweeps in (1000, 20_000, 100_000):
-            seen = onset(setup.world(), setup.assembly, sweeps)
+            chosen = replace(setup.settings, hold_sweeps=sweeps)
+            seen = onset(setup.world(), setup.assembly, chosen)
             assert seen.verdict in {right, Verdict.UNDECIDED}
             assert seen.sweeps <= max(sweeps, 1000)
         assert seen.verdict is Verdict.UNDECIDED
@@ -133,7 +135,8 @@ def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> N
     least = limit.least_thickness(alpha, 0.7, count).eta
     arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count)
     setup = Setup.of(arch, 0.7, "pymunk")
-    seen = onset(setup.world(), setup.assembly, 100_000)
+    chosen = replace(setup.settings, hold_sweeps=100_000)
+    seen = onset(setup.world(), setup.assembly, chosen)
     assert seen.verdict is Verdict.UNDECIDED
 
 
@@ -231,7 +234,7 @@ def held(assembly: Assembly, mu: float) -> tuple[Verdict, np.ndarray]:
     engine = get_engine("pymunk")
     chosen = engine.settings(assembly)
     world = engine.build(assembly, mu, chosen)
-    seen = onset(world, assembly, chosen.hold_sweeps)
+    seen = onset(world, assembly, chosen)
     return seen.verdict, world.hold(1)
 
 
@@ -361,7 +364,7 @@ def test_a_block_rests_on_a_slope(degrees: float, share: float, width: float) ->
 def test_friction_threshold_on_a_slope(degrees: float) -> None:
     """Both sides of tan(phi) = mu, twice as far as the onset test can tell from rest."""
     angle = math.radians(degrees)
-    share = 2 * STILL / math.sin(angle)
+    share = 2 * Settings.still / math.sin(angle)
     assembly = on_a_slope(angle, 1.0, 0.2)
     assert held(assembly, math.tan(angle) * (1 + share))[0] is Verdict.STANDS
     verdict, start = held(assembly, math.tan(angle) * (1 - share))
@@ -403,7 +406,7 @@ def test_energy_does_not_grow(
     arch = arch_at(0.9, angle, mu, count, weight)
     setup = Setup.of(arch, mu, "pymunk")
     world = setup.world()
-    onset(world, setup.assembly, setup.settings.hold_sweeps)
+    onset(world, setup.assembly, setup.settings)
     step = setup.settings.step
     poses = []
     for _ in range(round(2.0 / step)):
@@ -438,7 +441,7 @@ def test_blocks_at_rest_are_put_back() -> None:
 def test_standing_arch_stays_where_it_was_built() -> None:
     setup = Setup.of(replace(SMALL, eta=0.15), 0.6, "pymunk")
     world = setup.world()
-    first = onset(world, setup.assembly, setup.settings.hold_sweeps)
+    first = onset(world, setup.assembly, setup.settings)
     motion = moving_run(setup, world, first.sweeps)
     assert motion.verdict is Verdict.STANDS
     assert motion.recording.displacement.max() < 1e-5

@@ -18,6 +18,7 @@ class _Place(NamedTuple):
 
 
 _PLACES = {
+    "direct": _Place("scipy", "blocksim.engines.direct", "Direct", "pip install scipy"),
     "pymunk": _Place(
         "pymunk", "blocksim.engines.chipmunk", "Chipmunk", "pip install 'pymunk>=7.3'"
     ),

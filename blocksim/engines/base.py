@@ -8,6 +8,7 @@ an unexpected unit.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -33,11 +34,36 @@ class Settings:
         Sweeps over all contacts in each step of a moving run.
     hold_sweeps : int
         Most sweeps the onset test may spend.
+    still : float
+        Acceleration below which an arch held at rest counts as at rest [g].
+    rest : float
+        Displacement below which an arch let go counts as at rest [size].
+    residual : float
+        Worst residual of the contacts at which an answer still counts.
     """
 
     step: float
     sweeps: int
     hold_sweeps: int
+    still: float = 1e-6
+    rest: float = 1e-5
+    residual: float = math.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quality:
+    """How well a motion has kept contact and friction; None where the engine cannot tell.
+
+    Parameters
+    ----------
+    residual : float or None
+        Worst imbalance, penetration rate or complementarity in any step [g].
+    penetration : float or None
+        Deepest overlap at the end of a joint, in units of the size.
+    """
+
+    residual: float | None = None
+    penetration: float | None = None
 
 
 class World(Protocol):
@@ -67,6 +93,16 @@ class World(Protocol):
     def poses(self) -> Array:
         """Return centres of mass x, y and rotations [rad], shape (blocks, 3)."""
         ...
+
+    def quality(self) -> Quality:
+        """Tell how well contact and friction have been kept so far."""
+        ...
+
+
+def trusted(world: World, settings: Settings) -> bool:
+    """Tell whether the contacts of a world have kept within the residual allowed."""
+    residual = world.quality().residual
+    return residual is None or residual <= settings.residual
 
 
 class Engine(Protocol):

@@ -25,7 +25,7 @@ import numpy as np
 import pymunk
 
 from blocksim.assembly import SUPPORT, Array, Assembly, Joint
-from blocksim.engines.base import FRICTION_CAP, Settings, World
+from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 
 INSET = 1e-6
 """Most a face is set back; no more than `INSET_SHARE` of the shortest joint."""
@@ -142,6 +142,10 @@ class _Space:
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
         return np.array([(*body.position, body.angle) for body in self._bodies])
+
+    def quality(self) -> Quality:
+        """Chipmunk does not tell."""
+        return Quality()
 
 
 def _springings(assembly: Assembly) -> list[Joint]:

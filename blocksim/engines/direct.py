@@ -1,0 +1,154 @@
+"""Rigid blocks with unilateral contact and Coulomb friction, each step solved to its end.
+
+Implicit non-smooth time stepping (Moreau): velocities at the end of a step obey contact and
+friction and carry the blocks through it, contacts being those half a step ahead. Contact
+forces then do no work or take some away, gravity's work is that of the step, and so the
+energy never grows. An open contact may close within a step, but not pass; one that overlaps
+is kept from closing further and not pushed apart, which would add energy.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+
+import numpy as np
+
+from blocksim.assembly import Array, Assembly
+from blocksim.contact import ContactProblem, Geometry, Solution, Touch
+from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
+
+STEP = 0.01
+STILL = 1e-11
+"""Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
+REST = 1e-9
+"""Let go 1e-8 below its limit an arch moves 1e-7 and more in the time watched."""
+RESIDUAL = 1e-7
+EXACT = 1e-16
+"""Violation of contact and friction left in the onset test [g]."""
+PRECISION = 1e-12
+"""Violation of contact and friction left in a moving step [g]."""
+CLOSED = 1e-12
+"""Gap that counts as none: round-off of the corners' places."""
+
+
+class Direct:
+    """The engine that solves every step."""
+
+    name = "direct"
+
+    @property
+    def version(self) -> str:
+        """Version of the linear algebra, the only library in it."""
+        return version("scipy")
+
+    def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002
+        """Return the same settings for every assembly."""
+        return Settings(
+            step=STEP, sweeps=1, hold_sweeps=1, still=STILL, rest=REST, residual=RESIDUAL
+        )
+
+    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
+        """Put an assembly at rest."""
+        return Blocks(assembly, mu, settings)
+
+
+class Blocks:
+    """Blocks, their poses and velocities.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    mu : float
+    settings : Settings
+    """
+
+    def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
+        size = assembly.size
+        mass = np.array([block.mass for block in assembly.blocks])
+        inertia = np.array([block.inertia for block in assembly.blocks]) / size**2
+        self._mass = np.stack([mass, mass, inertia], axis=1) / mass.mean()
+        self._step = settings.step
+        self._geometry = Geometry(assembly)
+        self._problem = ContactProblem(
+            self._geometry.before, self._geometry.after, self._mass, min(mu, FRICTION_CAP)
+        )
+        self._poses = np.column_stack([assembly.centres / size, np.zeros(len(mass))])
+        self._velocities = np.zeros_like(self._poses)
+        self._gravity = np.zeros_like(self._poses)
+        self._gravity[:, 1] = -1.0
+        self._solution: Solution | None = None
+        self._pairs = np.stack([self._geometry.before, self._geometry.after], axis=1)
+        self._residual = self._penetration = 0.0
+
+    def hold(self, sweeps: int) -> Array:  # noqa: ARG002
+        """Solve the contacts of a step from rest; the blocks stay."""
+        touch = self._geometry.touch(self._poses)
+        closed = np.zeros_like(touch.gap)
+        return self._solve(touch, closed, closed, EXACT).acceleration
+
+    def advance(self, steps: int) -> None:
+        """Let the blocks move."""
+        step = self._step
+        for _ in range(steps):
+            touch = self._geometry.touch(self._poses + step / 2 * self._velocities)
+            approach = self._rates(touch.normal)
+            gap = touch.gap - step / 2 * approach
+            self._penetration = max(self._penetration, -float(gap.min()))
+            opening = np.where(gap > CLOSED, gap, 0.0)
+            solution = self._solve(
+                touch,
+                approach / step + opening / step**2,
+                self._rates(touch.tangent) / step,
+                PRECISION,
+            )
+            self._velocities = self._velocities + step * solution.acceleration
+            self._poses = self._poses + step * self._velocities
+
+    def poses(self) -> Array:
+        """Return centres of mass and rotations."""
+        return self._poses.copy()
+
+    def quality(self) -> Quality:
+        """Tell how well contact and friction have been kept so far."""
+        return Quality(residual=self._residual, penetration=self._penetration)
+
+    @property
+    def velocities(self) -> Array:
+        """Velocities x, y and angular, shape (blocks, 3)."""
+        return self._velocities.copy()
+
+    @property
+    def energy(self) -> float:
+        """Kinetic and potential energy, in mean weights times the size."""
+        kinetic = (self._mass * self._velocities**2).sum() / 2
+        return float(kinetic + (self._mass[:, 1] * self._poses[:, 1]).sum())
+
+    def push(self, velocities: Array) -> None:
+        """Set the velocities, shape (blocks, 3)."""
+        self._velocities = np.array(velocities, dtype=np.float64)
+
+    def start_from(self, other: Blocks) -> None:
+        """Take poses, velocities and contact forces from the same blocks in another world."""
+        self._poses, self._velocities = other._poses.copy(), other._velocities.copy()
+        self._solution = other._solution
+
+    def _rates(self, rows: Array) -> Array:
+        padded = np.vstack([self._velocities, np.zeros(3)])
+        return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
+
+    def _solve(
+        self, touch: Touch, normal_rate: Array, slip_rate: Array, precision: float
+    ) -> Solution:
+        solution = self._problem.solve(
+            touch.normal,
+            touch.tangent,
+            self._gravity,
+            normal_rate,
+            slip_rate,
+            self._solution,
+            precision,
+        )
+        self._solution = solution
+        # Unlike max, this keeps nan.
+        self._residual = float(np.maximum(self._residual, solution.residual))
+        return solution

@@ -1,0 +1,159 @@
+"""The direct engine: exact at the onset, never gaining energy, honest about its residual."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from blocksim import limit
+from blocksim.arch import Arch
+from blocksim.bracket import Search
+from blocksim.engines.base import trusted
+from blocksim.engines.direct import Blocks, Direct
+from blocksim.joints import joint_motion
+from blocksim.onset import onset
+from blocksim.recording import load_recording
+from blocksim.setup import Setup
+from blocksim.trial import simulate, trial
+from blocksim.verdict import Verdict
+
+CASES = [
+    (90, 0.9, 27, "centreline"),
+    (32, 1.0, 44, "centreline"),
+    (65, 0.9, 9, "sector"),
+    (110, 0.9, 101, "sector"),
+    (90, 0.37, 30, "centreline"),
+    (90, 0.31, 27, "sector"),
+    (125, 0.9, 27, "centreline"),
+    (150, 2.0, 40, "centreline"),
+    (145, 1.6, 40, "centreline"),
+    (152, 2.6, 27, "centreline"),
+    (100, math.inf, 20, "centreline"),
+    (154, 3.0, 7, "centreline"),
+]
+
+
+def held(arch, mu):
+    return trial(arch, mu, "direct", moving=False).verdict
+
+
+def built(half_angle_deg, mu, voussoirs, weight="centreline", ratio=1.0):
+    half_angle = math.radians(half_angle_deg)
+    eta = limit.least_thickness(half_angle, mu, voussoirs, weight).eta
+    return Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
+
+
+def world_of(arch, mu, step=0.01):
+    engine, assembly = Direct(), arch.assembly()
+    return Blocks(assembly, mu, replace(engine.settings(assembly), step=step))
+
+
+@pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "weight"), CASES)
+def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight):
+    case = (half_angle_deg, mu, voussoirs, weight)
+    assert held(built(*case, ratio=1 - 1e-9), mu) is Verdict.COLLAPSES
+    assert held(built(*case, ratio=1 + 1e-9), mu) is Verdict.STANDS
+
+
+def test_bisection_from_far_away_ends_at_the_limit():
+    arch = built(125, 0.9, 26)
+    search = Search(lambda eta: held(replace(arch, eta=eta), 0.9))
+    search.expand(2 * arch.eta)
+    search.bisect(1e-9)
+    assert search.undecided == 0
+    assert search.low == pytest.approx(arch.eta, rel=2e-9)
+    assert search.high == pytest.approx(arch.eta, rel=2e-9)
+
+
+@pytest.mark.parametrize(
+    ("half_angle_deg", "mu", "ratio"), [(90, 0.9, 0.9), (90, 0.37, 0.97), (145, 1.6, 0.97)]
+)
+def test_energy_falls_in_every_step_of_a_collapse(half_angle_deg, mu, ratio):
+    world = world_of(built(half_angle_deg, mu, 20, ratio=ratio), mu)
+    world.hold(1)
+    energies = [world.energy]
+    for _ in range(150):
+        world.advance(1)
+        energies.append(world.energy)
+    assert np.diff(energies).max() < 1e-9
+    assert energies[-1] < energies[0] - 1e-2
+    quality = world.quality()
+    assert quality.residual < 1e-8
+    assert quality.penetration < 1e-5
+
+
+def test_friction_forces_oppose_the_slip_at_the_edge_of_the_cone():
+    arch, mu = built(145, 1.6, 40, ratio=0.97), 1.6
+    world = world_of(arch, mu)
+    motion = joint_motion(arch.assembly(), world.poses() + 1e-7 * world.hold(1))
+    gap, slip = motion.gap * 1e7, motion.slip * 1e7
+    slides = np.abs(slip) > 1e-3
+    assert slides.any()
+    # Coulomb's friction does not dilate: a joint that slides stays shut at one end.
+    assert np.abs(gap[slides].min(axis=1)).max() < 1e-6
+    assert gap.min() > -1e-6
+
+
+def test_what_stands_stays_for_good():
+    arch = built(90, 0.9, 27, ratio=1 + 1e-6)
+    world = world_of(arch, 0.9)
+    start = world.poses()
+    world.hold(1)
+    world.advance(300)
+    assert np.abs(world.poses() - start).max() < 1e-10
+
+
+def test_a_mirrored_arch_moves_as_the_mirror_image():
+    world = world_of(built(90, 0.9, 20, ratio=0.9), 0.9)
+    world.hold(1)
+    world.advance(60)
+    moved = world.poses()
+    mirrored = moved[::-1] * np.array([-1.0, 1.0, -1.0])
+    assert np.abs(moved - mirrored).max() < 1e-6
+    assert np.abs(moved[:, 2]).max() > 1e-3
+
+
+def test_scale_and_density_change_nothing():
+    arch = built(90, 0.9, 20, ratio=0.9)
+    other = replace(arch, radius=64.0, depth=0.25, specific_weight=16_000.0)
+    runs = []
+    for one in (arch, other):
+        world = world_of(one, 0.9)
+        world.hold(1)
+        world.advance(50)
+        runs.append(world.poses())
+    assert np.abs(runs[0] - runs[1]).max() < 1e-9
+
+
+def test_it_is_repeatable_bit_by_bit():
+    arch = built(90, 0.37, 20, ratio=0.95)
+    hashes = {
+        simulate(arch, mu=0.37, method="direct", duration=1.0).state_hash for _ in range(2)
+    }
+    assert len(hashes) == 1
+
+
+def test_over_its_residual_the_answer_is_undecided():
+    setup = Setup.of(built(90, 0.9, 20, ratio=0.9), 0.9, "direct")
+    settings = replace(setup.settings, residual=0.0)
+    world = replace(setup, settings=settings).world()
+    assert onset(world, setup.assembly, settings).verdict is Verdict.UNDECIDED
+    assert not trusted(world, settings)
+
+
+def test_a_recording_keeps_its_quality(tmp_path):
+    recording = simulate(built(90, 0.9, 20, ratio=0.9), mu=0.9, method="direct", duration=1.5)
+    path = tmp_path / "run.npz"
+    recording.save(path)
+    quality = load_recording(path).quality
+    assert quality == recording.quality
+    assert 0 < quality.residual < 1e-8
+    assert 0 <= quality.penetration < 1e-5
+
+
+def test_onset_and_motion_agree_close_to_the_limit():
+    for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
+        seen = trial(built(90, 0.9, 12, ratio=ratio), 0.9, "direct")
+        assert seen.verdict is expected
+        assert seen.motion.verdict is expected

@@ -1,0 +1,126 @@
+"""Order of the direct engine's time stepping on motions with a known course."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from blocksim.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.engines.direct import Blocks, Direct
+
+STEPS = (0.02, 0.01, 0.005, 0.0025)
+
+
+def standing_block(width, height, slope=0.0):
+    """One block on a plane that falls to the right."""
+    along = np.array([math.cos(slope), -math.sin(slope)])
+    up = np.array([math.sin(slope), math.cos(slope)])
+    left, right = -width / 2 * along, width / 2 * along
+    corners = [left, right, right + height * up, left + height * up]
+    block = Block(
+        vertices=np.array(corners),
+        centre=height / 2 * up,
+        mass=1.0,
+        inertia=(width**2 + height**2) / 12,
+        depth=1.0,
+    )
+    # A wide joint would end where the block does: the plane ends there too, which a slide
+    # shorter than the block does not notice.
+    joint = Joint(before=SUPPORT, after=0, inner=right, outer=left)
+    return Assembly(blocks=(block,), joints=(joint,), size=1.0), along
+
+
+def world_of(assembly, mu, step):
+    settings = replace(Direct().settings(assembly), step=step)
+    return Blocks(assembly, mu, settings)
+
+
+def order(errors):
+    return np.polyfit(np.log(STEPS), np.log(errors), 1)[0]
+
+
+@pytest.mark.parametrize("mu", [1e-9, 0.2, 0.5])
+def test_a_block_slides_down_a_slope(mu):
+    slope, time = math.radians(35), 0.5
+    fall = math.sin(slope) - mu * math.cos(slope)
+    errors = []
+    for step in STEPS:
+        assembly, along = standing_block(1.0, 0.2, slope)
+        world = world_of(assembly, mu, step)
+        start = world.poses()
+        world.advance(round(time / step))
+        moved = world.poses() - start
+        errors.append(abs(moved[0, :2] @ along - fall * time**2 / 2))
+        # The velocity is exact, and nothing else moves.
+        assert world.velocities[0, :2] @ along == pytest.approx(fall * time, abs=1e-8)
+        assert abs(moved[0, 2]) < 1e-9
+    assert order(errors) == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_block_stays_on_a_slope_it_can_hold():
+    slope = math.radians(35)
+    assembly, _ = standing_block(1.0, 0.2, slope)
+    for ratio, stays in ((1 + 1e-9, True), (1 - 1e-9, False)):
+        world = world_of(assembly, ratio * math.tan(slope), 0.01)
+        assert (np.abs(world.hold(1)).max() < 1e-11) == stays
+
+
+def test_a_sliding_block_stops_where_friction_has_used_its_energy():
+    mu, speed = 0.4, 0.3
+    way = speed**2 / (2 * mu)
+    errors = []
+    for step in STEPS:
+        assembly, along = standing_block(1.0, 0.2)
+        world = world_of(assembly, mu, step)
+        start = world.poses()
+        world.push(np.array([[speed, 0.0, 0.0]]))
+        world.advance(round(2.0 / step))
+        assert np.abs(world.velocities).max() < 1e-12
+        errors.append(abs((world.poses() - start)[0, :2] @ along - way))
+    assert order(errors) == pytest.approx(1.0, abs=0.3)
+
+
+def test_a_block_rocks_about_its_corner():
+    width, height, spin, time = 0.4, 1.0, -0.6, 0.6
+    radius, lean = math.hypot(width, height) / 2, math.atan2(width, height)
+    inertia = (width**2 + height**2) / 12 + radius**2
+
+    def turn(_, state):
+        return [state[1], -radius / inertia * math.sin(lean - state[0])]
+
+    exact = solve_ivp(turn, (0, time), [0.0, -spin], rtol=1e-12, atol=1e-14).y[0, -1]
+    errors = []
+    for step in STEPS:
+        assembly, _ = standing_block(width, height)
+        world = world_of(assembly, 5.0, step)
+        # About the right corner, which stays.
+        world.push(np.array([[-spin * height / 2, -spin * width / 2, spin]]))
+        world.advance(round(time / step))
+        errors.append(abs(-world.poses()[0, 2] - exact))
+        assert world.quality().penetration < 10 * step**2
+    assert exact > 0.1
+    assert order(errors) == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_rocking_block_loses_energy_at_the_impact_only_as_housner_says():
+    # Angular velocity after over before: 1 - 3/2 sin(lean)^2 for a slender block.
+    width, height, spin = 0.2, 1.0, -0.1
+    lean = math.atan2(width, height)
+    assembly, _ = standing_block(width, height)
+    ratios = []
+    for step in (0.002, 0.0005):
+        world = world_of(assembly, 5.0, step)
+        world.push(np.array([[-spin * height / 2, -spin * width / 2, spin]]))
+        rates = []
+        while not rates or abs(world.poses()[0, 2]) < 0.2:
+            world.advance(1)
+            rates.append(world.velocities[0, 2])
+            if world.poses()[0, 2] > 1e-3 or len(rates) * step > 5:
+                break
+        rates = np.array(rates)
+        at = int(np.argmax(np.abs(np.diff(rates))))
+        # An impact within a step takes two: one up to the touch, one that stops there.
+        ratios.append(rates[at + 2] / rates[at - 1])
+    assert ratios[-1] == pytest.approx(1 - 1.5 * math.sin(lean) ** 2, abs=0.01)
