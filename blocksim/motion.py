@@ -6,8 +6,9 @@ of sqrt(r/g):
 
 - *collapses* as soon as d > `MOVED`;
 - *stands* if d < `rest` of the settings at time `QUIET`. Near the limit an unstable arch
-  starts slowly, but its displacement grows e-fold in about half a unit of time: from an
-  acceleration of 1e-6 g it would have passed `MOVED` by then;
+  starts slowly, but its displacement grows e-fold in about half a unit of time: with the
+  rest of 1e-5 of an impulse engine, from an acceleration of 1e-6 g it would have passed
+  `MOVED` by then;
 - otherwise it is watched until `LONGEST` and is then *undecided*: it creeps if its
   displacement grew less than threefold over the second half (steady drift doubles it), or
   else starts too slowly.

@@ -217,13 +217,17 @@ class _Step:
             x, found = self._minimise(x, forces, self._offset + widened, stiffness)
             violation = np.abs(found - forces).max() / stiffness
             forces = found
-            if violation <= self._precision * max(1.0, np.abs(x).max()):
+            if violation <= self._least_violation(x):
                 break
             # Slow progress asks for stiffness, at the cost of digits.
             stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
             last = violation
             stiffness = stiffer * self._stiffness(x)
         return x, forces
+
+    def _least_violation(self, x: Array) -> float:
+        size = float(np.abs(x).max())
+        return max(self._precision * max(1.0, size), 10 * ROUND_OFF * size)
 
     def _stiffness(self, x: Array) -> float:
         steep = max(1.0, self._friction)
@@ -281,7 +285,7 @@ class _Step:
             found = np.maximum(trial, 0.0)
             violation = np.abs(found - forces).max() / stiffness
             forces = found
-            if violation <= self._precision * max(1.0, np.abs(x).max()):
+            if violation <= self._least_violation(x):
                 return x, forces
             stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
             last = violation

@@ -26,8 +26,12 @@ TIE = 1e-12
 """Thrusts and angles closer than this coincide."""
 CROWN_TIE = 1e-6
 """Inner hinges closer to the crown are at it: the angle goes as the root of a thrust."""
+NO_THRUST = 1e-20
+"""Thrust that counts as none: it grows as the square of the distance from alpha_l."""
 FLAT = 0.05
 """Half-angle below which eta ~ alpha^4/48 drowns in the round-off of these formulas [rad]."""
+CROWN_ETA: dict[Weight, float] = {"centreline": 1.0, "sector": 6 * (math.sqrt(4 / 3) - 1)}
+"""eta_crown without thrust: the limit of `touching_eta` as the inner hinge nears the crown."""
 TINY = 4 * np.finfo(float).eps
 
 
@@ -132,6 +136,8 @@ def inner_hinge(
     eta, beta_r : float
         The largest `touching_eta` over the intrados, where eq. (4) holds.
     """
+    if extrados == 0 and thrust == 0:
+        return CROWN_ETA[weight], 0.0
     start = TINY if extrados == 0 else 0.0
 
     def eta_at(beta: float) -> float:
@@ -207,7 +213,7 @@ def least_thickness(half_angle: float, mu: float, weight: Weight = "centreline")
     eta, beta_r = max((crown, crown_hinge), (shoulder, shoulder_hinge))
     modes: list[Mode] = []
     if abs(thrust - free) <= TIE:
-        modes.append(Mode.RRR if free > 0 else Mode.R)
+        modes.append(Mode.RRR if free > NO_THRUST else Mode.R)
     if upper <= free + TIE:
         modes.append(Mode.SRR)
     if lower >= free - TIE and thrust > TIE:
