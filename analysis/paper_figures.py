@@ -27,19 +27,12 @@ from blocksim.theory.map import divide_friction, special_angles
 from blocksim.view.archfigure import arch_figure, picture_of_theory
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapfigure import draw_regions, save_figure
-from blocksim.view.style import FONT, MODES
+from blocksim.view.style import FONT
 
 TOLERANCE = 1e-12
 DASHED = (0, (5, 2))
 ZOOMS = {6: (0.0, 2.0), 7: (0.0, 1.0), 8: (0.6, 2.0)}
-FILLED = {9: ((0, 4), (0, 2)), 10: ((0, 4), (0, 2)), 11: ((1.2, 2.4), (0.6, 1.2))}
-ZOOM_NAMES = {
-    Mode.SS: (1.45, 1.0),
-    Mode.RS: (2.15, 1.1),
-    Mode.RRS: (2.1, 0.87),
-    Mode.RRR: (2.0, 0.66),
-    Mode.SRR: (1.235, 0.618),
-}
+FILLED = (9, 10, 11)
 
 TABLE_1 = {
     "T": (0.6796047320988860, 1.415270827756886, 2.487161163767182, 0.09780581933963814,
@@ -225,19 +218,9 @@ def _figure(number: int) -> Figure:
     if number in FILLED:
         figure = Figure(figsize=(8.6, 7.0), layout="constrained")
         axes = figure.add_subplot()
-        draw_regions(axes)
-        axes.set(xlim=FILLED[number][0], ylim=FILLED[number][1])
+        draw_regions(axes, central=number == 11)
         for text in axes.texts:
-            # Fig. 10 is without words; the zoom has its own places for them.
-            text.set_visible(number == 9 or (number == 11 and len(text.get_text()) == 1))
-        if number == 11:
-            axes.texts[-1].set_visible(False)  # B is outside
-            for mode, (x, y) in ZOOM_NAMES.items():
-                axes.text(x, y, mode.value, color=MODES[mode].colour, fontsize=12,
-                          fontweight="bold", ha="center", va="center")  # fmt: skip
-            axes.annotate("rsr", (2.2, 0.974), xytext=(2.24, 1.02), fontweight="bold",
-                          color=MODES[Mode.RSR].colour,
-                          arrowprops={"arrowstyle": "-", "lw": 0.8})  # fmt: skip
+            text.set_visible(number != 10)  # Fig. 10 is without words
         return figure
     rows = {3: 3, 4: 2, 5: 3}[number]
     figure = Figure(figsize=(7.0, 2.6 * rows), layout="constrained")

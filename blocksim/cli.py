@@ -9,7 +9,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 from rich.console import Console
@@ -20,8 +20,10 @@ from blocksim.arch import GRAVITY, Arch, is_number, require
 from blocksim.bracket import bracket as ask_bracket
 from blocksim.check import check as ask_check
 from blocksim.doctor import examine
+from blocksim.engines import ENGINES
 from blocksim.errors import MISSING, BlocksimError, InputError
 from blocksim.files import make_folder, write_whole
+from blocksim.ladder import CHOICES
 from blocksim.progress import Progress as Report
 from blocksim.report.answers import (
     bracket_lines,
@@ -31,10 +33,14 @@ from blocksim.report.answers import (
     ratio,
 )
 from blocksim.scenario import Scenario, load_scenario, shipped
+from blocksim.theory import least_thickness
 from blocksim.trial import simulate as record_motion
 from blocksim.validate import Row, scenarios
 from blocksim.validate import validate as run_validation
 from blocksim.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 app = typer.Typer(
     name="blocksim",
@@ -60,7 +66,8 @@ Voussoirs = Annotated[int | None, typer.Option(help="Number of voussoirs, 3 to 1
 WeightOption = Annotated[
     str | None, typer.Option(help="Where weight acts: centreline or sector [centreline].")
 ]
-MethodOption = Annotated[str, typer.Option(help="auto, theory, limit or pymunk.")]
+MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
+Picture = Annotated[Path, typer.Option("--out", help="Picture to write, .svg or .png.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 
@@ -141,7 +148,7 @@ def simulate(
     mu: Mu = None,
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
-    method: Annotated[str, typer.Option(help="An engine: pymunk.")] = "pymunk",
+    method: Annotated[str, typer.Option(help=f"An engine: {', '.join(ENGINES)}.")] = "pymunk",
     seconds: Annotated[
         float | None, typer.Option(help="Time to record [s]; until decided if left out.")
     ] = None,
@@ -222,14 +229,70 @@ def _table(rows: list[Row]) -> Table:
 
 @app.command(name="map")
 def draw_map(
-    out: Annotated[Path, typer.Option(help="Picture to write, .svg or .png.")],
+    out: Picture,
+    lines: Annotated[
+        bool, typer.Option("--lines", help="Dividing lines and lines of equal alpha instead.")
+    ] = False,
+    zoom: Annotated[
+        str, typer.Option(help="whole, central; with --lines: whole, lower, upper.")
+    ] = "whole",
 ) -> None:
     """Draw the analytical map of least thickness and collapse modes."""
-    from blocksim.view.mapfigure import map_figure, save_figure
+    from blocksim.view.linemap import line_map_figure
+    from blocksim.view.mapfigure import map_figure
 
+    zooms = LINE_ZOOMS if lines else {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
+    require(zoom in zooms, "--zoom", zoom, f"one of {', '.join(zooms)}")
+    kind = _picture_kind(out)
+    figure = line_map_figure(zooms[zoom]) if lines else map_figure(central=zoom == "central")
+    _save_picture(figure, out, kind)
+
+
+LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
+
+
+@app.command()
+def render(
+    out: Picture,
+    scene: Scene = None,
+    alpha: Alpha = None,
+    eta: Eta = None,
+    mu: Mu = None,
+    voussoirs: Voussoirs = None,
+    weight: WeightOption = None,
+) -> None:
+    """Draw an arch with its lines of thrust and friction and its mechanism.
+
+    At the thickness given, the voussoirs as built; with none given, the continuous arch
+    at its least thickness, in each of its collapse modes.
+    """
+    from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
+
+    kind = _picture_kind(out)
+    asked = _question(scene, alpha, mu, voussoirs, weight)
+    ratio_given = asked.eta if eta is None else eta
+    with _options():
+        if ratio_given is not None:
+            pictures = [picture_of_arch(asked.arch(ratio_given), asked.mu)]
+        else:
+            critical = least_thickness(asked.half_angle, asked.mu, asked.weight)
+            if critical.eta is None:
+                raise InputError("eta", MISSING, "given where no thickness stands")
+            arch = asked.half_angle, asked.mu, asked.weight
+            pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
+    _save_picture(arch_figure(pictures), out, kind)
+
+
+def _picture_kind(out: Path) -> str:
     kind = out.suffix.removeprefix(".")
     require(kind in {"svg", "png"}, "--out", str(out), "a file name ending in .svg or .png")
-    write_whole(out, lambda file: save_figure(map_figure(), file, kind))
+    return kind
+
+
+def _save_picture(figure: Figure, out: Path, kind: str) -> None:
+    from blocksim.view.mapfigure import save_figure
+
+    write_whole(out, lambda file: save_figure(figure, file, kind))
     _say(f"wrote {out}")
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import matplotlib as mpl
 import numpy as np
@@ -25,6 +25,22 @@ from blocksim.view.style import FONT, MISS, MODES, UNNAMED
 SMALLEST_MU, LARGEST_MU = 0.002, 4.0
 LAST_ANGLE = 2.635
 """Half-angle at which the line of first sliding has left the picture [rad]."""
+CENTRAL = ((1.2, 2.4), (0.6, 1.2))
+"""Friction and thickness shown by the central zoom (Fig. 11)."""
+NAMES = {
+    Mode.RRR: (2.3, 0.35),
+    Mode.SS: (0.75, 1.35),
+    Mode.SRR: (0.72, 0.355),
+    Mode.RRS: (2.45, 0.885),
+    Mode.RS: (3.2, 1.45),
+}
+CENTRAL_NAMES = {
+    Mode.RRR: (2.0, 0.66),
+    Mode.SS: (1.45, 1.0),
+    Mode.SRR: (1.235, 0.618),
+    Mode.RRS: (2.1, 0.87),
+    Mode.RS: (2.15, 1.1),
+}
 POINTS = 160
 """Points on each line."""
 
@@ -54,13 +70,17 @@ class MapPoint:
     note: str
 
 
-def map_figure(points: Sequence[MapPoint] = (), *, title: str = "") -> Figure:
+def map_figure(
+    points: Sequence[MapPoint] = (), *, title: str = "", central: bool = False
+) -> Figure:
     """Draw the regions of the map (Fig. 9), with points in front.
 
     Parameters
     ----------
     points : sequence of MapPoint
     title : str
+    central : bool
+        Only the middle, where most regions meet (Fig. 11).
 
     Returns
     -------
@@ -70,7 +90,7 @@ def map_figure(points: Sequence[MapPoint] = (), *, title: str = "") -> Figure:
         figure = Figure(figsize=(11.0, 7.2) if points else (8.6, 7.0), layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.add_subplot()
-        draw_regions(axes)
+        draw_regions(axes, central=central)
         _draw_points(axes, points)
         axes.set_title(title or "Least thickness and collapse modes of circular arches", pad=12)
         if points:
@@ -78,14 +98,17 @@ def map_figure(points: Sequence[MapPoint] = (), *, title: str = "") -> Figure:
     return figure
 
 
-def draw_regions(axes: Axes) -> None:
-    """Fill the regions of the six modes at finite friction, and name them."""
+def draw_regions(axes: Axes, *, central: bool = False) -> None:
+    """Fill the regions of the six modes at finite friction, and name them (Figs 9-11)."""
     marks = theory.landmarks()
-    mu = np.linspace(SMALLEST_MU, LARGEST_MU, 4 * POINTS)
-    divide = regions.divide(np.linspace(SMALLEST_MU, marks["B"].mu, POINTS))
+    corners = [marks[name].mu for name in "TSJ"]
+    mu = np.sort([*np.linspace(SMALLEST_MU, LARGEST_MU, 4 * POINTS), *corners])
+    divide = regions.divide(
+        np.sort([*np.linspace(SMALLEST_MU, marks["B"].mu, POINTS), *corners])
+    )
     # Denser towards the wide arches, where friction runs off to infinity.
     angles = LAST_ANGLE * (1 - np.linspace(0.95, 0.0, POINTS) ** 2)
-    first = regions.first_sliding(angles)
+    first = regions.first_sliding(np.sort([*angles, marks["T"].half_angle]))
     equal = regions.equal_angles(np.linspace(marks["S"].mu + 1e-6, LARGEST_MU, POINTS // 2))
     crown = regions.crown_hinge(np.linspace(marks["J"].mu + 1e-6, LARGEST_MU, POINTS // 2))
 
@@ -106,8 +129,10 @@ def draw_regions(axes: Axes) -> None:
         axes.fill_between(mu, bottom, ceiling, where=where, color=MODES[mode].tint, lw=0)
     for curve, style in ((divide, "-"), (first, "-"), (equal, ":"), (crown, "--")):
         axes.plot(curve.mu, curve.eta, style, color="#222222", lw=1.1)
-    _name_regions(axes)
+    _name_regions(axes, central=central)
     for mark in marks.values():
+        if central and mark.name == "B":
+            continue
         axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec="#222222", zorder=4)
         place = {"S": (-11, -9), "B": (6, -12)}.get(mark.name, (-11, 3))
         axes.annotate(
@@ -118,26 +143,28 @@ def draw_regions(axes: Axes) -> None:
             fontweight="bold",
             annotation_clip=False,
         )
-    axes.set(xlim=(0, LARGEST_MU), ylim=(0, 2.0))
+    across, up = CENTRAL if central else ((0.0, LARGEST_MU), (0.0, 2.0))
+    axes.set(xlim=across, ylim=up)
     axes.set_xlabel(r"friction coefficient $\mu$")
     axes.set_ylabel(r"thickness-to-radius ratio $\eta = t/r$")
 
 
-def _name_regions(axes: Axes) -> None:
-    places = {
-        Mode.RRR: (2.3, 0.35),
-        Mode.SS: (0.75, 1.35),
-        Mode.SRR: (0.72, 0.355),
-        Mode.RRS: (2.45, 0.885),
-        Mode.RS: (3.2, 1.45),
-    }
+def _name_regions(axes: Axes, *, central: bool) -> None:
+    """Write each mode into its region; the thin one gets a line to its name."""
+    places = CENTRAL_NAMES if central else NAMES
     for mode, (x, y) in places.items():
-        axes.text(x, y, mode.value, color=MODES[mode].colour, ha="center", va="center",
-                  fontsize=13 if mode is not Mode.SRR else 10, fontweight="bold")  # fmt: skip
+        size = 10 if mode is Mode.SRR else 13
+        style: dict[str, Any] = {
+            "color": MODES[mode].colour,
+            "fontweight": "bold",
+            "fontsize": size,
+        }
+        axes.text(x, y, mode.value, ha="center", va="center", **style)
+    target, words = ((2.2, 0.972), (2.24, 1.02)) if central else ((3.4, 0.987), (3.4, 1.16))
     axes.annotate(
         Mode.RSR.value,
-        (3.4, 0.987),
-        xytext=(3.4, 1.16),
+        target,
+        xytext=words,
         ha="center",
         color=MODES[Mode.RSR].colour,
         fontweight="bold",
