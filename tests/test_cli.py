@@ -25,7 +25,7 @@ def blocksim(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedPr
     )
 
 
-@pytest.mark.parametrize("method", ["auto", "theory", "limit", "pymunk"])
+@pytest.mark.parametrize("method", ["auto", "theory", "limit", "direct", "pymunk"])
 @pytest.mark.parametrize(
     ("eta", "verdict", "code"), [("0.12", "stands", 0), ("0.1", "collapses", 1)]
 )
@@ -113,6 +113,9 @@ WRONG = {
     "--out in no folder": ("simulate", *ARCH, "--eta", ".1", "--out", "none/x.npz"),
     "--out no npz": ("simulate", *ARCH, "--eta", ".1", "--out", "x.mp4"),
     "map no picture": ("map", "--out", "map.docx"),
+    "map no such zoom": ("map", "--out", "map.png", "--zoom", "central", "--lines"),
+    "render nothing stands": ("render", "semicircle_sliding", "--out", "x.png"),
+    "render no picture": ("render", "semicircle", "--out", "x.txt"),
     "map unwritable": ("map", "--out", "none/map.png"),
     "validate unwritable": ("validate", "--quick", "--out", "/proc/none"),
 }
@@ -162,3 +165,27 @@ def test_map_and_doctor(tmp_path: Path) -> None:
     assert out.read_bytes() == first
     assert "pymunk" in blocksim("doctor").stdout
     assert "fig18_triple_point" in blocksim("scenarios").stdout
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("map", "--zoom", "central"),
+        ("map", "--lines", "--zoom", "lower"),
+        ("render", "fig18_triple_point"),
+        ("render", "semicircle", "--eta", "0.1"),
+        ("render", "semicircle", "--eta", "0.12", "--weight", "sector"),
+    ],
+)
+def test_pictures_are_written_whole(arguments: tuple[str, ...], tmp_path: Path) -> None:
+    out = tmp_path / "picture.png"
+    assert blocksim(*arguments, "--out", str(out)).returncode == 0
+    assert out.read_bytes().startswith(b"\x89PNG")
+    assert [path.name for path in tmp_path.iterdir()] == ["picture.png"]
+
+
+def test_direct_answers_and_brackets_finely() -> None:
+    done = blocksim("bracket", *ARCH, "--method", "direct", "--tol", "1e-7", "--json")
+    answer = json.loads(done.stdout)
+    assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
+    assert answer["eta_high"] - answer["eta_low"] <= 1e-7 * answer["eta_high"]

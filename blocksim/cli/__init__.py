@@ -1,0 +1,3 @@
+"""The command line: options to questions, answers to text."""
+
+from blocksim.cli.commands import main as main

@@ -1,0 +1,100 @@
+"""What a terminal shows: lines, tables, a bar while something goes on, pictures saved."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from blocksim.arch import require
+from blocksim.files import write_whole
+from blocksim.progress import Progress as Report
+from blocksim.report.answers import ratio
+from blocksim.validate import Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDE = 128
+"""Characters in a line of the widest table."""
+
+
+@contextmanager
+def progress() -> Generator[Report]:
+    """Show a bar on standard error while something goes on."""
+    columns = (TextColumn("{task.description:34}"), BarColumn(), TimeElapsedColumn())
+    console = Console(stderr=True)
+    hidden = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
+        task = bar.add_task("", total=1.0)
+
+        def report(share: float, what: str) -> None:
+            bar.update(task, completed=share, description=what)
+
+        yield report
+
+
+def validation_table(rows: list[Row]) -> Table:
+    """Lay out validation rows for a terminal."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    words = {"scenario", "published mode", "seen"}
+    for heading in ("#", "scenario", "alpha", "mu", "n", "published mode", "seen", "published",
+                    "limit", "bracket", "error", "s"):  # fmt: skip
+        table.add_column(heading, justify="left" if heading in words else "right", no_wrap=True)
+    for number, row in enumerate(rows, start=1):
+        middle = row.eta_low
+        if row.eta_low is not None and row.eta_high is not None:
+            middle = (row.eta_low + row.eta_high) / 2
+        table.add_row(
+            str(number),
+            row.scenario,
+            f"{math.degrees(row.half_angle):.1f}",
+            f"{row.mu:.4g}",
+            str(row.voussoirs),
+            "/".join(row.modes_published),
+            (row.mode_observed or "-") + (" !" if row.miss else ""),
+            ratio(row.eta_published),
+            ratio(row.eta_limit),
+            "none" if row.eta_high is None and row.eta_limit is None else ratio(middle),
+            "-" if row.error is None else f"{row.error:+.3%}",
+            f"{row.wall_s:.1f}",
+        )
+    return table
+
+
+def picture_kind(out: Path) -> str:
+    """Return png or svg, by the file's ending."""
+    kind = out.suffix.removeprefix(".")
+    require(kind in {"svg", "png"}, "--out", str(out), "a file name ending in .svg or .png")
+    return kind
+
+
+def save_picture(figure: Figure, out: Path, kind: str) -> None:
+    """Write a picture whole and say so."""
+    from blocksim.view.mapfigure import save_figure
+
+    write_whole(out, lambda file: save_figure(figure, file, kind))
+    say(f"wrote {out}")
+
+
+def answer_with(record: dict[str, object], lines: list[str], *, as_json: bool) -> None:
+    """Print an answer, as one JSON object or as lines for people."""
+    say(json.dumps(record, allow_nan=False) if as_json else "\n".join(lines))
+
+
+def show(table: Table) -> None:
+    """Print a table; a narrow window wraps its lines rather than losing columns."""
+    Console(width=max(Console().width, WIDE)).print(table)
+
+
+def say(text: str) -> None:
+    """Print a line on standard output."""
+    typer.echo(text)

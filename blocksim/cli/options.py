@@ -1,0 +1,107 @@
+"""The options that questions share, and how they override a scenario."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from blocksim.arch import Arch, is_number, require
+from blocksim.errors import MISSING, InputError
+from blocksim.ladder import CHOICES
+from blocksim.scenario import Scenario, load_scenario
+
+Scene = Annotated[str | None, typer.Argument(help="Scenario: a .toml file or a shipped name.")]
+Alpha = Annotated[float | None, typer.Option(help="Half-angle of embrace [deg], 0 to 180.")]
+Eta = Annotated[float | None, typer.Option(help="Thickness-to-radius ratio, up to 2.")]
+Mu = Annotated[float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")]
+Voussoirs = Annotated[int | None, typer.Option(help="Number of voussoirs, 3 to 1000 [27].")]
+WeightOption = Annotated[
+    str | None, typer.Option(help="Where weight acts: centreline or sector [centreline].")
+]
+MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
+Picture = Annotated[Path, typer.Option("--out", help="Picture to write, .svg or .png.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
+
+
+NO_SCENARIO = Scenario(
+    name="",
+    title="",
+    source="",
+    half_angle=math.pi / 2,
+    mu=math.inf,
+    voussoirs=27,
+    weight="centreline",
+    eta=None,
+    radius=1.0,
+    depth=1.0,
+    specific_weight=20_000.0,
+    expected_modes=(),
+    expected_eta=None,
+    quick=False,
+)
+"""Defaults of the options; half-angle and friction have none and are always replaced."""
+
+
+def question(
+    scene: str | None,
+    alpha: float | None,
+    mu: float | None,
+    voussoirs: int | None,
+    weight: str | None,
+) -> Scenario:
+    """Merge a scenario, where there is one, with the options that override it."""
+    if alpha is not None:
+        ok = is_number(alpha, 0, math.nextafter(180, 0))
+        require(ok, "--alpha", alpha, "above 0 and below 180 deg")
+    if scene is None:
+        require(alpha is not None, "--alpha", MISSING, "given where no scenario is")
+        require(mu is not None, "--mu", MISSING, "given where no scenario is")
+    asked = load_scenario(scene) if scene is not None else NO_SCENARIO
+    changes: dict[str, object] = {
+        "half_angle": None if alpha is None else math.radians(alpha),
+        "mu": mu,
+        "voussoirs": voussoirs,
+        "weight": weight,
+    }
+    return replace(asked, **{key: value for key, value in changes.items() if value is not None})
+
+
+def arch_and_friction(
+    scene: str | None,
+    alpha: float | None,
+    eta: float | None,
+    mu: float | None,
+    voussoirs: int | None,
+    weight: str | None,
+) -> tuple[Arch, float]:
+    """Return the arch asked about, at its thickness, and its friction."""
+    asked = question(scene, alpha, mu, voussoirs, weight)
+    ratio_given = asked.eta if eta is None else eta
+    if ratio_given is None:
+        raise InputError("--eta", MISSING, "given where no scenario sets it")
+    with named_options():
+        return asked.arch(ratio_given), asked.mu
+
+
+@contextmanager
+def named_options() -> Generator[None]:
+    """Name the option, not the field, in what is said of wrong input."""
+    try:
+        yield
+    except InputError as error:
+        if error.where is None and error.field in {
+            "eta",
+            "mu",
+            "voussoirs",
+            "weight",
+            "method",
+            "tol",
+        }:
+            raise InputError(f"--{error.field}", error.value, error.allowed) from None
+        raise
