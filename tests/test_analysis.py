@@ -29,6 +29,19 @@ def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> N
     assert (tmp_path / "random_arches.png").stat().st_size > 0
 
 
+def test_the_gain_of_direct_is_taken_at_equal_time(tmp_path: Path) -> None:
+    module = study("direct_against_pymunk")
+    point = module.Point
+    points = [
+        point("pymunk", 1e-2, 1e-3, 1.0),
+        point("pymunk", 1e-4, 2e-5, 5.0),
+        point("direct", 1e-6, 1e-7, 4.0),
+        point("direct", 1e-8, 1e-9, 9.0),
+    ]
+    assert abs(module.gain(points) / 200 - 1) < 1e-12
+    assert set(module.main(tmp_path, quick=True)) == {"semicircle, n = 9"}
+
+
 def test_every_study_is_listed_with_its_claim() -> None:
     listed = (STUDIES / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in STUDIES.glob("*.py") if path.name not in listed] == []
