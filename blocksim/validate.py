@@ -48,7 +48,7 @@ class Row:
     mode_observed : Mode or None
         In a moving run 1 % below the bracket.
     below, above : Verdict or None
-        1 % below and above the bracket, by onset test and moving run.
+        1 % below and above the bracket, by onset test and moving run; None where not tried.
     confirmed : bool or None
         Whether moving runs confirm both ends of the bracket.
     miss : str
@@ -143,8 +143,9 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
         seen = trial(scenario.arch(under), scenario.mu, engine)
         mode, below = seen.mode, seen.verdict
-    if found.centre is not None:
-        over = min(found.centre * (1 + ASIDE), ETA_MAX)
+    # Thicker than eta = 2 there is no arch to try.
+    if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
+        over = found.centre * (1 + ASIDE)
         above = trial(scenario.arch(over), scenario.mu, engine).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
@@ -196,8 +197,8 @@ def _misses(
         misses.append(f"mode {mode or 'unnamed'}, limit says {found.mode_limit or 'unnamed'}")
     if below is not Verdict.COLLAPSES:
         misses.append(f"{below or 'nothing tried'} 1 % below")
-    if found.eta_high is not None and above is not Verdict.STANDS:
-        misses.append(f"{above or 'nothing tried'} 1 % above")
+    if above not in {Verdict.STANDS, None}:
+        misses.append(f"{above} 1 % above")
     return misses
 
 

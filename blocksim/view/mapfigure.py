@@ -41,6 +41,10 @@ CENTRAL_NAMES = {
     Mode.RRS: (2.1, 0.87),
     Mode.RS: (2.15, 1.1),
 }
+LETTERS = {"T": (-11, 3), "S": (-11, -9), "J": (-11, 3), "B": (6, -12)}
+"""Where the letter of each landmark begins, in points from it."""
+POINT = (0.009, 0.0052)
+"""Friction and thickness that a typographic point covers on the whole map, about."""
 POINTS = 160
 """Points on each line."""
 
@@ -134,11 +138,10 @@ def draw_regions(axes: Axes, *, central: bool = False) -> None:
         if central and mark.name == "B":
             continue
         axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec="#222222", zorder=4)
-        place = {"S": (-11, -9), "B": (6, -12)}.get(mark.name, (-11, 3))
         axes.annotate(
             mark.name,
             (mark.mu, mark.eta),
-            xytext=place,
+            xytext=LETTERS[mark.name],
             textcoords="offset points",
             fontweight="bold",
             annotation_clip=False,
@@ -173,7 +176,12 @@ def _name_regions(axes: Axes, *, central: bool) -> None:
 
 
 def _draw_points(axes: Axes, points: Sequence[MapPoint]) -> None:
+    taken = [(point.mu, point.eta) for point in points]
+    for name, mark in theory.landmarks().items():
+        x, y = LETTERS[name]
+        taken.append((mark.mu + (x + 4) * POINT[0], mark.eta + (y + 4) * POINT[1]))
     for point in points:
+        place = _free_place(point, taken)
         style = MODES[point.mode] if point.mode else UNNAMED
         axes.plot(
             point.mu,
@@ -191,12 +199,34 @@ def _draw_points(axes: Axes, points: Sequence[MapPoint]) -> None:
         axes.annotate(
             point.label,
             (point.mu, point.eta),
-            xytext=(8, -3),
+            xytext=place,
             textcoords="offset points",
+            ha="center",
+            va="center",
             fontsize=8,
             zorder=6,
             annotation_clip=False,
         )
+
+
+def _free_place(point: MapPoint, taken: list[tuple[float, float]]) -> tuple[float, float]:
+    """Choose where beside a point its label hides nothing, and take that place.
+
+    Offsets are in points.
+    """
+    across, up = POINT
+    for distance in (13.0, 20.0, 28.0, 37.0):
+        for turn in (0, 1, 7, 2, 6, 3, 5, 4):
+            x, y = distance * np.cos(turn * np.pi / 4), distance * np.sin(turn * np.pi / 4)
+            place = point.mu + x * across, point.eta + y * up
+            if place[1] < 2.0 and all(
+                abs(place[0] - mu) > 11 * across or abs(place[1] - eta) > 10 * up
+                for mu, eta in taken
+                if (mu, eta) != (point.mu, point.eta)
+            ):
+                taken.append(place)
+                return float(x), float(y)
+    return 13.0, 0.0
 
 
 def _legend(figure: Figure, points: Sequence[MapPoint]) -> None:
