@@ -30,9 +30,8 @@ WEIGHTS = pytest.mark.parametrize("weight", ["centreline", "sector"])
 def test_complementary_at_and_below_the_limit(
     half_angle: float, mu: float, voussoirs: int, mode: str | None, weight: str, symmetric: bool
 ) -> None:
-    eta = least_thickness(half_angle, mu, voussoirs, weight).eta
-    if eta is None:
-        pytest.skip("no thickness stands")
+    least = least_thickness(half_angle, mu, voussoirs, weight).eta
+    eta = 2.0 if least is None else least
     for share in (1.0, 0.97, 0.8):
         arch = Arch(half_angle=half_angle, eta=share * eta, voussoirs=voussoirs, weight=weight)
         found = mechanism(arch, mu, symmetric=symmetric)
@@ -40,7 +39,7 @@ def test_complementary_at_and_below_the_limit(
         assert found.rates.min() >= 0
         assert np.abs(found.strength * found.rates).max() <= 1e-13
         assert found.rates.sum() == pytest.approx(1, abs=1e-9)
-        if share == 1.0:
+        if share == 1.0 and least is not None:
             assert abs(found.extra_strength) <= 1e-12
             if weight == "centreline" and mode is not None:
                 assert found.mode == mode
