@@ -144,4 +144,5 @@ def main(out: Path, quick: bool = False) -> Outcome:
 
 
 if __name__ == "__main__":
-    print(main(Path(sys.argv[1]), quick="--quick" in sys.argv))  # noqa: T201
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/direct_coulomb")
+    sys.stdout.write(f"{main(folder)}\n")

@@ -120,6 +120,16 @@ class Assembly:
         return _frozen([block.centre for block in self.blocks], (-1, 2))
 
     @cached_property
+    def masses(self) -> Array:
+        """Mass, mass and inertia of each block, in units of the mean mass and the size.
+
+        Shape (blocks, 3), to go with motions x, y and rotation.
+        """
+        mass = np.array([block.mass for block in self.blocks])
+        inertia = np.array([block.inertia for block in self.blocks]) / self.size**2
+        return _frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
+
+    @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
         return _frozen(

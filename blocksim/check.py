@@ -130,9 +130,9 @@ def _static(arch: Arch, mu: float, least: float | None) -> tuple[Verdict, str]:
     """Apply the static theorem to the arch; the least thickness only words the reason."""
     verdict = Verdict.STANDS if limit.stands(arch, mu) else Verdict.COLLAPSES
     _, reason = _compare(arch.eta, least, "of the voussoirs as built")
-    spare = limit.slack(arch, mu)
     if verdict is Verdict.STANDS:
-        return verdict, f"{reason}; {spare:.2%} of thickness and friction could be taken away"
+        spare = limit.slack(arch, mu)
+        reason = f"{reason}; {spare:.2%} of thickness and friction could be taken away"
     return verdict, reason
 
 

@@ -120,9 +120,7 @@ def onset(
 
 def _driven(assembly: Assembly, accelerations: Array) -> bool:
     """Tell whether the weight does the work of the motion, from rest over one step."""
-    masses = np.array([block.mass for block in assembly.blocks])
-    inertias = np.array([block.inertia for block in assembly.blocks]) / assembly.size**2
-    x, y, turn = accelerations.T
-    of_weight = -float(masses @ y)
-    of_motion = float(masses @ (x**2 + y**2) + inertias @ turn**2)
+    masses = assembly.masses
+    of_weight = -float((masses[:, 1] * accelerations[:, 1]).sum())
+    of_motion = float((masses * accelerations**2).sum())
     return of_weight > WORK * of_motion

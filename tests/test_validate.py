@@ -56,7 +56,7 @@ def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None
     real = module.limit.least_thickness
 
     def shifted(*arguments: object) -> object:
-        state = real(*arguments)  # type: ignore[arg-type]
+        state = real(*arguments)
         return replace(state, eta=state.eta * 1.01, mode=Mode.SRR)
 
     monkeypatch.setattr(module.limit, "least_thickness", shifted)

@@ -90,7 +90,7 @@ def main() -> None:
 
 
 def _fail(message: str) -> NoReturn:
-    print(f"blocksim: {message}", file=sys.stderr)  # noqa: T201
+    typer.echo(f"blocksim: {message}", err=True)
     sys.exit(WRONG_INPUT)
 
 

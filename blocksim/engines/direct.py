@@ -64,15 +64,13 @@ class Blocks:
 
     def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
         size = assembly.size
-        mass = np.array([block.mass for block in assembly.blocks])
-        inertia = np.array([block.inertia for block in assembly.blocks]) / size**2
-        self._mass = np.stack([mass, mass, inertia], axis=1) / mass.mean()
+        self._mass = assembly.masses
         self._step = settings.step
         self._geometry = Geometry(assembly)
         self._problem = ContactProblem(
             self._geometry.before, self._geometry.after, self._mass, min(mu, FRICTION_CAP)
         )
-        self._poses = np.column_stack([assembly.centres / size, np.zeros(len(mass))])
+        self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
         self._velocities = np.zeros_like(self._poses)
         self._gravity = np.zeros_like(self._poses)
         self._gravity[:, 1] = -1.0

@@ -169,7 +169,7 @@ def _modes(
         # The thrust falls to nothing like a square: it is told from 0 by the angle.
         Mode.RRR: turns & (short_of_overturning >= -TIE),
         Mode.R: turns & (short_of_overturning <= TIE),
-        Mode.SRR: upper <= free + TIE,
+        Mode.SRR: (upper <= free + TIE) & ~np.isnan(thrust),
         Mode.RS: inner & at_crown,
         Mode.RRS: inner & ~at_crown & below,
         Mode.RSR: inner & above,
@@ -177,8 +177,6 @@ def _modes(
     }
     modes = np.zeros(free.shape, dtype=np.uint8)
     for mode, holds in conditions.items():
-        if mode not in {Mode.SS, Mode.RRR, Mode.R}:
-            holds = holds & ~np.isnan(thrust)  # noqa: PLW2901
         modes |= np.where(holds, BIT[mode], np.uint8(0))
     return modes
 
