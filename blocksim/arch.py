@@ -115,9 +115,10 @@ class Arch:
     def assembly(self) -> Assembly:
         """Build the voussoirs and their joints, both springings fixed.
 
-        Mass, centre of mass and inertia come from the weight model, not from the
-        chord-sided collision polygon: each joint then carries exactly the resultant
-        of the continuous arch.
+        Mass and centre of mass come from the weight model, not from the chord-sided
+        collision polygon: each joint then carries exactly the resultant of the continuous
+        arch. The inertia is that of the annular sector about its centroid in both models:
+        where the weight acts says nothing of how a voussoir turns.
 
         Returns
         -------
@@ -131,10 +132,10 @@ class Arch:
         half = self.half_angle / self.voussoirs
         arm = self.radius * self.centroid_factor * math.sin(half) / half
         mass = self.voussoir_weight / GRAVITY
-        # Polar moment about the centre of the arch (1, or 1 + eta^2/4 for the sector) less
-        # the parallel-axis term, with 1 - (sin x/x)^2 kept apart: it is x^2/3 for small x.
-        factor = self.centroid_factor
-        thick = 0.0 if self.weight == "centreline" else 1.0 + self.eta**2 / 4 - factor**2
+        # Polar moment of the sector about the centre of the arch, 1 + eta^2/4, less the
+        # parallel-axis term, with 1 - (sin x/x)^2 kept apart: it is x^2/3 for small x.
+        factor = centroid_factor(self.eta, "sector")
+        thick = 1.0 + self.eta**2 / 4 - factor**2
         inertia = mass * self.radius**2 * (thick + factor**2 * _sine_deficit(half))
         middle = (angles[:-1] + angles[1:]) / 2
         centres = arm * np.column_stack([np.sin(middle), np.cos(middle)])
