@@ -32,9 +32,8 @@ import numpy as np
 
 from blocksim import limit
 from blocksim.arch import Arch
-from blocksim.assembly import Array
+from blocksim.assembly import Array, displacement
 from blocksim.engines.direct import Blocks, Direct
-from blocksim.recording import displacement
 
 ARCHES = (
     (90.0, 0.9, 27),
@@ -79,10 +78,10 @@ def world(arch: Arch, mu: float) -> Blocks:
 
 def way(blocks: Blocks, start: Array, arch: Arch, until: float) -> float:
     """Let it move and return how far it went."""
-    gone, reach = 0.0, arch.assembly().reach / arch.radius
+    gone, assembly = 0.0, arch.assembly()
     for _ in range(round(until / 0.1)):
         blocks.advance(10)
-        gone = float(displacement(blocks.poses() - start, reach))
+        gone = float(displacement(blocks.poses() - start, assembly))
         if gone > MOVED or np.abs(blocks.velocities).max() < 1e-10:
             break
     return gone
@@ -104,9 +103,9 @@ def main(out: Path, quick: bool = False) -> Outcome:
         name = f"{state.mode}, {half_angle_deg:g} deg, mu {mu:g}"
         arch = Arch(half_angle=half_angle, eta=state.eta, voussoirs=voussoirs)
         falling = world(replace(arch, eta=state.eta * 0.999), mu)
-        reach = arch.assembly().reach
+        assembly = arch.assembly()
         mechanism = falling.hold(1)
-        mechanism = mechanism / float(displacement(mechanism, reach))
+        mechanism = mechanism / float(displacement(mechanism, assembly))
         for margin in margins:
             thicker = replace(arch, eta=state.eta * (1 + margin))
             held += bool(np.abs(world(thicker, mu).hold(1)).max() > 1e-9)

@@ -38,6 +38,13 @@ def require_friction(mu: object) -> None:
     require(is_number(mu, 0, math.inf), "mu", mu, "above 0 (inf for unbounded friction)")
 
 
+def require_tilt(tilt: object, *, plane_lock: bool) -> None:
+    """Raise `InputError` unless gravity leans by less than a right angle, or not at all."""
+    upright = is_number(tilt, -math.pi / 2, math.nextafter(math.pi / 2, 0))
+    require(upright, "tilt", tilt, "above -pi/2 and below pi/2")
+    require(not (tilt and plane_lock), "plane_lock", plane_lock, "left out with a tilt")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Arch:
     """A symmetric circular arch; the crown is at angle 0, x to the right, y up.

@@ -12,6 +12,9 @@ Array = NDArray[np.float64]
 
 SUPPORT = -1
 """Block index that stands for the fixed ground."""
+PLANAR, SPATIAL = 3, 6
+"""Columns of poses and motions: x, y and rotation in the plane; then z, out of it, and the
+rotation vector's components along x and y, from engines in three dimensions."""
 
 
 def _frozen(values: object, shape: tuple[int, ...]) -> Array:
@@ -130,9 +133,47 @@ class Assembly:
         return _frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
 
     @cached_property
+    def spatial_masses(self) -> Array:
+        """The same for motions in three dimensions, shape (blocks, 6).
+
+        The moment of inertia in the plane is shared equally by the two axes in it, to
+        which the depth adds its part.
+        """
+        depth = np.array([block.depth for block in self.blocks]) / self.size
+        mass, inertia = self.masses[:, 0], self.masses[:, 2]
+        across = inertia / 2 + mass * depth**2 / 12
+        beyond = np.stack([mass, across, across], axis=1)
+        return _frozen(np.hstack([self.masses, beyond]), (-1, SPATIAL))
+
+    @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
         return _frozen(
             [np.hypot(*(block.vertices - block.centre).T).max() for block in self.blocks],
             (-1,),
         )
+
+
+def displacement(moved: Array, assembly: Assembly) -> Array:
+    """Bound of the displacement of any corner, from those of the centres.
+
+    Parameters
+    ----------
+    moved : (..., blocks, 3 or 6) float
+        Displacements of the centres, in units of the size, and rotations.
+    assembly : Assembly
+
+    Returns
+    -------
+    (...) float
+        Largest over the blocks of the translation or the corner's way by rotation.
+    """
+    reach = assembly.reach / assembly.size
+    square = moved**2
+    shift, turn = square[..., 0] + square[..., 1], square[..., 2]
+    if moved.shape[-1] == SPATIAL:
+        depth = np.array([block.depth for block in assembly.blocks]) / assembly.size
+        reach = np.hypot(reach, depth / 2)
+        shift = shift + square[..., 3]
+        turn = turn + square[..., 4] + square[..., 5]
+    return np.sqrt(np.maximum(shift, turn * reach**2)).max(axis=-1)

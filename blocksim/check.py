@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass
 
 from blocksim import limit, theory
-from blocksim.arch import Arch, require_friction
+from blocksim.arch import Arch, require_friction, require_tilt
 from blocksim.joints import JointState, ObservedJoint, closed_joints
 from blocksim.ladder import choose
 from blocksim.modes import Mode
@@ -57,7 +57,15 @@ class Check:
     wall_s: float
 
 
-def check(arch: Arch, *, mu: float, method: str = "auto", progress: Progress = silent) -> Check:
+def check(
+    arch: Arch,
+    *,
+    mu: float,
+    method: str = "auto",
+    tilt: float = 0.0,
+    plane_lock: bool = False,
+    progress: Progress = silent,
+) -> Check:
     """Tell whether an arch stands under its own weight.
 
     Parameters
@@ -67,6 +75,11 @@ def check(arch: Arch, *, mu: float, method: str = "auto", progress: Progress = s
         Friction coefficient, above 0, inf allowed.
     method : str
         `auto`, `theory`, `limit`, or the name of an engine.
+    tilt : float
+        Angle by which gravity leans out of the plane [rad]; `eta_limit` and `eta_theory`
+        are those without it.
+    plane_lock : bool
+        Keep the voussoirs in the plane by large inertias out of it (pybullet).
     progress : Progress, optional
 
     Returns
@@ -82,7 +95,8 @@ def check(arch: Arch, *, mu: float, method: str = "auto", progress: Progress = s
     """
     started = time.perf_counter()
     require_friction(mu)
-    rung = choose(method)
+    require_tilt(tilt, plane_lock=plane_lock)
+    rung = choose(method, spatial=tilt != 0 or plane_lock)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
     closed = closed_joints(arch)
@@ -97,7 +111,7 @@ def check(arch: Arch, *, mu: float, method: str = "auto", progress: Progress = s
         mode = built.mode if falls else None
         joints = _limit_joints(arch, built) if falls else closed
     else:
-        seen = trial(arch, mu, rung.name, progress=progress)
+        seen = trial(arch, mu, rung.name, tilt=tilt, plane_lock=plane_lock, progress=progress)
         verdict, reason, mode, joints = seen.verdict, seen.reason, seen.mode, seen.joints
         simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
         state_hash = seen.motion.recording.state_hash if seen.motion else None

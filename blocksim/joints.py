@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.arch import Arch, crown_width
-from blocksim.assembly import SUPPORT, Array, Assembly
+from blocksim.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly
 from blocksim.modes import ActiveJoint, Mode, name_mode
 
 
@@ -50,8 +50,9 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     Parameters
     ----------
     assembly : Assembly
-    poses : (blocks, 3) float
-        Centres of mass x, y and rotations [rad], in units of the assembly's size.
+    poses : (blocks, 3 or 6) float
+        Centres of mass x, y and rotations [rad], in units of the assembly's size; motion
+        out of the plane is left aside.
 
     Returns
     -------
@@ -66,7 +67,7 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     tangent = np.array([joint.tangent for joint in assembly.joints])
     # The support is appended as a block that stays where it is, index -1.
     start = np.vstack([assembly.centres / size, np.zeros(2)])
-    moved = np.vstack([poses, np.zeros(3)])
+    moved = np.vstack([poses[:, :PLANAR], np.zeros(PLANAR)])
 
     def carried(block: NDArray[np.int64]) -> Array:
         """Where the block has taken the two ends of the joint, less where they were."""
@@ -105,7 +106,36 @@ def overlap_share(assembly: Assembly, poses: Array) -> float:
     lengths = np.array([joint.length for joint in assembly.joints]) / assembly.size
     turned, slipped = np.abs(motion.turn) * lengths, np.abs(motion.slip)
     moved = max(float(turned.max()), float(slipped.max()))
-    return max(0.0, -float(motion.gap.min())) / moved if moved > 0 else 0.0
+    gap = motion.gap.min(axis=1)
+    if poses.shape[1] == SPATIAL:
+        # Front and back: what turns about the joint's tangent, and slips across the plane.
+        rocked, crossed = _beyond_the_plane(assembly, poses)
+        gap = gap - rocked
+        moved = max(moved, float(rocked.max()), float(crossed.max()))
+    return max(0.0, -float(gap.min())) / moved if moved > 0 else 0.0
+
+
+def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
+    """How far each joint opens at one of its faces and slips, across the plane.
+
+    To first order in the rotations, in units of the assembly's size, shape (joints,) each.
+    """
+    before = np.array([joint.before for joint in assembly.joints])
+    after = np.array([joint.after for joint in assembly.joints])
+    middle = np.array([(joint.inner + joint.outer) / 2 for joint in assembly.joints])
+    tangent = np.array([joint.tangent for joint in assembly.joints])
+    depth = np.array([block.depth for block in assembly.blocks]) / assembly.size
+    centres = np.vstack([assembly.centres, np.zeros(2)])
+    beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])
+    half = np.minimum(*(np.append(depth, np.inf)[side] for side in (before, after))) / 2
+
+    def across(block: NDArray[np.int64]) -> Array:
+        arm = (middle - centres[block]) / assembly.size
+        turn = beyond[block, 1:]
+        return beyond[block, 0] + turn[:, 0] * arm[:, 1] - turn[:, 1] * arm[:, 0]
+
+    rocked = np.einsum("ji,ji->j", beyond[after, 1:] - beyond[before, 1:], tangent)
+    return np.abs(rocked) * half, np.abs(across(after) - across(before))
 
 
 ACTIVE = 0.02

@@ -8,6 +8,8 @@ from blocksim import engines
 from blocksim.errors import InputError
 
 STATIC = ("theory", "limit")
+SPATIAL = "pybullet"
+"""The method that sees out of the plane."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,11 +23,14 @@ class Method:
         What it can tell.
     finest : float
         Smallest relative width of a bracket it can answer for.
+    is_spatial : bool
+        Whether it sees motion out of the plane.
     """
 
     name: str
     sees: str
     finest: float
+    is_spatial: bool = False
 
     @property
     def is_static(self) -> bool:
@@ -56,13 +61,19 @@ METHODS = {
             sees="motion in the plane: onset and collapse with Coulomb friction",
             finest=1e-4,
         ),
+        Method(
+            name="pybullet",
+            sees="motion in space: the same, and out of the plane",
+            finest=1e-3,
+            is_spatial=True,
+        ),
     )
 }
 
 CHOICES = ("auto", *METHODS)
 
 
-def choose(method: str, tol: float = 0.0) -> Method:
+def choose(method: str, tol: float = 0.0, *, spatial: bool = False) -> Method:
     """Return the method asked for; for `auto` the cheapest that is exact, `limit`.
 
     Parameters
@@ -71,16 +82,22 @@ def choose(method: str, tol: float = 0.0) -> Method:
         One of `CHOICES`.
     tol : float
         Relative width of the bracket asked for, 0 where there is none.
+    spatial : bool
+        Whether the question is of motion out of the plane: `auto` is then the method
+        that sees it.
 
     Raises
     ------
     InputError
-        If there is no such method, or it cannot answer to that tolerance.
+        If there is no such method, or it cannot answer to that tolerance, or does not
+        see out of the plane where that is asked.
     """
     if method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
     # `limit` sees the voussoirs as built and is exact, which `theory` is not for them.
-    rung = METHODS["limit" if method == "auto" else method]
+    rung = METHODS[(SPATIAL if spatial else "limit") if method == "auto" else method]
+    if spatial and not rung.is_spatial:
+        raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     return rung

@@ -17,15 +17,15 @@ If neither is reached within the sweeps allowed the test is undecided, and says 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from blocksim.assembly import Array, Assembly
+from blocksim.assembly import Array, Assembly, displacement
 from blocksim.engines.base import Settings, World, trusted
 from blocksim.joints import overlap_share
 from blocksim.progress import Progress, silent
-from blocksim.recording import displacement
 from blocksim.verdict import Verdict
 
 OVERLAP = 1e-3
@@ -91,21 +91,21 @@ def onset(
     """
     hold_sweeps = settings.hold_sweeps
     rest = world.poses()
-    reach = assembly.reach / assembly.size
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), hold_sweeps)
     total, sweeps = 0, first
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
-        largest = float(displacement(accelerations, reach))
+        largest = float(displacement(accelerations, assembly))
         mechanism = rest + accelerations * (PROBE / largest if largest > 0 else 0.0)
         if not trusted(world, settings):
             verdict = Verdict.UNDECIDED
         elif largest < settings.still:
             verdict = Verdict.STANDS
         elif overlap_share(assembly, mechanism) < OVERLAP and (
-            world.quality().residual is not None or _driven(assembly, accelerations)
+            world.quality().residual is not None
+            or _driven(assembly, accelerations, settings.tilt)
         ):
             verdict = Verdict.COLLAPSES
         else:
@@ -118,9 +118,10 @@ def onset(
         sweeps = min(int(total * (GROWTH - 1)), hold_sweeps - total)
 
 
-def _driven(assembly: Assembly, accelerations: Array) -> bool:
+def _driven(assembly: Assembly, accelerations: Array, tilt: float) -> bool:
     """Tell whether the weight does the work of the motion, from rest over one step."""
-    masses = assembly.masses
-    of_weight = -float((masses[:, 1] * accelerations[:, 1]).sum())
+    masses = assembly.spatial_masses[:, : accelerations.shape[1]]
+    weight = np.array([0.0, -math.cos(tilt), 0.0, math.sin(tilt), 0.0, 0.0])
+    of_weight = float((masses * accelerations * weight[: accelerations.shape[1]]).sum())
     of_motion = float((masses * accelerations**2).sum())
     return of_weight > WORK * of_motion

@@ -14,7 +14,7 @@ from typing import BinaryIO
 import numpy as np
 
 from blocksim.arch import Arch
-from blocksim.assembly import Array
+from blocksim.assembly import PLANAR, SPATIAL, Array, displacement
 from blocksim.engines.base import Quality, Settings
 from blocksim.errors import InputError
 from blocksim.files import write_whole
@@ -48,8 +48,9 @@ class Recording:
     settings : Settings
     times : (frames,) float
         In units of sqrt(r/g), from the release.
-    poses : (frames, voussoirs, 3) float
-        Centres of mass x, y in units of r and rotations [rad].
+    poses : (frames, voussoirs, 3 or 6) float
+        Centres of mass x, y in units of r and rotations [rad]; from engines in three
+        dimensions also z, out of the plane, and the rotation vector's x and y.
     quality : Quality
         How well contact and friction were kept.
     """
@@ -72,8 +73,16 @@ class Recording:
     @property
     def displacement(self) -> Array:
         """Largest displacement of any corner since the release [r], shape (frames,)."""
-        assembly = self.arch.assembly()
-        return displacement(self.poses - self.poses[0], assembly.reach / assembly.size)
+        return displacement(self.poses - self.poses[0], self.arch.assembly())
+
+    @property
+    def beyond_plane(self) -> Array:
+        """Largest displacement of any corner by motion out of the plane [r], (frames,)."""
+        moved = self.poses - self.poses[0]
+        if moved.shape[-1] == PLANAR:
+            return np.zeros(len(self.times))
+        moved[..., :PLANAR] = 0.0
+        return displacement(moved, self.arch.assembly())
 
     def seconds(self, gravity: float) -> Array:
         """Return times in seconds for a gravity in m/s^2."""
@@ -103,26 +112,6 @@ class Recording:
             np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
 
         write_whole(path, write)
-
-
-def displacement(moved: Array, reach: Array) -> Array:
-    """Bound of the displacement of any corner, from those of the centres.
-
-    Parameters
-    ----------
-    moved : (..., blocks, 3) float
-        Displacements of the centres and rotations.
-    reach : (blocks,) float
-        Distance of the farthest corner from the centre.
-
-    Returns
-    -------
-    (...) float
-        Largest over the blocks of the translation or the corner's way by rotation.
-    """
-    shift = np.hypot(moved[..., 0], moved[..., 1])
-    turn = np.abs(moved[..., 2]) * reach
-    return np.maximum(shift, turn).max(axis=-1)
 
 
 def load_recording(path: Path) -> Recording:
@@ -155,10 +144,15 @@ def load_recording(path: Path) -> Recording:
         )
     except _UNREADABLE:
         raise InputError("recording", where, "written by blocksim simulate") from None
-    expected = (recording.times.size, recording.arch.voussoirs, 3)
-    shaped = recording.times.ndim == 1 and recording.poses.shape == expected
+    expected = (recording.times.size, recording.arch.voussoirs)
+    shaped = recording.times.ndim == 1 and recording.poses.shape in {
+        (*expected, PLANAR),
+        (*expected, SPATIAL),
+    }
     if header.get("format") != FORMAT or not shaped:
-        raise InputError("recording", where, f"of format {FORMAT}, poses of shape {expected}")
+        raise InputError(
+            "recording", where, f"of format {FORMAT}, poses of shape {(*expected, PLANAR)}"
+        )
     if header.get("state_hash") != recording.state_hash:
         raise InputError("recording", where, "undamaged (its state hash does not match)")
     return recording

@@ -14,6 +14,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from blocksim.arch import Arch, Weight
 from blocksim.errors import MISSING, InputError
 from blocksim.modes import Mode
+from blocksim.verdict import Verdict
 
 LARGEST_FILE = 64 * 1024
 """Bytes; a larger file is not read."""
@@ -46,6 +47,15 @@ class ContactTable:
 
 
 @dataclass(frozen=True, kw_only=True)
+class GravityTable:
+    """Table `[gravity]`: how far it leans out of the plane."""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    tilt_deg: Annotated[float, Field(gt=-90, lt=90, strict=True)] = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
 class ExpectTable:
     """Table `[expect]`: what the source says of the continuous arch.
 
@@ -55,12 +65,15 @@ class ExpectTable:
         Collapse modes: several where the arch lies on a line of the map.
     eta : float, optional
         Least thickness-to-radius ratio; absent where none stands.
+    verdict : Verdict, optional
+        Of the arch at its own eta, where that is the claim.
     """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    modes: Annotated[tuple[Mode, ...], Field(min_length=1)]
+    modes: Annotated[tuple[Mode, ...], Field(min_length=1)] = ()
     eta: Annotated[float, Field(gt=0, le=2, strict=True)] | None = None
+    verdict: Verdict | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +86,7 @@ class ScenarioFile:
     source: Annotated[str, Field(min_length=1, max_length=500)]
     arch: ArchTable
     contact: ContactTable
+    gravity: GravityTable = GravityTable()
     expect: ExpectTable | None = None
     quick: Annotated[bool, Field(strict=True)] = False
 
@@ -94,9 +108,13 @@ class Scenario:
     eta : float or None
         Thickness-to-radius ratio, where the scenario sets one.
     radius, depth, specific_weight : float
+    tilt : float
+        Angle by which gravity leans out of the plane [rad].
     expected_modes : tuple of Mode
         Empty where nothing is said.
     expected_eta : float or None
+    expected_verdict : Verdict or None
+        Of the arch at its `eta`.
     quick : bool
         Whether `validate --quick` takes it.
     """
@@ -112,8 +130,10 @@ class Scenario:
     radius: float
     depth: float
     specific_weight: float
+    tilt: float
     expected_modes: tuple[Mode, ...]
     expected_eta: float | None
+    expected_verdict: Verdict | None
     quick: bool
 
     def arch(self, eta: float) -> Arch:
@@ -194,7 +214,9 @@ def _scenario(name: str, written: ScenarioFile) -> Scenario:
         radius=arch.radius,
         depth=arch.depth,
         specific_weight=arch.specific_weight,
+        tilt=math.radians(written.gravity.tilt_deg),
         expected_modes=expect.modes if expect else (),
         expected_eta=expect.eta if expect else None,
+        expected_verdict=expect.verdict if expect else None,
         quick=written.quick,
     )

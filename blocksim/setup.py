@@ -33,10 +33,22 @@ class Setup:
     settings: Settings
 
     @classmethod
-    def of(cls, arch: Arch, mu: float, engine: str) -> Setup:
-        """Take the settings that the engine chooses for the arch."""
+    def of(
+        cls,
+        arch: Arch,
+        mu: float,
+        engine: str,
+        *,
+        tilt: float = 0.0,
+        plane_lock: bool = False,
+    ) -> Setup:
+        """Take the settings that the engine chooses for the arch.
+
+        Tilt [rad] and plane lock as in `Settings`, for engines in three dimensions.
+        """
         library = get_engine(engine)
-        return cls(arch=arch, mu=mu, engine=library, settings=library.settings(arch.assembly()))
+        settings = replace(library.settings(arch.assembly()), tilt=tilt, plane_lock=plane_lock)
+        return cls(arch=arch, mu=mu, engine=library, settings=settings)
 
     @cached_property
     def assembly(self) -> Assembly:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from blocksim.arch import Arch, require_friction
+from blocksim.arch import Arch, require_friction, require_tilt
 from blocksim.engines import ENGINES
 from blocksim.errors import InputError
 from blocksim.joints import ObservedJoint, classify, closed_joints, observed_mode
@@ -32,6 +32,8 @@ class Trial:
     motion : Motion or None
         None where the arch was not let go.
     joints : tuple of ObservedJoint
+        Empty where gravity leans out of the plane and the arch collapses: their states
+        are those of motion in the plane.
     mode : Mode or None
     """
 
@@ -44,7 +46,14 @@ class Trial:
 
 
 def trial(
-    arch: Arch, mu: float, engine: str, *, moving: bool = True, progress: Progress = silent
+    arch: Arch,
+    mu: float,
+    engine: str,
+    *,
+    moving: bool = True,
+    tilt: float = 0.0,
+    plane_lock: bool = False,
+    progress: Progress = silent,
 ) -> Trial:
     """Put an arch into an engine: onset test, then, if asked for, the moving run.
 
@@ -56,13 +65,15 @@ def trial(
     moving : bool
         Let the arch go after the onset test. It is not let go where that test is
         undecided: unbalanced impulses would throw it.
+    tilt, plane_lock : float, bool
+        As in `Settings`, for engines in three dimensions.
     progress : Progress, optional
 
     Returns
     -------
     Trial
     """
-    setup = Setup.of(arch, mu, engine)
+    setup = Setup.of(arch, mu, engine, tilt=tilt, plane_lock=plane_lock)
     world = setup.world()
     first = onset(world, setup.assembly, setup.settings, progress)
     verdict, reason, motion = first.verdict, first.reason, None
@@ -71,13 +82,28 @@ def trial(
         reason = f"onset test: {first.reason}; moving run: {motion.reason}"
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
+    reason += _asides(setup, motion)
     joints, mode = closed_joints(arch), None
-    if verdict is Verdict.COLLAPSES:
+    if tilt and verdict is Verdict.COLLAPSES:
+        joints = ()  # their states are those of motion in the plane
+    elif verdict is Verdict.COLLAPSES:
         joints = classify(setup.assembly, motion.mechanism if motion else first.mechanism)
         mode = observed_mode(joints, arch.half_angle, arch.voussoirs)
     return Trial(
         verdict=verdict, reason=reason, onset=first, motion=motion, joints=joints, mode=mode
     )
+
+
+def _asides(setup: Setup, motion: Motion | None) -> str:
+    """Tell what else there is to know of a trial."""
+    said: list[str] = []
+    if setup.settings.plane_lock:
+        said.append("kept in its plane by large inertias")
+    if setup.settings.tilt and motion:
+        said.append(f"moved {motion.recording.beyond_plane[-1]:.1e} r out of its plane")
+    if setup.mu > setup.engine.most_friction:
+        said.append(f"{setup.engine.name} took {setup.engine.most_friction:g} as friction")
+    return "".join(f"; {each}" for each in said)
 
 
 def simulate(
@@ -86,6 +112,8 @@ def simulate(
     mu: float,
     method: str,
     duration: float | None = None,
+    tilt: float = 0.0,
+    plane_lock: bool = False,
     progress: Progress = silent,
 ) -> Recording:
     """Let an arch go in an engine, after the onset test, and record it.
@@ -99,6 +127,10 @@ def simulate(
         Name of an engine.
     duration : float, optional
         Time to record [sqrt(r/g)]; by default until the verdict is certain.
+    tilt : float
+        Angle by which gravity leans out of the plane [rad].
+    plane_lock : bool
+        Keep the voussoirs in the plane by large inertias out of it.
     progress : Progress, optional
 
     Returns
@@ -113,9 +145,10 @@ def simulate(
         If the engine's library is not installed.
     """
     require_friction(mu)
-    if choose(method).is_static:
+    require_tilt(tilt, plane_lock=plane_lock)
+    if choose(method, spatial=tilt != 0 or plane_lock).is_static:
         raise InputError("method", method, f"one of {', '.join(ENGINES)}: others move nothing")
-    setup = Setup.of(arch, mu, method)
+    setup = Setup.of(arch, mu, method, tilt=tilt, plane_lock=plane_lock)
     world = setup.world()
     first = onset(world, setup.assembly, setup.settings, progress)
     return moving_run(setup, world, first.sweeps, until=duration, progress=progress).recording

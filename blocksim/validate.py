@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
 
+from blocksim.arch import Arch
 from blocksim.bracket import ETA_MAX, Bracket, bracket
+from blocksim.engines import get_engine
+from blocksim.ladder import METHODS, missing
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
 from blocksim.scenario import Scenario, load_scenario, shipped
 from blocksim.trial import trial
 from blocksim.verdict import Verdict
 
-TOL = 0.001
-"""Relative width of the brackets."""
+TOLS = {"pymunk": 0.001, "pybullet": 0.004}
+"""Engines that are validated, and the relative width of their brackets."""
 ERROR_BOUND = 0.002
 """A bracket whose centre is farther than this from `limit` is a miss."""
 ASIDE = 0.01
@@ -49,6 +51,8 @@ class Row:
         In a moving run 1 % below the bracket.
     below, above : Verdict or None
         1 % below and above the bracket, by onset test and moving run; None where not tried.
+    verdict_expected, verdict : Verdict or None
+        Of the arch as the scenario has it, where its claim is that and not the bracket.
     confirmed : bool or None
         Whether moving runs confirm both ends of the bracket.
     miss : str
@@ -74,6 +78,8 @@ class Row:
     mode_observed: Mode | None
     below: Verdict | None
     above: Verdict | None
+    verdict_expected: Verdict | None
+    verdict: Verdict | None
     confirmed: bool | None
     miss: str
     note: str
@@ -86,9 +92,14 @@ def scenarios(*, quick: bool) -> list[Scenario]:
     return [scenario for scenario in every if scenario.quick or not quick]
 
 
+def installed() -> tuple[str, ...]:
+    """Return the engines to validate that can run here."""
+    return tuple(name for name in TOLS if missing(METHODS[name]) is None)
+
+
 def validate(
     chosen: Sequence[Scenario],
-    engines: Iterable[str] = ("pymunk",),
+    engines: Iterable[str] | None = None,
     *,
     workers: int = 2,
     progress: Progress = silent,
@@ -98,7 +109,9 @@ def validate(
     Parameters
     ----------
     chosen : sequence of Scenario
-    engines : iterable of str
+    engines : iterable of str, optional
+        By default all that are `installed`. Scenarios whose gravity leans out of the
+        plane are for those that see that.
     workers : int
         Processes; 1 runs in this one.
     progress : Progress, optional
@@ -108,7 +121,13 @@ def validate(
     list of Row
         In the order of scenarios, then engines, whatever finishes first.
     """
-    jobs = [(scenario, engine) for scenario in chosen for engine in engines]
+    names = installed() if engines is None else tuple(engines)
+    jobs = [
+        (scenario, engine)
+        for scenario in chosen
+        for engine in names
+        if METHODS[engine].is_spatial or not scenario.tilt
+    ]
     if workers == 1:
         rows: list[Row] = []
         for done, job in enumerate(jobs):
@@ -128,7 +147,9 @@ def validate(
 
 
 def validate_one(scenario: Scenario, engine: str) -> Row:
-    """Bracket one scenario with one engine and compare."""
+    """Ask one scenario's question of one engine and compare."""
+    if scenario.expected_verdict is not None and scenario.eta is not None:
+        return _judged(scenario, scenario.arch(scenario.eta), engine)
     started = time.perf_counter()
     found = bracket(
         half_angle=scenario.half_angle,
@@ -136,7 +157,7 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         voussoirs=scenario.voussoirs,
         weight=scenario.weight,
         method=engine,
-        tol=TOL,
+        tol=TOLS[engine],
     )
     mode, below, above = found.mode, None, None
     if found.eta_low is not None:
@@ -170,10 +191,85 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         mode_observed=mode,
         below=below,
         above=above,
+        verdict_expected=None,
+        verdict=None,
         confirmed=found.confirmed,
         miss=miss,
         note=_note(scenario, found, mode),
         wall_s=time.perf_counter() - started,
+    )
+
+
+def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
+    """Compare the verdict on an arch as it is with the one its scenario claims."""
+    started = time.perf_counter()
+    seen = trial(arch, scenario.mu, engine, tilt=scenario.tilt)
+    right = seen.verdict is scenario.expected_verdict
+    return Row(
+        scenario=scenario.name,
+        engine=engine,
+        half_angle=scenario.half_angle,
+        mu=scenario.mu,
+        voussoirs=scenario.voussoirs,
+        weight=scenario.weight,
+        modes_published=scenario.expected_modes,
+        eta_published=scenario.expected_eta,
+        eta_limit=None,
+        mode_limit=None,
+        eta_low=None,
+        eta_high=None,
+        error=None,
+        mode_observed=seen.mode,
+        below=None,
+        above=None,
+        verdict_expected=scenario.expected_verdict,
+        verdict=seen.verdict,
+        confirmed=None,
+        miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
+        note=seen.reason,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def numbered(rows: Sequence[Row]) -> dict[str, int]:
+    """Give each scenario its number, whatever the engines."""
+    names = dict.fromkeys(row.scenario for row in rows)
+    return {name: number for number, name in enumerate(names, start=1)}
+
+
+def disagreements(rows: Sequence[Row]) -> list[str]:
+    """List where engines differ on the same scenario, each with its likely cause.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+
+    Returns
+    -------
+    list of str
+        Sentences; modes, verdicts and brackets that exclude each other count.
+    """
+    found: list[str] = []
+    for name in dict.fromkeys(row.scenario for row in rows):
+        first, *others = (row for row in rows if row.scenario == name)
+        for other in others:
+            pair = f"{name}: {first.engine} and {other.engine}"
+            # The note of the engine that differs from `limit` says why.
+            cause = (first.note if first.miss else other.note) or "no cause known"
+            if first.mode_observed is not other.mode_observed:
+                seen = f"{first.mode_observed or 'unnamed'}, {other.mode_observed or 'unnamed'}"
+                found.append(f"{pair} see different modes ({seen}): {cause}")
+            if (first.below, first.above) != (other.below, other.above):
+                found.append(f"{pair} judge 1 % aside differently: {cause}")
+            if _exclusive(first, other) or _exclusive(other, first):
+                found.append(f"{pair} have brackets that exclude each other: {cause}")
+    return found
+
+
+def _exclusive(one: Row, other: Row) -> bool:
+    """Tell whether one bracket lies wholly above the other."""
+    return (
+        one.eta_low is not None and other.eta_high is not None and one.eta_low > other.eta_high
     )
 
 
@@ -218,8 +314,8 @@ def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
             notes.append(f"0.2 % below it is {nearer or 'unnamed'}")
     if found.confirmed is False:
         notes.append("an end of the bracket starts too slowly for a moving run to tell")
-    if math.isinf(scenario.mu):
-        notes.append("unbounded friction, 1000 in the engine")
+    if scenario.mu > get_engine(found.method).most_friction:
+        notes.append(f"friction is {get_engine(found.method).most_friction:g} in the engine")
     return "; ".join(notes)
 
 

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from blocksim.arch import Arch
+from blocksim.assembly import displacement
 from blocksim.engines.base import Settings
 from blocksim.errors import InputError
 from blocksim.files import make_folder, write_whole
-from blocksim.recording import Recording, displacement, load_recording
+from blocksim.recording import Recording, load_recording
 
 ARCH = Arch(half_angle=1.2, eta=0.15, voussoirs=5, weight="sector", radius=4.0, depth=0.5)
 
@@ -61,7 +62,7 @@ def test_displacement_in_closed_form() -> None:
     assembly = ARCH.assembly()
     expected = [0, 5e-3, 1e-2 * assembly.reach[4] / 4.0]
     assert replace(one, poses=poses).displacement == pytest.approx(expected, rel=1e-12)
-    assert displacement(poses, assembly.reach / 4.0) == pytest.approx(expected, rel=1e-12)
+    assert displacement(poses, assembly) == pytest.approx(expected, rel=1e-12)
 
 
 def test_seconds() -> None:

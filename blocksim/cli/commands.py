@@ -29,10 +29,12 @@ from blocksim.cli.options import (
     MethodOption,
     Mu,
     Picture,
+    PlaneLock,
     Scene,
+    Tilt,
     Voussoirs,
     WeightOption,
-    arch_and_friction,
+    arch_of,
     named_options,
     question,
 )
@@ -49,7 +51,7 @@ from blocksim.report.answers import (
 from blocksim.scenario import load_scenario, shipped
 from blocksim.theory import least_thickness
 from blocksim.trial import simulate as record_motion
-from blocksim.validate import scenarios
+from blocksim.validate import disagreements, scenarios
 from blocksim.validate import validate as run_validation
 from blocksim.verdict import Verdict
 
@@ -103,12 +105,22 @@ def check(
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
     method: MethodOption = "auto",
+    tilt: Tilt = None,
+    plane_lock: PlaneLock = False,
     as_json: Json = False,
 ) -> None:
     """Tell whether an arch stands: exit code 0 stands, 1 collapses, 3 undecided."""
-    arch, friction = arch_and_friction(scene, alpha, eta, mu, voussoirs, weight)
+    asked = question(scene, alpha, mu, voussoirs, weight, tilt)
+    arch = arch_of(asked, eta)
     with named_options(), progress() as report:
-        answer = ask_check(arch, mu=friction, method=method, progress=report)
+        answer = ask_check(
+            arch,
+            mu=asked.mu,
+            method=method,
+            tilt=asked.tilt,
+            plane_lock=plane_lock,
+            progress=report,
+        )
     answer_with(check_record(answer), check_lines(answer), as_json=as_json)
     raise typer.Exit(EXIT_CODES[answer.verdict])
 
@@ -152,9 +164,12 @@ def simulate(
     seconds: Annotated[
         float | None, typer.Option(help="Time to record [s]; until decided if left out.")
     ] = None,
+    tilt: Tilt = None,
+    plane_lock: PlaneLock = False,
 ) -> None:
     """Let an arch go and record its motion."""
-    arch, friction = arch_and_friction(scene, alpha, eta, mu, voussoirs, weight)
+    asked = question(scene, alpha, mu, voussoirs, weight, tilt)
+    arch = arch_of(asked, eta)
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require(out.parent.is_dir(), "--out", str(out), "in an existing folder")
     duration = None
@@ -164,7 +179,13 @@ def simulate(
         duration = seconds / math.sqrt(arch.radius / GRAVITY)
     with named_options(), progress() as report:
         recording = record_motion(
-            arch, mu=friction, method=method, duration=duration, progress=report
+            arch,
+            mu=asked.mu,
+            method=method,
+            duration=duration,
+            tilt=asked.tilt,
+            plane_lock=plane_lock,
+            progress=report,
         )
     recording.save(out)
     moved = recording.displacement[-1]
@@ -193,9 +214,16 @@ def validate(
     paths = write_results(rows, out)
     show(validation_table(rows))
     misses = [row for row in rows if row.miss]
-    say(f"{len(rows) - len(misses)} of {len(rows)} agree with limit analysis in every respect")
+    say(
+        f"{len(rows) - len(misses)} of {len(rows)} agree with the exact answer in every respect"
+    )
     for row in misses:
-        say(f"  {row.scenario}: {row.miss} ({row.note})")
+        say(f"  {row.scenario}, {row.engine}: {row.miss} ({row.note})")
+    if len({row.engine for row in rows}) > 1:
+        apart = disagreements(rows)
+        say(f"the engines disagree in {len(apart)} places")
+        for each in apart:
+            say(f"  {each}")
     say("wrote " + ", ".join(str(path) for path in paths))
 
 

@@ -18,7 +18,7 @@ from blocksim.arch import require
 from blocksim.files import write_whole
 from blocksim.progress import Progress as Report
 from blocksim.report.answers import ratio
-from blocksim.validate import Row
+from blocksim.validate import Row, numbered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,31 +43,45 @@ def progress() -> Generator[Report]:
 
 
 def validation_table(rows: list[Row]) -> Table:
-    """Lay out validation rows for a terminal."""
+    """Lay out validation rows for a terminal: a line an arch, a column an engine."""
     table = Table(box=None, header_style="bold", pad_edge=False)
-    words = {"scenario", "published mode", "seen"}
-    for heading in ("#", "scenario", "alpha", "mu", "n", "published mode", "seen", "published",
-                    "limit", "bracket", "error", "s"):  # fmt: skip
+    engines = list(dict.fromkeys(row.engine for row in rows))
+    words = {"scenario", "mode", *engines}
+    for heading in (
+        "#",
+        "scenario",
+        "alpha",
+        "mu",
+        "n",
+        "mode",
+        "published",
+        "limit",
+        *engines,
+    ):
         table.add_column(heading, justify="left" if heading in words else "right", no_wrap=True)
-    for number, row in enumerate(rows, start=1):
-        middle = row.eta_low
-        if row.eta_low is not None and row.eta_high is not None:
-            middle = (row.eta_low + row.eta_high) / 2
+    for name, number in numbered(rows).items():
+        answers = {row.engine: row for row in rows if row.scenario == name}
+        row = next(iter(answers.values()))
         table.add_row(
             str(number),
-            row.scenario,
+            name,
             f"{math.degrees(row.half_angle):.1f}",
             f"{row.mu:.4g}",
             str(row.voussoirs),
             "/".join(row.modes_published),
-            (row.mode_observed or "-") + (" !" if row.miss else ""),
             ratio(row.eta_published),
             ratio(row.eta_limit),
-            "none" if row.eta_high is None and row.eta_limit is None else ratio(middle),
-            "-" if row.error is None else f"{row.error:+.3%}",
-            f"{row.wall_s:.1f}",
+            *(_answer(answers.get(engine)) for engine in engines),
         )
     return table
+
+
+def _answer(row: Row | None) -> str:
+    """Return what one engine saw, and the error of its bracket."""
+    if row is None:
+        return "-"
+    error = "" if row.error is None else f" {row.error:+.3%}"
+    return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
 
 
 def picture_kind(out: Path) -> str:

@@ -25,6 +25,12 @@ WeightOption = Annotated[
     str | None, typer.Option(help="Where weight acts: centreline or sector [centreline].")
 ]
 MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
+Tilt = Annotated[
+    float | None, typer.Option(help="Angle by which gravity leans out of the plane [deg].")
+]
+PlaneLock = Annotated[
+    bool, typer.Option("--plane-lock", help="Keep voussoirs in the plane by large inertias.")
+]
 Picture = Annotated[Path, typer.Option("--out", help="Picture to write, .svg or .png.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
@@ -41,8 +47,10 @@ NO_SCENARIO = Scenario(
     radius=1.0,
     depth=1.0,
     specific_weight=20_000.0,
+    tilt=0.0,
     expected_modes=(),
     expected_eta=None,
+    expected_verdict=None,
     quick=False,
 )
 """Defaults of the options; half-angle and friction have none and are always replaced."""
@@ -54,11 +62,15 @@ def question(
     mu: float | None,
     voussoirs: int | None,
     weight: str | None,
+    tilt: float | None = None,
 ) -> Scenario:
     """Merge a scenario, where there is one, with the options that override it."""
     if alpha is not None:
         ok = is_number(alpha, 0, math.nextafter(180, 0))
         require(ok, "--alpha", alpha, "above 0 and below 180 deg")
+    if tilt is not None:
+        ok = is_number(tilt, -90, math.nextafter(90, 0))
+        require(ok, "--tilt", tilt, "above -90 and below 90 deg")
     if scene is None:
         require(alpha is not None, "--alpha", MISSING, "given where no scenario is")
         require(mu is not None, "--mu", MISSING, "given where no scenario is")
@@ -68,25 +80,22 @@ def question(
         "mu": mu,
         "voussoirs": voussoirs,
         "weight": weight,
+        "tilt": None if tilt is None else math.radians(tilt),
     }
     return replace(asked, **{key: value for key, value in changes.items() if value is not None})
 
 
-def arch_and_friction(
-    scene: str | None,
-    alpha: float | None,
-    eta: float | None,
-    mu: float | None,
-    voussoirs: int | None,
-    weight: str | None,
-) -> tuple[Arch, float]:
-    """Return the arch asked about, at its thickness, and its friction."""
-    asked = question(scene, alpha, mu, voussoirs, weight)
+def arch_of(asked: Scenario, eta: float | None) -> Arch:
+    """Return the arch asked about, at the thickness given or else the scenario's."""
     ratio_given = asked.eta if eta is None else eta
     if ratio_given is None:
         raise InputError("--eta", MISSING, "given where no scenario sets it")
     with named_options():
-        return asked.arch(ratio_given), asked.mu
+        return asked.arch(ratio_given)
+
+
+OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "plane_lock"}
+"""Fields that are options, too."""
 
 
 @contextmanager
@@ -95,13 +104,7 @@ def named_options() -> Generator[None]:
     try:
         yield
     except InputError as error:
-        if error.where is None and error.field in {
-            "eta",
-            "mu",
-            "voussoirs",
-            "weight",
-            "method",
-            "tol",
-        }:
-            raise InputError(f"--{error.field}", error.value, error.allowed) from None
+        if error.where is None and error.field in OPTIONS:
+            option = error.field.replace("_", "-")
+            raise InputError(f"--{option}", error.value, error.allowed) from None
         raise

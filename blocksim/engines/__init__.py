@@ -22,6 +22,12 @@ _PLACES = {
     "pymunk": _Place(
         "pymunk", "blocksim.engines.chipmunk", "Chipmunk", "pip install 'pymunk>=7.3'"
     ),
+    "pybullet": _Place(
+        "pybullet",
+        "blocksim.engines.bullet",
+        "Bullet",
+        "pip install pybullet with Python 3.11 or older, for which it has wheels",
+    ),
 }
 
 ENGINES: tuple[str, ...] = tuple(_PLACES)

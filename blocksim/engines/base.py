@@ -15,7 +15,9 @@ from typing import Protocol
 from blocksim.assembly import Array, Assembly
 
 FRICTION_CAP = 1e3
-"""Engines multiply friction by impulses that may be 0, so inf cannot be passed on.
+"""Most friction of an engine without a bound of its own.
+
+Engines multiply friction by impulses that may be 0, so inf cannot be passed on.
 
 The thrust below which an inner joint slides is about 1/(4 mu^2) for large mu: at this
 cap 2.5e-7 of the weight scale, far below what an engine resolves.
@@ -40,6 +42,12 @@ class Settings:
         Displacement below which an arch let go counts as at rest [size].
     residual : float
         Worst residual of the contacts at which an answer still counts.
+    tilt : float
+        Angle by which gravity leans out of the plane [rad].
+    plane_lock : bool
+        Keep blocks in the plane by large inertias out of it.
+
+    Planar engines know neither tilt nor plane lock; `ladder.choose` sees to that.
     """
 
     step: float
@@ -48,6 +56,8 @@ class Settings:
     still: float = 1e-6
     rest: float = 1e-5
     residual: float = math.inf
+    tilt: float = 0.0
+    plane_lock: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,8 +91,8 @@ class World(Protocol):
 
         Returns
         -------
-        (blocks, 3) float
-            Accelerations x, y [g] and angular [g/size] the blocks would start with.
+        (blocks, 3 or 6) float
+            Accelerations [g] and [g/size] the blocks would start with, columns as poses.
         """
         ...
 
@@ -91,7 +101,11 @@ class World(Protocol):
         ...
 
     def poses(self) -> Array:
-        """Return centres of mass x, y and rotations [rad], shape (blocks, 3)."""
+        """Return centres of mass x, y and rotations [rad], shape (blocks, 3).
+
+        In three dimensions shape (blocks, 6): then z, out of the plane, and the rotation
+        vector's x and y; its z is the rotation in the plane.
+        """
         ...
 
     def quality(self) -> Quality:
@@ -116,6 +130,11 @@ class Engine(Protocol):
     @property
     def version(self) -> str:
         """Version of the engine's library."""
+        ...
+
+    @property
+    def most_friction(self) -> float:
+        """Friction above which the engine takes this instead."""
         ...
 
     def settings(self, assembly: Assembly) -> Settings:

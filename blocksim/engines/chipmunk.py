@@ -24,18 +24,15 @@ from importlib.metadata import version
 import numpy as np
 import pymunk
 
-from blocksim.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.assembly import Array, Assembly, Joint
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
+from blocksim.engines.faces import crowding, faces_of, ledge, side, springings, stands_on
 
 INSET = 1e-6
 """Most a face is set back; no more than `INSET_SHARE` of the shortest joint."""
 INSET_SHARE = 1e-4
 OVERLAP = 0.25
 """Overlap of two closed shapes, in units of the inset."""
-LEDGE = 2e-3
-"""Most that one face of each joint reaches beyond the other [size]."""
-LEDGE_SHARE = 0.05
-"""The same, in units of the joint's length."""
 CLEARANCE = 6.0
 """Least width of a block between two faces, in units of the inset."""
 LONGEST_STEP = 1 / 100
@@ -50,6 +47,7 @@ class Chipmunk:
     """The engine of pymunk."""
 
     name = "pymunk"
+    most_friction = FRICTION_CAP
 
     @property
     def version(self) -> str:
@@ -89,11 +87,7 @@ class _Space:
         self._space.collision_persistence = 1
         self._friction = math.sqrt(min(mu, FRICTION_CAP))
         mass = float(np.mean([block.mass for block in assembly.blocks]))
-        faces: list[list[Joint]] = [[] for _ in assembly.blocks]
-        for joint in assembly.joints:
-            for index in (joint.before, joint.after):
-                if index != SUPPORT:
-                    faces[index].append(joint)
+        faces = faces_of(assembly)
         self._bodies: list[pymunk.Body] = []
         for index, block in enumerate(assembly.blocks):
             inertia = block.inertia / mass / assembly.size**2
@@ -103,12 +97,12 @@ class _Space:
             outline = _outline(block.vertices, index, faces[index], assembly.size, self._inset)
             shape = self._shape(body, outline - centre)
             bits = [
-                k for k, j in enumerate(_springings(assembly)) if index in (j.before, j.after)
+                k for k, j in enumerate(springings(assembly)) if index in (j.before, j.after)
             ]
             shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
             self._space.add(body, shape)
             self._bodies.append(body)
-        for k, joint in enumerate(_springings(assembly)):
+        for k, joint in enumerate(springings(assembly)):
             shape = self._shape(
                 self._space.static_body, _footing(joint, assembly.size, self._inset)
             )
@@ -148,45 +142,18 @@ class _Space:
         return Quality()
 
 
-def _springings(assembly: Assembly) -> list[Joint]:
-    return [j for j in assembly.joints if SUPPORT in (j.before, j.after)]
-
-
-def _side(joint: Joint, index: int) -> float:
-    """Sign of the direction from the joint into the block."""
-    return 1.0 if joint.after == index else -1.0
-
-
 def _outline(
     vertices: Array, index: int, faces: list[Joint], size: float, inset: float
 ) -> Array:
     """Corners of a block with its joint faces set back, scaled, shape (k, 2)."""
     corners: list[Array] = [v / size for v in vertices if not _on_a_face(v, faces)]
     for joint in faces:
-        inward = _side(joint, index) * joint.normal * inset
-        # A support is wider than any joint; only between blocks one has to give way.
-        wider = joint.after == index and joint.before != SUPPORT
-        ledge = min(LEDGE, LEDGE_SHARE * joint.length / size) if wider else 0.0
+        inward = side(joint, index) * joint.normal * inset
+        beyond = ledge(joint, index, size)
         for end, along in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
-            cut = max(-ledge, _crowding(end, along, faces, size, inset))
+            cut = max(-beyond, crowding(end, along, faces, size, CLEARANCE * inset))
             corners.append(end / size + inward + along * cut)
     return np.array(corners)
-
-
-def _crowding(end: Array, along: Array, faces: list[Joint], size: float, inset: float) -> float:
-    """Return how far a face must end short of a corner, for the block to be wide enough.
-
-    Where the intrados shrinks to a point (eta near 2) faces set back would cross there,
-    and voussoirs that do not share a joint would touch. Negative where there is room.
-    """
-    cut = -math.inf
-    for joint in faces:
-        for other, direction in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
-            apart = float(np.hypot(*(other - end))) / size
-            spread = float(np.hypot(*(direction - along)))
-            if 0 < spread < 1:
-                cut = max(cut, (CLEARANCE * inset - apart) / spread)
-    return cut
 
 
 def _on_a_face(vertex: Array, faces: list[Joint]) -> bool:
@@ -195,8 +162,7 @@ def _on_a_face(vertex: Array, faces: list[Joint]) -> bool:
 
 def _footing(joint: Joint, size: float, inset: float) -> Array:
     """Return a slab under a springing, wider than the joint by its length on both sides."""
-    index = joint.before if joint.after == SUPPORT else joint.after
-    into = _side(joint, index) * joint.normal
+    into = side(joint, stands_on(joint)) * joint.normal
     span = joint.tangent * joint.length / size
     ends = np.array([joint.inner / size - span, joint.outer / size + span]) - into * inset
     return np.concatenate([ends, ends[::-1] - into * joint.length / size])

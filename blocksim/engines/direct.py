@@ -35,6 +35,7 @@ class Direct:
     """The engine that solves every step."""
 
     name = "direct"
+    most_friction = FRICTION_CAP
 
     @property
     def version(self) -> str:

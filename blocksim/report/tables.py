@@ -15,7 +15,7 @@ from pathlib import Path
 import blocksim
 from blocksim.files import make_folder, write_whole
 from blocksim.report.answers import plain
-from blocksim.validate import ASIDE, ERROR_BOUND, TOL, Row
+from blocksim.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, installed, numbered
 from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure, save_figure
 
 
@@ -33,7 +33,7 @@ def machine() -> dict[str, str]:
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
         "blocksim": blocksim.__version__,
-        **{name: version(name) for name in ("numpy", "scipy", "pymunk")},
+        **{name: version(name) for name in ("numpy", "scipy", *installed())},
     }
 
 
@@ -56,8 +56,13 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
     """
     make_folder(folder)
     records = [as_record(row) for row in rows]
-    settings = {"tol": TOL, "error_bound": ERROR_BOUND, "aside": ASIDE}
-    document = {"machine": machine(), "settings": settings, "rows": records}
+    settings = {"tol": TOLS, "error_bound": ERROR_BOUND, "aside": ASIDE}
+    document = {
+        "machine": machine(),
+        "settings": settings,
+        "rows": records,
+        "disagreements": disagreements(rows),
+    }
     text = json.dumps(document, indent=1, allow_nan=False) + "\n"
     sheet = io.StringIO()
     writer = csv.DictWriter(sheet, fieldnames=list(records[0]), lineterminator="\n")
@@ -76,7 +81,9 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
 def _points(rows: Sequence[Row]) -> list[MapPoint]:
     """Place each arch at its bracket; what never stands, at the divide's side, eta = 2."""
     points: list[MapPoint] = []
-    for number, row in enumerate(rows, start=1):
+    numbers = numbered(rows)
+    first = next((row.engine for row in rows), "")
+    for row in rows:
         high = row.eta_high if row.eta_high is not None else row.eta_low
         if high is None or row.eta_low is None:
             continue
@@ -85,7 +92,9 @@ def _points(rows: Sequence[Row]) -> list[MapPoint]:
                 mu=min(row.mu, LARGEST_MU),
                 eta=(row.eta_low + high) / 2,
                 mode=row.mode_observed,
-                label=str(number),
+                label=str(numbers[row.scenario]) if row.engine == first else "",
+                engine=row.engine,
+                outline=row.engine != first,
                 miss=bool(row.miss),
                 note=row.scenario,
             )

@@ -64,6 +64,10 @@ class MapPoint:
         Whether something disagrees.
     note : str
         Line of the legend that explains the label.
+    engine : str
+        Which one observed it.
+    outline : bool
+        Drawn as an outline, around the point of another engine; without a label.
     """
 
     mu: float
@@ -72,6 +76,8 @@ class MapPoint:
     label: str
     miss: bool
     note: str
+    engine: str = ""
+    outline: bool = False
 
 
 def map_figure(
@@ -181,25 +187,27 @@ def _draw_points(axes: Axes, points: Sequence[MapPoint]) -> None:
         x, y = LETTERS[name]
         taken.append((mark.mu + (x + 4) * POINT[0], mark.eta + (y + 4) * POINT[1]))
     for point in points:
-        place = _free_place(point, taken)
         style = MODES[point.mode] if point.mode else UNNAMED
+        edge = style.colour if point.outline else "white"
         axes.plot(
             point.mu,
             point.eta,
             style.marker,
-            ms=8,
-            mfc=style.colour,
-            mec=MISS if point.miss else "white",
+            ms=12 if point.outline else 8,
+            mfc="none" if point.outline else style.colour,
+            mec=MISS if point.miss else edge,
             mew=1.8 if point.miss else 0.8,
             zorder=5,
             clip_on=False,
         )
         if point.miss:
             axes.plot(point.mu, point.eta, "o", ms=16, mfc="none", mec=MISS, mew=1.4, zorder=5)
+        if point.outline:
+            continue
         axes.annotate(
             point.label,
             (point.mu, point.eta),
-            xytext=place,
+            xytext=_free_place(point, taken),
             textcoords="offset points",
             ha="center",
             va="center",
@@ -242,7 +250,15 @@ def _legend(figure: Figure, points: Sequence[MapPoint]) -> None:
     if any(point.miss for point in points):
         ring = Line2D([], [], ls="", marker="o", mfc="none", mec=MISS, ms=11, label="a miss")
         handles.append(ring)
-    handles += [Line2D([], [], ls="", label=f"{p.label:>2}  {p.note}") for p in points]
+    for outline in (False, True):
+        engine = next((p.engine for p in points if p.outline is outline and p.engine), None)
+        if engine:
+            fill, size = ("none", 11) if outline else ("k", 8)
+            shape = Line2D([], [], ls="", marker="o", mec="k", mfc=fill, ms=size, label=engine)
+            handles.append(shape)
+    handles += [
+        Line2D([], [], ls="", label=f"{p.label:>2}  {p.note}") for p in points if not p.outline
+    ]
     figure.legend(
         handles=handles,
         loc="outside right upper",

@@ -1,0 +1,387 @@
+"""Bullet through pybullet: three dimensions, off-screen, sequential impulses, Coulomb friction.
+
+How a near-critical arch has to be put into it (each point measured, see
+`analysis/pybullet_settings.py`):
+
+- Hulls are unfit: they get one contact point a step, or rounded corners. A block is a
+  thin box on each of its joint faces, which Bullet collides exactly.
+- Corners that coincide make contact points jump. One face of each joint reaches beyond
+  the other by a `LEDGE`, along the joint and in depth: the contacts are those of the
+  smaller face, whose corners are true.
+- Bodies sink until they overlap by the slop, so they start with just that overlap.
+- Points of contact closer than Bullet's breaking threshold replace each other. It is a
+  share of the block's size, which for thin arches is more than the joint's length.
+- Friction impulses are forgotten after every step, so that each step is solved from
+  nothing. The sweeps this takes hardly depend on the step: long steps, each solved until
+  a sweep changes next to nothing.
+- Inertias are the true ones. Large ones out of the plane, meant to lock the arch in it,
+  keep the solver from converging. Bullet takes notice of an inertia only when a step ends:
+  one without gravity comes first.
+- A pair's friction is the product of its two shapes' values: each takes sqrt(mu). Bullet
+  cuts that product off at 10.
+
+Bullet's x and y are those of the assembly's plane, z is out of it. In that frame the two
+directions of friction Bullet chooses at rest lie in the plane and across it.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+import weakref
+from collections.abc import Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from blocksim.assembly import Array, Assembly, Block, Joint, displacement
+from blocksim.engines.base import Quality, Settings, World
+from blocksim.engines.faces import crowding, faces_of, ledge, side, springings, stands_on
+
+
+@contextmanager
+def _quiet() -> Generator[None]:
+    """Keep what a C library writes to standard error from the terminal."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with open(os.devnull, "wb") as nowhere:  # noqa: PTH123
+        os.dup2(nowhere.fileno(), 2)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+
+
+with _quiet():  # It announces its build time.
+    import pybullet  # pyright: ignore[reportMissingTypeStubs]
+
+bullet: Any = pybullet
+
+MOST_FRICTION = 10.0
+"""Bullet's own bound of a pair's friction."""
+OVERLAP = 2e-5
+"""Overlap of two closed faces, and slop [size]."""
+PLATE = 0.15
+"""Thickness of the box on a face, in units of the block's extent normal to it."""
+THINNEST = 2e-4
+"""Least thickness of the box on a face [size]."""
+BREAKING = 0.1
+"""Distance at which contact points count as one, in units of the shortest joint."""
+MOST_BREAKING = 0.02
+"""Bullet's own such distance, in units of a block's size."""
+LOCK = 1e6
+"""Factor on inertias out of the plane where blocks are locked in it."""
+STEP = 0.1
+SHORT = 0.1
+"""Length of a joint below which errors shrink more slowly [size]."""
+SWEEPS = 100
+"""Most sweeps of a step, for each pair of blocks."""
+HOLD_SWEEPS = 300
+"""Most sweeps of the onset test, for each pair of blocks."""
+STILL = 1e-5
+ACCURACY = 1e-5
+"""Error of the accelerations at which a step counts as solved [g]."""
+SHARE = 1e-4
+"""The same as a share of the velocities, once blocks move fast."""
+RELAXATION = 3.0
+"""Sweeps in which an error shrinks e-fold, for each pair of blocks (measured)."""
+TRAVEL = 5e-3
+"""Way of a corner in a step above which the step is divided [size]."""
+FINEST = 20
+"""Most parts of a step."""
+
+
+class Bullet:
+    """The engine of pybullet.
+
+    Parameters
+    ----------
+    turn : float
+        Angle about the vertical by which the assembly's plane is turned in Bullet's frame
+        [rad]; it should not matter, and this is how to see whether it does.
+    origin : tuple of float
+        Where in Bullet's frame the assembly's origin lies [size], likewise.
+    """
+
+    name = "pybullet"
+    most_friction = MOST_FRICTION
+
+    def __init__(
+        self, turn: float = 0.0, origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> None:
+        self._frame = _Frame(turn, origin)
+
+    @property
+    def version(self) -> str:
+        """Version of pybullet."""
+        return version("pybullet")
+
+    def settings(self, assembly: Assembly) -> Settings:
+        """Choose sweeps that suffice for impulses to cross the assembly.
+
+        What has to cross n blocks takes n^2 sweeps; more where joints are short, and a
+        small moment at one of them is a large change of its pressures.
+        """
+        pairs = _pairs(assembly)
+        return Settings(
+            step=STEP,
+            sweeps=round(SWEEPS * pairs),
+            hold_sweeps=round(HOLD_SWEEPS * pairs),
+            still=STILL,
+        )
+
+    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
+        """Put an assembly into a new world."""
+        return _Bodies(assembly, mu, settings, self._frame)
+
+
+def _pairs(assembly: Assembly) -> float:
+    """Pairs of blocks, as many more as short joints count for."""
+    shortest = min(joint.length for joint in assembly.joints) / assembly.size
+    return len(assembly.blocks) ** 2 * max(1.0, SHORT / shortest)
+
+
+class _Frame:
+    """Where the plane of the assembly lies in Bullet's space."""
+
+    def __init__(self, turn: float, origin: tuple[float, float, float]) -> None:
+        self._turned = Rotation.from_rotvec([0.0, turn, 0.0])
+        self._origin = np.array(origin)
+
+    def vector(self, x: float, y: float, z: float) -> list[float]:
+        """Turn a vector of the plane into Bullet's space."""
+        turned: list[float] = self._turned.apply([x, y, z]).tolist()
+        return turned
+
+    def place(self, centre: Array) -> list[float]:
+        """Where a point of the plane lies, x, y, z."""
+        x, y, z = self.vector(centre[0], centre[1], 0.0)
+        return [x + self._origin[0], y + self._origin[1], z + self._origin[2]]
+
+    @property
+    def quaternion(self) -> list[float]:
+        """How a block at rest is turned."""
+        turned: list[float] = self._turned.as_quat().tolist()
+        return turned
+
+    def motions(self, linear: Array, angular: Array) -> Array:
+        """Return velocities as columns x, y, rotation; z, rotation vector's x, y."""
+        back = self._turned.inv()
+        shift, turn = back.apply(linear), back.apply(angular)
+        return np.column_stack([shift[:, :2], turn[:, 2], shift[:, 2], turn[:, :2]])
+
+    def poses(self, places: Array, quaternions: Array) -> Array:
+        """Return places and orientations in the same columns."""
+        since = Rotation.from_quat(quaternions) * self._turned.inv()
+        return self.motions(places - self._origin, since.as_rotvec())
+
+
+class _Bodies:
+    """Bullet's space with one body for each block."""
+
+    def __init__(
+        self, assembly: Assembly, mu: float, settings: Settings, frame: _Frame
+    ) -> None:
+        self._assembly, self._settings, self._frame = assembly, settings, frame
+        self._pairs = _pairs(assembly)
+        self._client = bullet.connect(bullet.DIRECT)
+        # Bullet keeps at most a thousand spaces open.
+        weakref.finalize(self, bullet.disconnect, self._client)
+        reach = assembly.reach.max() / assembly.size + max(
+            block.depth for block in assembly.blocks
+        ) / (2 * assembly.size)
+        shortest = min(joint.length for joint in assembly.joints) / assembly.size
+        self._set(
+            numSubSteps=0,
+            contactSlop=OVERLAP,
+            useSplitImpulse=1,
+            splitImpulsePenetrationThreshold=0,
+            warmStartingFactor=1,
+            deterministicOverlappingPairs=1,
+            enableFileCaching=0,
+            contactBreakingThreshold=min(MOST_BREAKING, BREAKING * shortest / reach),
+        )
+        self._friction = math.sqrt(min(mu, MOST_FRICTION))
+        self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
+        faces = faces_of(assembly)
+        self._bodies = [self._block(index, faces[index]) for index in range(len(faces))]
+        for joint in springings(assembly):
+            footing = self._footing(joint)
+            # A support touches only the block that stands on it.
+            for index, body in enumerate(self._bodies):
+                if index != stands_on(joint):
+                    bullet.setCollisionFilterPair(
+                        footing, body, -1, -1, 0, physicsClientId=self._client
+                    )
+        bullet.stepSimulation(physicsClientId=self._client)
+        bullet.setGravity(
+            *frame.vector(0.0, -math.cos(settings.tilt), math.sin(settings.tilt)),
+            physicsClientId=self._client,
+        )
+
+    def _set(self, **parameters: float) -> None:
+        bullet.setPhysicsEngineParameter(**parameters, physicsClientId=self._client)
+
+    def _block(self, index: int, faces: list[Joint]) -> int:
+        """Create a body that is a thin box on each of its block's faces."""
+        block, size = self._assembly.blocks[index], self._assembly.size
+        boxes = [_plate(block, index, joint, faces, size) for joint in faces]
+        shape = bullet.createCollisionShapeArray(
+            shapeTypes=[bullet.GEOM_BOX] * len(boxes),
+            halfExtents=[box.half for box in boxes],
+            collisionFramePositions=[box.centre for box in boxes],
+            collisionFrameOrientations=[box.quaternion for box in boxes],
+            physicsClientId=self._client,
+        )
+        mass, _, inertia, _, *across = self._assembly.spatial_masses[index].tolist()
+        body = self._body(mass, shape, self._places[index])
+        lock = LOCK if self._settings.plane_lock else 1.0
+        bullet.changeDynamics(
+            body,
+            -1,
+            mass=mass,
+            localInertiaDiagonal=[lock * across[0], lock * across[1], inertia],
+            physicsClientId=self._client,
+        )
+        return body
+
+    def _footing(self, joint: Joint) -> int:
+        """Create a slab under a springing, wider than the joint on all sides."""
+        block, size = self._assembly.blocks[stands_on(joint)], self._assembly.size
+        length = joint.length / size
+        into = side(joint, stands_on(joint)) * joint.normal
+        centre = (joint.inner + joint.outer) / 2 / size - into * (length - OVERLAP) / 2
+        box = _Box.along(joint, [1.5 * length, length / 2, block.depth / size], centre)
+        shape = bullet.createCollisionShapeArray(
+            shapeTypes=[bullet.GEOM_BOX],
+            halfExtents=[box.half],
+            collisionFramePositions=[[0.0, 0.0, 0.0]],
+            collisionFrameOrientations=[box.quaternion],
+            physicsClientId=self._client,
+        )
+        return self._body(0.0, shape, self._frame.place(centre))
+
+    def _body(self, mass: float, shape: int, place: list[float]) -> int:
+        # Without maximal coordinates Bullet forgets all impulses and damps every motion.
+        body: int = bullet.createMultiBody(
+            mass,
+            shape,
+            basePosition=place,
+            baseOrientation=self._frame.quaternion,
+            useMaximalCoordinates=1,
+            physicsClientId=self._client,
+        )
+        bullet.changeDynamics(
+            body,
+            -1,
+            lateralFriction=self._friction,
+            linearDamping=0,
+            angularDamping=0,
+            restitution=0,
+            physicsClientId=self._client,
+        )
+        return body
+
+    def hold(self, sweeps: int) -> Array:
+        """Solve the contacts of one step from rest, then put every block back.
+
+        Normal impulses are kept, which helps; those of friction start again.
+        """
+        step = self._settings.step
+        self._set(fixedTimeStep=step, numSolverIterations=sweeps, solverResidualThreshold=0)
+        bullet.stepSimulation(physicsClientId=self._client)
+        accelerations = self._velocities() / step
+        nothing = [0.0, 0.0, 0.0]
+        for body, place in zip(self._bodies, self._places, strict=True):
+            bullet.resetBasePositionAndOrientation(
+                body, place, self._frame.quaternion, physicsClientId=self._client
+            )
+            bullet.resetBaseVelocity(body, nothing, nothing, physicsClientId=self._client)
+        return accelerations
+
+    def advance(self, steps: int) -> None:
+        """Let the blocks move, in parts of a step where they move far."""
+        for _ in range(steps):
+            speed = float(displacement(self._velocities(), self._assembly))
+            parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
+            step = self._settings.step / parts
+            change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
+            self._set(
+                fixedTimeStep=step,
+                numSolverIterations=self._settings.sweeps,
+                solverResidualThreshold=change**2,
+            )
+            for _ in range(parts):
+                bullet.stepSimulation(physicsClientId=self._client)
+
+    def poses(self) -> Array:
+        """Return places and rotations, shape (blocks, 6)."""
+        read = [
+            bullet.getBasePositionAndOrientation(body, physicsClientId=self._client)
+            for body in self._bodies
+        ]
+        places, quaternions = zip(*read, strict=True)
+        return self._frame.poses(np.array(places), np.array(quaternions))
+
+    def quality(self) -> Quality:
+        """Bullet does not tell."""
+        return Quality()
+
+    def _velocities(self) -> Array:
+        read = [
+            bullet.getBaseVelocity(body, physicsClientId=self._client) for body in self._bodies
+        ]
+        linear, angular = zip(*read, strict=True)
+        return self._frame.motions(np.array(linear), np.array(angular))
+
+
+@dataclass(frozen=True)
+class _Box:
+    """A box in the frame of its body: half extents, centre, orientation."""
+
+    half: list[float]
+    centre: list[float]
+    quaternion: list[float]
+
+    @classmethod
+    def along(cls, joint: Joint, half: list[float], centre: Array) -> _Box:
+        """Return one whose first axis is the joint's tangent and whose last is the depth."""
+        angle = math.atan2(joint.tangent[1], joint.tangent[0])
+        quaternion = [0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)]
+        return cls(half=half, centre=[*centre.tolist(), 0.0], quaternion=quaternion)
+
+
+def _plate(block: Block, index: int, joint: Joint, faces: list[Joint], size: float) -> _Box:
+    """Return the box on one face of a block."""
+    inward = side(joint, index) * joint.normal
+    extent = float(((block.vertices - joint.inner) @ inward).max()) / size
+    ends = ((joint.inner, joint.tangent), (joint.outer, -joint.tangent))
+    narrowest = min(
+        (
+            float(np.hypot(*(corner - end))) / size
+            for end, _ in ends
+            for other in faces
+            if other is not joint
+            for corner in (other.inner, other.outer)
+        ),
+        default=extent,
+    )
+    thickness = min(PLATE * extent, max(narrowest / 2, THINNEST))
+    beyond = ledge(joint, index, size)
+    cuts = [max(-beyond, crowding(*end, faces, size, thickness)) for end in ends]
+    inner, outer = (
+        end / size + along * cut for (end, along), cut in zip(ends, cuts, strict=True)
+    )
+    half = [
+        float(np.hypot(*(outer - inner))) / 2,
+        thickness / 2,
+        block.depth / size / 2 + beyond,
+    ]
+    centre = (inner + outer) / 2 + inward * (thickness - OVERLAP) / 2 - block.centre / size
+    return _Box.along(joint, half, centre)
