@@ -59,11 +59,7 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
         Lengths in units of the assembly's size.
     """
     size = assembly.size
-    before = np.array([joint.before for joint in assembly.joints])
-    after = np.array([joint.after for joint in assembly.joints])
-    ends = np.array([(joint.inner, joint.outer) for joint in assembly.joints]) / size
-    normal = np.array([joint.normal for joint in assembly.joints])
-    tangent = np.array([joint.tangent for joint in assembly.joints])
+    before, after, ends, normal, tangent, _ = assembly.joint_arrays
     # The support is appended as a block that stays where it is, index -1.
     start = np.vstack([assembly.centres / size, np.zeros(2)])
     moved = np.vstack([poses, np.zeros(3)])
@@ -102,8 +98,8 @@ def overlap_share(assembly: Assembly, poses: Array) -> float:
     converged presses blocks into each other.
     """
     motion = joint_motion(assembly, poses)
-    lengths = np.array([joint.length for joint in assembly.joints]) / assembly.size
-    turned, slipped = np.abs(motion.turn) * lengths, np.abs(motion.slip)
+    turned = np.abs(motion.turn) * assembly.joint_arrays.length
+    slipped = np.abs(motion.slip)
     moved = max(float(turned.max()), float(slipped.max()))
     return max(0.0, -float(motion.gap.min())) / moved if moved > 0 else 0.0
 
@@ -137,7 +133,9 @@ def closed_joints(arch: Arch) -> tuple[ObservedJoint, ...]:
     )
 
 
-def classify(assembly: Assembly, poses: Array) -> tuple[ObservedJoint, ...]:
+def classify(
+    assembly: Assembly, poses: Array, *, least: float | None = None
+) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does at one instant.
 
     Turning (relative rotation times the assembly's size) and slipping are both lengths
@@ -150,6 +148,9 @@ def classify(assembly: Assembly, poses: Array) -> tuple[ObservedJoint, ...]:
     poses : (blocks, 3) float
         As for `joint_motion`; best an early instant, while the motion is the collapse
         mechanism and not yet what follows from it.
+    least : float, optional
+        A joint takes part if it turns or slips more than this, in units of the assembly's
+        size; by default more than the share `ACTIVE` of the most active one.
 
     Returns
     -------
@@ -158,14 +159,15 @@ def classify(assembly: Assembly, poses: Array) -> tuple[ObservedJoint, ...]:
     """
     motion = joint_motion(assembly, poses)
     turn, slip = np.abs(motion.turn), np.abs(motion.slip)
-    least = ACTIVE * max(float(turn.max()), float(slip.max()))
+    if least is None:
+        least = ACTIVE * max(float(turn.max()), float(slip.max()))
     observed: list[ObservedJoint] = []
-    for index, joint in enumerate(assembly.joints):
-        angle = math.atan2(joint.tangent[0], joint.tangent[1])
+    for index, tangent in enumerate(assembly.joint_arrays.tangent):
+        angle = math.atan2(tangent[0], tangent[1])
         opening = motion.gap[index]
         slips = bool(slip[index] > least > 0)
         if turn[index] > least > 0:
-            parted = turn[index] * joint.length / assembly.size
+            parted = turn[index] * assembly.joint_arrays.length[index]
             state = _turning(opening, parted, slips=slips)
         else:
             state = JointState.SLIDES if slips else JointState.CLOSED
