@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.arch import Arch, crown_width
-from blocksim.assembly import SUPPORT, Array, Assembly
+from blocksim.assembly import Array, Assembly
 from blocksim.modes import ActiveJoint, Mode, name_mode
 
 
@@ -75,7 +75,6 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
 
     apart = carried(after) - carried(before)
     mean = (moved[after, 2] + moved[before, 2]) / 2
-    mean = np.where((after == SUPPORT) | (before == SUPPORT), 0.0, mean)
     cos, sin = np.cos(mean)[:, None], np.sin(mean)[:, None]
 
     def along(axis: Array) -> Array:
