@@ -10,7 +10,7 @@ supersampled 46 ms) and draws the same picture as SVG.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import BinaryIO, Literal, NamedTuple
+from typing import Any, BinaryIO, Literal, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -118,6 +118,7 @@ class Canvas:
         size = width / DOTS, height / DOTS
         self._figure = Figure(figsize=size, dpi=DOTS, facecolor=PAPER)
         self._agg = FigureCanvasAgg(self._figure)
+        self._background: Any = None
         self._still: list[Artist] = []
         self._moving: list[Artist] = []
 
@@ -160,7 +161,8 @@ def _artists(parts: Sequence[Part], labels: Sequence[Label]) -> list[Artist]:
 
 def _polygons(panel: Panel, shapes: Sequence[Shape]) -> PolyCollection:
     drawn = PolyCollection(
-        [shape.points if shape.closed else _there_and_back(shape.points) for shape in shapes],
+        [_outline(shape) for shape in shapes],
+        closed=False,
         facecolors=[shape.fill for shape in shapes],
         edgecolors=[shape.edge for shape in shapes],
         linewidths=[shape.width for shape in shapes],
@@ -173,9 +175,8 @@ def _polygons(panel: Panel, shapes: Sequence[Shape]) -> PolyCollection:
     return drawn
 
 
-def _there_and_back(line: Array) -> Array:
-    """A line as a polygon without area."""
-    return np.concatenate([line, line[-2:0:-1]])
+def _outline(shape: Shape) -> Array:
+    return np.concatenate([shape.points, shape.points[:1]]) if shape.closed else shape.points
 
 
 def _words(label: Label) -> Text:

@@ -29,6 +29,7 @@ SLOW = (1, 2, 3, 4, 5, 6, 8)
 TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT = 74.0, 44.0
+ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 QUIET = "#5d5a53"
 """Of words that matter less."""
 WORDS = {
@@ -77,6 +78,10 @@ class Film:
     ----------
     width, height : int
         Both even, as video asks for.
+    seconds : float
+        How long the motion is that is shown.
+    on_ground : bool
+        Whether it ends because a block has reached the ground or a footing.
     count : int
         Number of frames.
     """
@@ -94,8 +99,9 @@ class Film:
         self.width = 2 * round(height * 8 / 9)
         self.rate = rate
         self._stages = [Stage(recording) for recording in recordings]
-        self._seconds = self._duration()
-        self.slow = _slowness(self._seconds) if slow is None else slow
+        self.seconds = self._duration()
+        self.on_ground = any(stage.end < stage.recording.times[-1] for stage in self._stages)
+        self.slow = _slowness(self.seconds) if slow is None else slow
         self._size = self.height / TALL
         self._panels = self._arrange()
         kinds: dict[ViewName, type[PlanarView | SpatialView]] = {
@@ -110,7 +116,7 @@ class Film:
         ]
         self._canvas = Canvas(self.width, self.height)
         self._canvas.keep(*self._still())
-        self.count = 1 + round(rate * (BEFORE + self._seconds * self.slow + AFTER))
+        self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
 
     def frame(self, number: int) -> NDArray[np.uint8]:
         """Draw a frame, shape (height, width, 4): red, green, blue, opacity."""
@@ -127,11 +133,11 @@ class Film:
         at : float, optional
             Seconds since the release; by default the end.
         """
-        self._draw(self._seconds if at is None else at)
+        self._draw(self.seconds if at is None else at)
         self._canvas.save(file, kind)
 
     def _draw(self, seconds: float) -> None:
-        seconds = min(max(seconds, 0.0), self._seconds)
+        seconds = min(max(seconds, 0.0), self.seconds)
         parts: list[Part] = []
         for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
             parts.append((panel, view.shapes(stage.at(seconds / _unit(stage.recording)))))
@@ -176,7 +182,7 @@ class Film:
         size, arch = self._size, stage.recording.arch
         friction = "∞" if math.isinf(stage.recording.mu) else f"{stage.recording.mu:.4g}"
         head = (
-            f"α = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
+            f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
             f"μ = {friction}   n = {arch.voussoirs}"
         )
         least = limit.least_thickness(
@@ -191,11 +197,11 @@ class Film:
         ]
 
     def _clock(self, seconds: float) -> str:
-        return f"t = {seconds:.{_digits(self._seconds)}f} s"
+        return f"t = {seconds:.{_digits(self.seconds)}f} s"
 
     def _pace(self) -> Label:
         words = "real time" if self.slow == 1 else f"{self.slow:g} times slower"
-        x = 48 * self._size + width_of(self._clock(self._seconds), 19 * self._size, bold=True)
+        x = 48 * self._size + width_of(self._clock(self.seconds), 19 * self._size, bold=True)
         return Label(x, 15 * self._size, words, size=14 * self._size, colour=QUIET)
 
     def _legend(self) -> tuple[list[Shape], list[Label]]:

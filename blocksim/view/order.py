@@ -75,7 +75,7 @@ def _sorted(
     count: int, behind: NDArray[np.int64], before: NDArray[np.int64], distance: Array
 ) -> list[int]:
     """Sort topologically, the farthest first wherever there is a choice."""
-    covers: list[list[int]] = [[] for _ in range(count)]
+    covers: dict[int, list[int]] = {body: [] for body in range(count)}
     waits = [0] * count
     for far, near in zip(behind.tolist(), before.tolist(), strict=True):
         covers[far].append(near)

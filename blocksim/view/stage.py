@@ -9,6 +9,7 @@ on: what the recording holds beyond would be blocks falling through the floor.
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -90,7 +91,7 @@ class Stage:
 
     @cached_property
     def end(self) -> float:
-        """Time at which the first block has reached ground or footing, or the recording ends."""
+        """Time at which a block has reached ground or footing, or the recording ends."""
         times = self.recording.times
         depth = np.array([self._sunk(self._corners(i, i, 0.0)[..., :2]) for i in self._frames])
         late = np.flatnonzero(depth > SUNK)
@@ -238,7 +239,7 @@ def _quaternions(recording: Recording) -> Array:
     angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
     # sin(angle/2)/angle, 1/2 where nothing turns.
     turns = np.concatenate([np.cos(angle / 2), vectors * np.sinc(angle / (2 * np.pi)) / 2], -1)
-    for earlier, later in zip(turns[:-1], turns[1:], strict=True):
+    for earlier, later in pairwise(turns):
         # q and -q are one rotation: take the one nearer to the frame before.
         later[(earlier * later).sum(axis=-1) < 0] *= -1
     return turns

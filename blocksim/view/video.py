@@ -1,14 +1,18 @@
+# PyAV's annotations leave keyword arguments and types of packets open.
+# pyright: reportUnknownMemberType=false
 """Films to files: mp4 by PyAV, gif by Pillow, single frames as png and svg."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import BinaryIO
 
 import av
 import numpy as np
 from av.video.reformatter import Colorspace
+from numpy.typing import NDArray
 from PIL import Image
 
 from blocksim.files import write_whole
@@ -84,11 +88,21 @@ def _mp4(film: Film, file: BinaryIO, progress: Progress) -> None:
         # Players take HD video for BT.709; say so, and convert so.
         stream.color_range, stream.colorspace = 1, Colorspace.ITU709
         stream.color_primaries = stream.color_trc = 1
-        for number in range(film.count):
-            picture = av.VideoFrame.from_ndarray(film.frame(number), format="rgba")
+
+        def encode(frame: NDArray[np.uint8]) -> None:
+            picture = av.VideoFrame.from_ndarray(frame, format="rgba")
             converted = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709)
             container.mux(stream.encode(converted))
-            progress((number + 1) / film.count, "rendering")
+
+        # One frame is encoded while the next is drawn.
+        with ThreadPoolExecutor(1) as encoder:
+            encoded = encoder.submit(encode, film.frame(0))
+            for number in range(1, film.count):
+                frame = film.frame(number)
+                encoded.result()
+                encoded = encoder.submit(encode, frame)
+                progress((number + 1) / film.count, "rendering")
+            encoded.result()
         container.mux(stream.encode(None))
 
 
