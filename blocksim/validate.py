@@ -12,6 +12,7 @@ from multiprocessing import get_context
 from blocksim.bracket import ETA_MAX, Bracket, bracket
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
+from blocksim.recording import Recording
 from blocksim.scenario import Scenario, load_scenario, shipped
 from blocksim.trial import trial
 from blocksim.verdict import Verdict
@@ -56,6 +57,10 @@ class Row:
     note : str
         Why, or what to keep in mind.
     wall_s : float
+    title, source : str
+        Of the scenario.
+    recording : Recording or None
+        The moving run 1 % below the bracket; None where there was none.
     """
 
     scenario: str
@@ -78,6 +83,9 @@ class Row:
     miss: str
     note: str
     wall_s: float
+    title: str
+    source: str
+    recording: Recording | None
 
 
 def scenarios(*, quick: bool) -> list[Scenario]:
@@ -139,10 +147,12 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         tol=TOL,
     )
     mode, below, above = found.mode, None, None
+    recording = None
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
         seen = trial(scenario.arch(under), scenario.mu, engine)
         mode, below = seen.mode, seen.verdict
+        recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
         over = found.centre * (1 + ASIDE)
@@ -174,6 +184,9 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         miss=miss,
         note=_note(scenario, found, mode),
         wall_s=time.perf_counter() - started,
+        title=scenario.title,
+        source=scenario.source,
+        recording=recording,
     )
 
 
