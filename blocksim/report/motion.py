@@ -154,17 +154,14 @@ def drawing(recording: Recording, gravity: float) -> Drawing:
 
 def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
     """Poses spread evenly over the way moved, enlarged, y downwards."""
-    displaced = np.maximum.accumulate(recording.displacement)
-    wanted = np.linspace(0.0, displaced[-1], KEYS + 1)
+    displaced: Array = np.maximum.accumulate(recording.displacement)
+    wanted: Array = np.linspace(0.0, float(displaced[-1]), KEYS + 1)
     times = np.interp(wanted, displaced + 1e-15 * recording.times, recording.times)
-    moved = recording.poses - recording.poses[0]
-    each = np.stack(
-        [
-            [np.interp(times, recording.times, moved[:, block, axis]) for axis in range(3)]
-            for block in range(moved.shape[1])
-        ]
-    ) * [[enlarged * UNIT], [-enlarged * UNIT], [-math.degrees(enlarged)]]
-    return np.round(each.transpose(2, 0, 1), 2).tolist()
+    moved = (recording.poses - recording.poses[0]).reshape(len(displaced), -1)
+    columns = [np.interp(times, recording.times, column) for column in moved.T]
+    poses = np.array(columns).T.reshape(KEYS + 1, -1, 3)
+    drawn = poses * [enlarged * UNIT, -enlarged * UNIT, -math.degrees(enlarged)]
+    return np.round(drawn, 2).tolist()
 
 
 def _marks(stage: Stage, states: list[JointState]) -> dict[int, tuple[Mark, ...]]:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from statistics import fmean
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
@@ -34,6 +35,7 @@ class Result:
 
     row: Row
     anchor: str
+    found: str
     bracket: str
     error: str
     drawing: Drawing | None
@@ -87,7 +89,7 @@ def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str])
         "degrees": _degrees,
         "friction": _friction,
         "ratio": ratio,
-        "capitalised": lambda words: words[:1].upper() + words[1:],
+        "capitalised": _capitalised,
     }
     template = environment.get_template("report.html")
     return template.render(
@@ -101,9 +103,9 @@ def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str])
         machine=machine,
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         seconds=sum(row.wall_s for row in rows),
-        tol=f"{TOL:.1%}",
-        aside=f"{ASIDE:.0%}",
-        bound=f"{ERROR_BOUND:.1%}",
+        tol=_percent(TOL),
+        aside=_percent(ASIDE),
+        bound=_percent(ERROR_BOUND),
         states=STATES,
         joint_colours=style.JOINTS,
         thrust_colour=style.THRUST,
@@ -120,12 +122,13 @@ def summary(rows: Sequence[Row]) -> str:
     parts = [f"{share} simulated arches agree with limit analysis in every respect"]
     errors = [abs(row.error) for row in rows if row.error is not None]
     if errors:
-        parts.append(f"the least thickness found is off by {max(errors):.3%} at most")
+        worst = _percent(max(errors), ".3f")
+        parts.append(f"the least thickness found is off by {worst} at most")
     false = sum(row.below is Verdict.STANDS or row.above is Verdict.COLLAPSES for row in rows)
     undecided = sum(Verdict.UNDECIDED in {row.below, row.above} for row in rows)
     asked = sum((row.below is not None) + (row.above is not None) for row in rows)
     parts.append(
-        f"of {asked} verdicts {ASIDE:.0%} to either side of it "
+        f"of {asked} verdicts {_percent(ASIDE)} to either side of it "
         f"{false or 'none'} {'is' if false <= 1 else 'are'} false and "
         f"{undecided or 'none'} {'is' if undecided <= 1 else 'are'} undecided"
     )
@@ -154,13 +157,24 @@ def _result(row: Row, anchor: str) -> Result:
         bracket = f"below {ratio(high)}"
     else:
         bracket = f"{low:.6g} to {high:.6g}"
+    ends = [eta for eta in (low, high) if eta is not None]
+    nothing = not ends or (high is None and row.eta_limit is None)
     return Result(
         row=row,
         anchor=anchor,
+        found="none" if nothing else ratio(fmean(ends)),
         bracket=bracket,
-        error="-" if row.error is None else f"{row.error:+.3%}",
+        error="-" if row.error is None else _percent(row.error, "+.3f"),
         drawing=None if row.recording is None else drawing(row.recording, GRAVITY),
     )
+
+
+def _percent(share: float, digits: str = "g") -> str:
+    return f"{share * 100:{digits}}\N{NO-BREAK SPACE}%"
+
+
+def _capitalised(words: str) -> str:
+    return words[:1].upper() + words[1:]
 
 
 def _degrees(angle: float) -> str:
