@@ -155,13 +155,17 @@ def drawing(recording: Recording, gravity: float) -> Drawing:
 def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
     """Poses spread evenly over the way moved, enlarged, y downwards."""
     displaced: Array = np.maximum.accumulate(recording.displacement)
-    wanted: Array = np.linspace(0.0, float(displaced[-1]), KEYS + 1)
-    times = np.interp(wanted, displaced + 1e-15 * recording.times, recording.times)
-    moved = (recording.poses - recording.poses[0]).reshape(len(displaced), -1)
-    columns = [np.interp(times, recording.times, column) for column in moved.T]
-    poses = np.array(columns).T.reshape(KEYS + 1, -1, 3)
-    drawn = poses * [enlarged * UNIT, -enlarged * UNIT, -math.degrees(enlarged)]
-    return np.round(drawn, 2).tolist()
+    places = np.arange(len(displaced), dtype=np.float64)
+    wanted = np.linspace(0.0, float(displaced[-1]), KEYS + 1)
+    # Frames at rest share a displacement; the later of them counts.
+    where: Array = np.interp(wanted, displaced + 1e-15 * places, places)
+    earlier = where.astype(np.int64)
+    later = np.minimum(earlier + 1, len(places) - 1)
+    share = (where - earlier)[:, None, None]
+    poses = recording.poses[earlier] * (1 - share) + recording.poses[later] * share
+    moved = poses - recording.poses[0]
+    drawn: Array = moved * [enlarged * UNIT, -enlarged * UNIT, -math.degrees(enlarged)]
+    return drawn.round(2).tolist()
 
 
 def _marks(stage: Stage, states: list[JointState]) -> dict[int, tuple[Mark, ...]]:
