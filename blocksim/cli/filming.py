@@ -123,7 +123,7 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
     if out.suffix.removeprefix(".") in STILLS:
         say(f"wrote {out}")
         return
-    why = ", until a block reaches the ground" if made.on_ground else ""
+    why = ", until a block reaches the ground or a footing" if made.on_ground else ""
     say(
         f"wrote {out}: {made.count / made.rate:.1f} s, {made.slow:g} times slower than the "
         f"{made.seconds:.3g} s it shows{why}"

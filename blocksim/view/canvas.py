@@ -53,6 +53,19 @@ def stone_tones(blocks: int) -> list[Colour]:
     return [mixed(stone, light if s > 0 else dark, 0.7 * abs(s)) for s in shades]
 
 
+def edge_width(scale: float, grain: float) -> float:
+    """Width of the edges of blocks, thin where blocks are small [pixels].
+
+    Parameters
+    ----------
+    scale : float
+        Pixels in a radius.
+    grain : float
+        Distance from block to block, in radii.
+    """
+    return max(0.25, min(1.6, 0.012 * scale, 0.05 * grain * scale))
+
+
 class Shape(NamedTuple):
     """A polygon, or a line if it has an edge and no fill.
 

@@ -247,6 +247,8 @@ def _round_length(length: float) -> float:
 
 def _share(ratio: float) -> str:
     """Say how thick the arch is compared with the thinnest that stands."""
+    if ratio >= 2:
+        return f"{ratio:.3g} times the least thickness"
     off = abs(ratio - 1) * 100
     shown = f"{off:.2g}" if off < 10 else f"{off:.0f}"
     return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness"

@@ -6,7 +6,7 @@ import numpy as np
 
 from blocksim.assembly import SUPPORT, Array
 from blocksim.joints import JointState
-from blocksim.view.canvas import Label, Panel, Shape, colour, mixed, stone_tones
+from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
 from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import GROUND, INK, JOINTS, PAPER, STONE, THRUST
 
@@ -43,7 +43,7 @@ class PlanarView:
         spare = free[1] - height * self._scale
         level = panel.y + floor + min(spare / 2, floor)
         self._origin = np.array([panel.x + panel.width / 2, level - low[1] * self._scale])
-        self._line = max(0.6, min(1.6, 0.012 * self._scale))
+        self._line = edge_width(self._scale, stage.grain)
         self._tones = stone_tones(len(stage.assembly.blocks))
         self.still = self._surroundings()
 

@@ -9,7 +9,16 @@ from scipy.spatial import ConvexHull
 
 from blocksim.assembly import SUPPORT, Array
 from blocksim.joints import JointState
-from blocksim.view.canvas import Colour, Label, Panel, Shape, colour, mixed, stone_tones
+from blocksim.view.canvas import (
+    Colour,
+    Label,
+    Panel,
+    Shape,
+    colour,
+    edge_width,
+    mixed,
+    stone_tones,
+)
 from blocksim.view.order import painting_order
 from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import GROUND, INK, JOINTS, PAPER, THRUST
@@ -71,7 +80,7 @@ class SpatialView:
         centre = (flat.max(axis=0) + flat.min(axis=0)) / 2 * self._scale
         self._shift = np.array([panel.x + panel.width / 2, panel.y + panel.height / 2]) - centre
         self._reach = reach
-        self._line = max(0.7, min(1.5, 0.011 * self._scale / (DISTANCE * reach)))
+        self._line = edge_width(self._scale / (DISTANCE * reach), stage.grain)
         self._tones = stone_tones(len(stage.assembly.blocks))
         self.still = self._ground()
 

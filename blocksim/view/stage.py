@@ -23,6 +23,8 @@ DROP = 0.4
 """Height of the footings below the lower end of a springing [r]."""
 LEDGE = 0.12
 """How far a footing reaches beyond its springing, as a share of the joint's length."""
+FEWEST = 4
+"""Sides of a footing, and of a block at least."""
 SUNK = 0.02
 """Depth of a corner in the ground or in a footing that passes for touching it [r]."""
 SEEN = 4e-3
@@ -69,6 +71,8 @@ class Stage:
         Level of the ground.
     footings : tuple of (k, 2) float
         Convex outlines of what the arch stands on.
+    grain : float
+        Distance from block to block.
     """
 
     def __init__(self, recording: Recording) -> None:
@@ -77,7 +81,7 @@ class Stage:
         size = self.assembly.size
         self.depth = max(block.depth for block in self.assembly.blocks) / size
         outlines = [(block.vertices - block.centre) / size for block in self.assembly.blocks]
-        sides = max(len(outline) for outline in outlines)
+        sides = max(FEWEST, *(len(outline) for outline in outlines))
         # A triangle (eta = 2) repeats a corner, so that all blocks are one array.
         self._outlines = np.array(
             [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for each in outlines]
@@ -87,6 +91,7 @@ class Stage:
         self.ground = float(ends[..., 1].min()) - DROP
         self.footings = tuple(_footing(pair, self.ground) for pair in ends)
         self._bearing = [max(joint.before, joint.after) for joint in springings]
+        self.grain = float(np.hypot(*np.diff(self.assembly.centres, axis=0).T).min()) / size
         self._turns = _quaternions(recording)
 
     @cached_property
@@ -181,11 +186,20 @@ class Stage:
         )
 
     def _side(self, block: int, inner: Array, outer: Array) -> tuple[int, int]:
+        """Corners of a block that are the two ends of a joint, next to each other."""
         if block == SUPPORT:
             return 0, 0
-        vertices = self.assembly.blocks[block].vertices
-        first, last = (int(np.hypot(*(vertices - end).T).argmin()) for end in (inner, outer))
-        return first, last
+        corners = self._outlines[block] + self.assembly.centres[block] / self.assembly.size
+        after = np.roll(corners, -1, axis=0)
+        ends = np.array([inner, outer]) / self.assembly.size
+        off = [
+            np.linalg.norm(corners - ends[one], axis=1)
+            + np.linalg.norm(after - ends[1 - one], axis=1)
+            for one in (0, 1)
+        ]
+        turned, side = np.unravel_index(int(np.argmin(off)), (2, len(corners)))
+        first, last = int(side), (int(side) + 1) % len(corners)
+        return (last, first) if turned else (first, last)
 
     @property
     def _frames(self) -> range:
