@@ -181,6 +181,8 @@ def _polygons(panel: Panel, shapes: Sequence[Shape]) -> PolyCollection:
         linewidths=[shape.width for shape in shapes],
         joinstyle="round",
         capstyle="round",
+        # Upright edges would jump from pixel to pixel as blocks move.
+        snap=False,
         transform=IdentityTransform(),
     )
     corners = Bbox.from_bounds(*panel)

@@ -99,22 +99,22 @@ class Stage:
         """Time at which a block has reached ground or footing, or the recording ends."""
         times = self.recording.times
         depth = np.array([self._sunk(self._corners(i, i, 0.0)[..., :2]) for i in self._frames])
+        # Where footings are so near each other that they meet blocks at rest, that is no end.
+        depth = depth - max(0.0, float(depth[0]))
         late = np.flatnonzero(depth > SUNK)
-        if not len(late) or late[0] == 0:
+        if not len(late):
             return float(times[-1])
         between = slice(late[0] - 1, late[0] + 1)
         return float(np.interp(SUNK, depth[between], times[between]))
 
     def _sunk(self, corners: Array) -> float:
-        """Deepest that any corner is in the ground, or in a footing of another block."""
-        deepest = self.ground - float(corners[..., 1].min())
+        """Deepest that a block is in the ground, or meets a footing of another block."""
+        outlines = corners[:, 0]
+        deepest = self.ground - float(outlines[..., 1].min())
         for block, footing in zip(self._bearing, self.footings, strict=True):
-            others = np.delete(corners, block, axis=0)
-            along = np.roll(footing, -1, axis=0) - footing
-            inward = np.stack([-along[:, 1], along[:, 0]], -1)
-            inward /= np.linalg.norm(inward, axis=1, keepdims=True)
-            inside = ((others[..., None, :] - footing) * inward).sum(axis=-1).min(axis=-1)
-            deepest = max(deepest, float(inside.max()))
+            others = np.delete(outlines, block, axis=0)
+            for points, around in ((others, footing), (footing, others[:, None])):
+                deepest = max(deepest, float(_depth(points, around).max()))
         return deepest
 
     @property
@@ -218,6 +218,24 @@ class Stage:
         near = np.pad(self._outlines, ((0, 0), (0, 0), (0, 1)), constant_values=half)
         local = np.stack([near, near * [1, 1, -1]], axis=1)
         return centres[:, None, None] + _turned(turns[:, None, None], local)
+
+
+def _depth(points: Array, outline: Array) -> Array:
+    """How far points are inside convex outlines, below 0 outside.
+
+    Parameters
+    ----------
+    points : (..., 2) float
+    outline : (..., sides, 2) float
+        Counter-clockwise; its leading axes go with those of the points.
+    """
+    along = np.roll(outline, -1, axis=-2) - outline
+    length = np.linalg.norm(along, axis=-1)
+    inward = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    height = ((points[..., None, :] - outline) * inward).sum(axis=-1)
+    # A corner given twice makes a side without length, which bounds nothing.
+    bounds = length > 0
+    return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)
 
 
 def _footing(springing: Array, ground: float) -> Array:
