@@ -82,8 +82,8 @@ def test_it_plays_to_the_end_and_can_be_stopped(page, complaints: list[str]) -> 
     page.wait_for_timeout(200)
     assert float(slider.input_value()) == stopped
     page.keyboard.press("Enter")
-    page.wait_for_function("document.querySelector('.motion input').value === '1'")
-    page.wait_for_function("document.querySelector('.motion button').textContent === 'Play'")
+    playwright.expect(slider).to_have_value("1", timeout=10_000)
+    playwright.expect(button).to_have_text("Play")
     assert complaints == []
 
 

@@ -165,7 +165,8 @@ def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
     poses = recording.poses[earlier] * (1 - share) + recording.poses[later] * share
     moved = poses - recording.poses[0]
     drawn: Array = moved * [enlarged * UNIT, -enlarged * UNIT, -math.degrees(enlarged)]
-    return drawn.round(2).tolist()
+    # Adding zero turns -0 into 0.
+    return (drawn.round(2) + 0.0).tolist()
 
 
 def _marks(stage: Stage, states: list[JointState]) -> dict[int, tuple[Mark, ...]]:

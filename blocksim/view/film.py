@@ -17,7 +17,7 @@ from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, widt
 from blocksim.view.planar import PlanarView
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Moment, Stage
-from blocksim.view.style import INK, JOINTS, THRUST
+from blocksim.view.style import INK, JOINTS, QUIET, THRUST
 
 ViewName = Literal["2d", "3d"]
 LENGTH = 6.0
@@ -30,8 +30,6 @@ TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT = 74.0, 44.0
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
-QUIET = "#5d5a53"
-"""Of words that matter less."""
 WORDS = {
     JointState.HINGE_INTRADOS: "hinge intrados",
     JointState.HINGE_EXTRADOS: "hinge extrados",

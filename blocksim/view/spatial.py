@@ -193,7 +193,7 @@ class SpatialView:
         soft = mixed(dark, ground, 0.5)
         return [
             *(Shape(piece, fill=soft, edge=soft, width=4 * self._line) for piece in pieces),
-            *(Shape(piece, fill=dark) for piece in pieces),
+            *(Shape(piece, fill=dark, edge=dark, width=1.0) for piece in pieces),
         ]
 
 

@@ -40,8 +40,8 @@ UNNAMED = Style("#000000", "#ffffff", "*")
 MISS = "#c00000"
 
 VERDICTS = {
-    Verdict.STANDS: "#00795A",
-    Verdict.COLLAPSES: "#C04A00",
+    Verdict.STANDS: "#0060A0",
+    Verdict.COLLAPSES: "#B84300",
     Verdict.UNDECIDED: "#6b6b6b",
 }
 JOINTS = {
@@ -52,7 +52,9 @@ JOINTS = {
     JointState.OPEN: "#555555",
 }
 """Of joints that take part; a closed one is drawn as stone."""
-THRUST, FRICTION, MECHANISM, INK = "#D55E00", "#0072B2", "#009E73", "#222222"
+THRUST, FRICTION, MECHANISM, ISO = "#D55E00", "#0072B2", "#009E73", "#0072B2"
+INK, QUIET = "#222222", "#5d5a53"
+"""Of lines and words, and of those that matter less."""
 STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
 
 FONT: dict[Any, Any] = {
