@@ -24,6 +24,8 @@ KEYS = 12
 """Poses between which the page interpolates."""
 UNIT = 100.0
 """Pixels of the drawing in a radius."""
+DOT = 0.017
+"""Radius of the mark of a hinge, as a share of the drawing."""
 MARGIN = 0.2
 """Free space around the arch, room for its motion [r]."""
 FIRST = 3e-4
@@ -77,6 +79,8 @@ class Drawing:
         Line of thrust at rest.
     ground : float
         Level of the ground.
+    dot : float
+        Radius of the mark of a hinge.
     frames : str
         JSON: for each pose, for each piece, its shift x, y and turn [deg].
     enlarged : float or None
@@ -94,6 +98,7 @@ class Drawing:
     supports: tuple[Mark, ...]
     thrust: tuple[str, ...]
     ground: float
+    dot: float
     frames: str
     enlarged: float | None
     seconds: float
@@ -141,6 +146,7 @@ def drawing(recording: Recording, gravity: float) -> Drawing:
         supports=marks[SUPPORT],
         thrust=tuple(_points(piece[::8]) for piece in stage.thrust),
         ground=round(-stage.ground * UNIT, 2),
+        dot=round(DOT * float(size.max()), 1),
         frames=json.dumps(frames, separators=(",", ":")),
         enlarged=enlarged,
         seconds=float(recording.seconds(gravity)[-1]),
