@@ -33,6 +33,8 @@ WITHIN = 0.8
 """Share of the line of thrust in or near the arch below which it is not drawn."""
 FARTHEST = 1.0
 """Blocks are followed up to this far beyond the arch at rest [r]."""
+SAMPLES = 500
+"""Most frames that are looked at for what a film needs to know beforehand."""
 STILL, GONE = 2e-3, 3e-2
 """Displacements between which the line of thrust fades: it is of the arch at rest [r]."""
 
@@ -98,14 +100,15 @@ class Stage:
     def end(self) -> float:
         """Time at which a block has reached ground or footing, or the recording ends."""
         times = self.recording.times
-        depth = np.array([self._sunk(self._corners(i, i, 0.0)[..., :2]) for i in self._frames])
-        # Where footings are so near each other that they meet blocks at rest, that is no end.
-        depth = depth - max(0.0, float(depth[0]))
-        late = np.flatnonzero(depth > SUNK)
-        if not len(late):
-            return float(times[-1])
-        between = slice(late[0] - 1, late[0] + 1)
-        return float(np.interp(SUNK, depth[between], times[between]))
+        depths: list[float] = []
+        for frame in range(len(times) if self.moves else 0):
+            depths.append(self._sunk(self._corners(frame, frame, 0.0)[..., :2]))
+            # Where footings are so near that they meet blocks at rest, that is no end.
+            touch = SUNK + max(0.0, depths[0])
+            if depths[-1] > touch:
+                between = times[frame - 1 : frame + 1]
+                return float(np.interp(touch, depths[-2:], between))
+        return float(times[-1])
 
     def _sunk(self, corners: Array) -> float:
         """Deepest that a block is in the ground, or meets a footing of another block."""
@@ -120,7 +123,7 @@ class Stage:
     @property
     def moves(self) -> bool:
         """Whether anything can be seen to move."""
-        return bool(self.recording.displacement.max() > SEEN)
+        return bool(self._displaced.max() > SEEN)
 
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
@@ -134,8 +137,8 @@ class Stage:
     @cached_property
     def states(self) -> tuple[JointState, ...]:
         """Joint states that are ever seen, in the order of `JointState`, closed left out."""
-        shown = self.recording.times <= self.end
-        seen = {state for poses in self.recording.poses[shown] for state in self._joints(poses)}
+        poses = self.recording.poses
+        seen = {state for frame in self._shown for state in self._joints(poses[frame])}
         return tuple(state for state in JointState if state in seen - {JointState.CLOSED})
 
     @cached_property
@@ -148,8 +151,7 @@ class Stage:
         half = self.depth / 2
         solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
         rest = np.concatenate([self._corners(0, 0, 0.0).reshape(-1, 3), *solid])
-        within = [i for i in self._frames if self.recording.times[i] <= self.end]
-        moved = np.concatenate([self._corners(i, i, 0.0) for i in within]).reshape(-1, 3)
+        moved = np.concatenate([self._corners(i, i, 0.0) for i in self._shown]).reshape(-1, 3)
         low, high = rest.min(axis=0), rest.max(axis=0)
         bounded = np.clip(
             moved, [*(low[:1] - FARTHEST), low[1], low[2] - FARTHEST], high + FARTHEST
@@ -176,8 +178,7 @@ class Stage:
         gap = times[later] - times[earlier]
         share = float((time - times[earlier]) / gap) if gap > 0 else 0.0
         one, two = self.recording.poses[earlier], self.recording.poses[later]
-        displaced = self.recording.displacement
-        moved = float(np.interp(time, times, displaced))
+        moved = float(np.interp(time, times, self._displaced))
         return Moment(
             time=time,
             corners=self._corners(earlier, later, share),
@@ -201,9 +202,15 @@ class Stage:
         first, last = int(side), (int(side) + 1) % len(corners)
         return (last, first) if turned else (first, last)
 
-    @property
-    def _frames(self) -> range:
-        return range(len(self.recording.times))
+    @cached_property
+    def _displaced(self) -> Array:
+        return self.recording.displacement
+
+    @cached_property
+    def _shown(self) -> list[int]:
+        """Frames that are shown, or as many of them as tell enough of a long recording."""
+        last = int(np.searchsorted(self.recording.times, self.end, "right")) - 1
+        return sorted({*range(0, last, 1 + last // SAMPLES), last})
 
     def _joints(self, poses: Array) -> tuple[JointState, ...]:
         return tuple(joint.state for joint in classify(self.assembly, poses, least=SEEN))
