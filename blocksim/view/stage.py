@@ -29,7 +29,7 @@ SUNK = 0.02
 """Depth of a corner in the ground or in a footing that passes for touching it [r]."""
 SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
-WITHIN = 0.8
+WITHIN = 0.95
 """Share of the line of thrust in or near the arch below which it is not drawn."""
 FARTHEST = 1.0
 """Blocks are followed up to this far beyond the arch at rest [r]."""
