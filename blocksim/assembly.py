@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,6 +102,27 @@ class Joint:
         return np.array([along[1], -along[0]])
 
 
+class JointArrays(NamedTuple):
+    """All joints of an assembly at once, lengths in units of its size.
+
+    Parameters
+    ----------
+    before, after : (joints,) int
+        Indices of the blocks, `SUPPORT` for the ground.
+    ends : (joints, 2, 2) float
+        Inner and outer end.
+    normal, tangent : (joints, 2) float
+    length : (joints,) float
+    """
+
+    before: NDArray[np.int64]
+    after: NDArray[np.int64]
+    ends: Array
+    normal: Array
+    tangent: Array
+    length: Array
+
+
 @dataclass(frozen=True, eq=False)
 class Assembly:
     """Blocks and the joints between them.
@@ -151,6 +173,21 @@ class Assembly:
         return _frozen(
             [np.hypot(*(block.vertices - block.centre).T).max() for block in self.blocks],
             (-1,),
+        )
+
+    @cached_property
+    def joint_arrays(self) -> JointArrays:
+        """The joints gathered into arrays, for what looks at them frame by frame."""
+        sides = [(joint.before, joint.after) for joint in self.joints]
+        before, after = np.array(sides, dtype=np.int64).reshape(-1, 2).T
+        ends = _frozen([(j.inner, j.outer) for j in self.joints], (-1, 2, 2)) / self.size
+        return JointArrays(
+            before=before,
+            after=after,
+            ends=ends,
+            normal=_frozen([joint.normal for joint in self.joints], (-1, 2)),
+            tangent=_frozen([joint.tangent for joint in self.joints], (-1, 2)),
+            length=_frozen([joint.length for joint in self.joints], (-1,)) / self.size,
         )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.arch import Arch, crown_width
-from blocksim.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly
+from blocksim.assembly import PLANAR, SPATIAL, Array, Assembly
 from blocksim.modes import ActiveJoint, Mode, name_mode
 
 
@@ -60,11 +60,7 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
         Lengths in units of the assembly's size.
     """
     size = assembly.size
-    before = np.array([joint.before for joint in assembly.joints])
-    after = np.array([joint.after for joint in assembly.joints])
-    ends = np.array([(joint.inner, joint.outer) for joint in assembly.joints]) / size
-    normal = np.array([joint.normal for joint in assembly.joints])
-    tangent = np.array([joint.tangent for joint in assembly.joints])
+    before, after, ends, normal, tangent, _ = assembly.joint_arrays
     # The support is appended as a block that stays where it is, index -1.
     start = np.vstack([assembly.centres / size, np.zeros(2)])
     moved = np.vstack([poses[:, :PLANAR], np.zeros(PLANAR)])
@@ -80,7 +76,6 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
 
     apart = carried(after) - carried(before)
     mean = (moved[after, 2] + moved[before, 2]) / 2
-    mean = np.where((after == SUPPORT) | (before == SUPPORT), 0.0, mean)
     cos, sin = np.cos(mean)[:, None], np.sin(mean)[:, None]
 
     def along(axis: Array) -> Array:
@@ -103,8 +98,8 @@ def overlap_share(assembly: Assembly, poses: Array) -> float:
     converged presses blocks into each other.
     """
     motion = joint_motion(assembly, poses)
-    lengths = np.array([joint.length for joint in assembly.joints]) / assembly.size
-    turned, slipped = np.abs(motion.turn) * lengths, np.abs(motion.slip)
+    turned = np.abs(motion.turn) * assembly.joint_arrays.length
+    slipped = np.abs(motion.slip)
     moved = max(float(turned.max()), float(slipped.max()))
     gap = motion.gap.min(axis=1)
     if poses.shape[1] == SPATIAL:
@@ -120,17 +115,15 @@ def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
 
     To first order in the rotations, in units of the assembly's size, shape (joints,) each.
     """
-    before = np.array([joint.before for joint in assembly.joints])
-    after = np.array([joint.after for joint in assembly.joints])
-    middle = np.array([(joint.inner + joint.outer) / 2 for joint in assembly.joints])
-    tangent = np.array([joint.tangent for joint in assembly.joints])
+    before, after, ends, _, tangent, _ = assembly.joint_arrays
+    middle = ends.mean(axis=1)
     depth = np.array([block.depth for block in assembly.blocks]) / assembly.size
-    centres = np.vstack([assembly.centres, np.zeros(2)])
+    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
     beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])
     half = np.minimum(*(np.append(depth, np.inf)[side] for side in (before, after))) / 2
 
     def across(block: NDArray[np.int64]) -> Array:
-        arm = (middle - centres[block]) / assembly.size
+        arm = middle - centres[block]
         turn = beyond[block, 1:]
         return beyond[block, 0] + turn[:, 0] * arm[:, 1] - turn[:, 1] * arm[:, 0]
 
@@ -167,7 +160,9 @@ def closed_joints(arch: Arch) -> tuple[ObservedJoint, ...]:
     )
 
 
-def classify(assembly: Assembly, poses: Array) -> tuple[ObservedJoint, ...]:
+def classify(
+    assembly: Assembly, poses: Array, *, least: float | None = None
+) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does at one instant.
 
     Turning (relative rotation times the assembly's size) and slipping are both lengths
@@ -180,6 +175,9 @@ def classify(assembly: Assembly, poses: Array) -> tuple[ObservedJoint, ...]:
     poses : (blocks, 3) float
         As for `joint_motion`; best an early instant, while the motion is the collapse
         mechanism and not yet what follows from it.
+    least : float, optional
+        A joint takes part if it turns or slips more than this, in units of the assembly's
+        size; by default more than the share `ACTIVE` of the most active one.
 
     Returns
     -------
@@ -188,14 +186,15 @@ def classify(assembly: Assembly, poses: Array) -> tuple[ObservedJoint, ...]:
     """
     motion = joint_motion(assembly, poses)
     turn, slip = np.abs(motion.turn), np.abs(motion.slip)
-    least = ACTIVE * max(float(turn.max()), float(slip.max()))
+    if least is None:
+        least = ACTIVE * max(float(turn.max()), float(slip.max()))
     observed: list[ObservedJoint] = []
-    for index, joint in enumerate(assembly.joints):
-        angle = math.atan2(joint.tangent[0], joint.tangent[1])
+    for index, tangent in enumerate(assembly.joint_arrays.tangent):
+        angle = math.atan2(tangent[0], tangent[1])
         opening = motion.gap[index]
         slips = bool(slip[index] > least > 0)
         if turn[index] > least > 0:
-            parted = turn[index] * joint.length / assembly.size
+            parted = turn[index] * assembly.joint_arrays.length[index]
             state = _turning(opening, parted, slips=slips)
         else:
             state = JointState.SLIDES if slips else JointState.CLOSED

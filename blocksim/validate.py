@@ -14,6 +14,7 @@ from blocksim.engines import get_engine
 from blocksim.ladder import METHODS, missing
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
+from blocksim.recording import Recording
 from blocksim.scenario import Scenario, load_scenario, shipped
 from blocksim.trial import trial
 from blocksim.verdict import Verdict
@@ -60,6 +61,11 @@ class Row:
     note : str
         Why, or what to keep in mind.
     wall_s : float
+    title, source : str
+        Of the scenario.
+    recording : Recording or None
+        The moving run 1 % below the bracket; None where there was none, or the claim is
+        a verdict.
     """
 
     scenario: str
@@ -84,6 +90,9 @@ class Row:
     miss: str
     note: str
     wall_s: float
+    title: str
+    source: str
+    recording: Recording | None
 
 
 def scenarios(*, quick: bool) -> list[Scenario]:
@@ -160,10 +169,12 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         tol=TOLS[engine],
     )
     mode, below, above = found.mode, None, None
+    recording = None
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
         seen = trial(scenario.arch(under), scenario.mu, engine)
         mode, below = seen.mode, seen.verdict
+        recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
         over = found.centre * (1 + ASIDE)
@@ -197,6 +208,9 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         miss=miss,
         note=_note(scenario, found, mode),
         wall_s=time.perf_counter() - started,
+        title=scenario.title,
+        source=scenario.source,
+        recording=recording,
     )
 
 
@@ -228,6 +242,9 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
         miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
         note=seen.reason,
         wall_s=time.perf_counter() - started,
+        title=scenario.title,
+        source=scenario.source,
+        recording=None,
     )
 
 

@@ -40,7 +40,8 @@ def test_rows_agree_with_limit_analysis_and_are_written(tmp_path: Path) -> None:
     write_results(rows, tmp_path / "deep" / "out")
     folder = tmp_path / "deep" / "out"
     written = {path.name for path in folder.iterdir()}
-    assert written == {"validate.json", "validate.csv", "map.png", "map.svg"}
+    names = {"report.html", "validate.json", "validate.csv", "map.png", "map.svg"}
+    assert written == names
     document = json.loads((folder / "validate.json").read_text(), parse_constant=pytest.fail)
     assert [row["scenario"] for row in document["rows"]] == ["semicircle", "semicircle_sliding"]
     assert document["machine"]["pymunk"]

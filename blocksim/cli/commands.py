@@ -22,6 +22,18 @@ from blocksim.cli.console import (
     show,
     validation_table,
 )
+from blocksim.cli.filming import (
+    At,
+    Beside,
+    EngineOption,
+    Given,
+    Height,
+    RenderOptions,
+    Slow,
+    View,
+    film,
+    recordings,
+)
 from blocksim.cli.options import (
     Alpha,
     Eta,
@@ -253,22 +265,39 @@ LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
 
 @app.command()
 def render(
-    out: Picture,
-    scene: Scene = None,
+    out: Annotated[Path, typer.Option(help="File to write: .mp4, .gif, .png or .svg.")],
+    scene: Annotated[
+        str | None, typer.Argument(help="Scenario, or a recording: an .npz file.")
+    ] = None,
     alpha: Alpha = None,
     eta: Eta = None,
     mu: Mu = None,
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
+    beside: Beside = None,
+    view: View = "2d",
+    slow: Slow = None,
+    at: At = None,
+    height: Height = 720,
+    method: EngineOption = "pymunk",
 ) -> None:
-    """Draw an arch with its lines of thrust and friction and its mechanism.
+    """Draw an arch, or film its motion.
 
-    At the thickness given, the voussoirs as built; with none given, the continuous arch
-    at its least thickness, in each of its collapse modes.
+    A picture of a scenario shows its lines of thrust and friction and its mechanism: at
+    the thickness given, the voussoirs as built; with none given, the continuous arch at its
+    least thickness, in each of its collapse modes. Everything else is drawn from a
+    recording: a film, a view in 3d, a frame of an .npz file. A scenario is simulated first,
+    1 % below its least thickness where none is given.
     """
+    kind = picture_kind(out, ("mp4", "gif", "png", "svg"))
+    filmed = kind in {"mp4", "gif"} or view == "3d" or beside is not None
+    if filmed or (scene is not None and scene.endswith(".npz")):
+        asked_of = RenderOptions(view=view, slow=slow, at=at, height=height)
+        given = Given(alpha, eta, mu, voussoirs, weight)
+        film(out, recordings(scene, given, method, beside), asked_of)
+        return
     from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
 
-    kind = picture_kind(out)
     asked = question(scene, alpha, mu, voussoirs, weight)
     ratio_given = asked.eta if eta is None else eta
     with named_options():

@@ -84,10 +84,12 @@ def _answer(row: Row | None) -> str:
     return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
 
 
-def picture_kind(out: Path) -> str:
-    """Return png or svg, by the file's ending."""
+def picture_kind(out: Path, kinds: tuple[str, ...] = ("svg", "png")) -> str:
+    """Return the kind of a picture, by the file's ending."""
     kind = out.suffix.removeprefix(".")
-    require(kind in {"svg", "png"}, "--out", str(out), "a file name ending in .svg or .png")
+    *most, last = (f".{each}" for each in kinds)
+    allowed = f"a file name ending in {', '.join(most)} or {last}"
+    require(kind in kinds, "--out", str(out), allowed)
     return kind
 
 

@@ -1,4 +1,4 @@
-"""Results of `validate` as JSON and CSV."""
+"""Results of `validate` as JSON, CSV, a map and a page."""
 
 from __future__ import annotations
 
@@ -8,20 +8,28 @@ import json
 import math
 import platform
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
 
 import blocksim
 from blocksim.files import make_folder, write_whole
 from blocksim.report.answers import plain
+from blocksim.report.page import report_page
 from blocksim.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, installed, numbered
 from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure, save_figure
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 def as_record(row: Row) -> dict[str, object]:
-    """Return a row with its angles in degrees."""
-    record = {key: plain(value) for key, value in asdict(row).items() if key != "half_angle"}
+    """Return a row with its angles in degrees, without the motion recorded."""
+    fields = asdict(replace(row, recording=None))
+    left_out = {"half_angle", "recording"}
+    record = {key: plain(value) for key, value in fields.items() if key not in left_out}
     record["modes_published"] = "/".join(row.modes_published)
     return {"scenario": row.scenario, "half_angle_deg": math.degrees(row.half_angle), **record}
 
@@ -47,7 +55,7 @@ def _processor() -> str:
 
 
 def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
-    """Write validate.json, validate.csv, map.png and map.svg into a folder.
+    """Write report.html, validate.json, validate.csv, map.png and map.svg into a folder.
 
     Raises
     ------
@@ -70,12 +78,28 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
     for record in records:
         writer.writerow(record)
     figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
-    made = [folder / name for name in ("validate.json", "validate.csv", "map.png", "map.svg")]
-    write_whole(made[0], lambda file: file.write(text.encode()))
-    write_whole(made[1], lambda file: file.write(sheet.getvalue().encode()))
-    write_whole(made[2], lambda file: save_figure(figure, file, "png"))
-    write_whole(made[3], lambda file: save_figure(figure, file, "svg"))
-    return made
+    drawn = {kind: _drawn(figure, kind) for kind in ("png", "svg")}
+    page = report_page(rows, drawn["svg"], machine())
+    contents = {
+        "report.html": page.encode(),
+        "validate.json": text.encode(),
+        "validate.csv": sheet.getvalue().encode(),
+        "map.png": drawn["png"],
+        "map.svg": drawn["svg"],
+    }
+    for name, content in contents.items():
+        write_whole(folder / name, partial(_write, content=content))
+    return [folder / name for name in contents]
+
+
+def _drawn(figure: Figure, kind: str) -> bytes:
+    file = io.BytesIO()
+    save_figure(figure, file, kind)
+    return file.getvalue()
+
+
+def _write(file: BinaryIO, content: bytes) -> None:
+    file.write(content)
 
 
 def _points(rows: Sequence[Row]) -> list[MapPoint]:

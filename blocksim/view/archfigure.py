@@ -25,13 +25,14 @@ from blocksim.modes import Mode
 from blocksim.theory.critical import Critical, inner_sliding
 from blocksim.theory.equations import normal_force
 from blocksim.theory.lines import critical_moment, friction_line, thrust_line
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, FRICTION, INK, MECHANISM, THRUST
 
-THRUST, FRICTION, MECHANISM, STONE = "#D55E00", "#0072B2", "#009E73", "#222222"
 MOVED = 0.16
 """Largest displacement drawn, in mean radii."""
 FINE = 400
 FORCELESS = 1e-9
+FARTHEST = 1.6
+"""Largest eccentricity at which a line is drawn; 1 is the edge of the arch."""
 FAINT = 1e-7
 """Share of the largest rate below which a joint counts as closed."""
 
@@ -158,27 +159,40 @@ def draw_arch(axes: Axes, picture: ArchPicture) -> None:
     axes.axis("off")
     _draw_mechanism(axes, picture, inner, outer)
     whole = _ring(-picture.half_angle, picture.half_angle, inner, outer)
-    axes.add_patch(Polygon(whole, fill=False, ec=STONE, lw=1.5, zorder=3))
+    axes.add_patch(Polygon(whole, fill=False, ec=INK, lw=1.5, zorder=3))
     for angle in picture.joints[1:-1]:
-        axes.plot(*_radius(float(angle), inner, outer), color=STONE, lw=0.5, zorder=2)
-    size = np.linspace(-picture.half_angle, picture.half_angle, 2 * FINE + 1)
-    # An overturning arch has no thrust: at its crown the lines have no place.
-    forceless = normal_force(np.abs(size), picture.thrust) < FORCELESS
-    with np.errstate(divide="ignore", invalid="ignore"):
-        pressure = thrust_line(
-            np.abs(size), picture.thrust, picture.crown_moment, picture.eta, picture.weight
-        )
-        shear = friction_line(np.abs(size), picture.thrust, picture.mu)
+        axes.plot(*_radius(float(angle), inner, outer), color=INK, lw=0.5, zorder=2)
+    pressure, shear = lines_of(picture)
     for line, colour, style, width in (
         (pressure, THRUST, "-", 2.0),
         (shear, FRICTION, (0, (5, 1.6)), 1.5),
     ):
-        radius = 1 - np.clip(np.asarray(line), -1.6, 1.6) * picture.eta / 2
-        radius[forceless] = np.nan
-        axes.plot(radius * np.sin(size), radius * np.cos(size), color=colour, ls=style,
-                  lw=width, zorder=5)  # fmt: skip
+        axes.plot(*line.T, color=colour, ls=style, lw=width, zorder=5)
     _mark_joints(axes, picture, inner, outer)
     axes.margins(0.03)
+
+
+def lines_of(picture: ArchPicture) -> tuple[Array, Array]:
+    """Lines of thrust and of friction from the left springing to the right, each (k, 2).
+
+    NaN where they leave the arch by more than 0.3 of its thickness, and where no force
+    passes: an overturning arch has no thrust, and at its crown no lines.
+    """
+    size = np.linspace(-picture.half_angle, picture.half_angle, 2 * FINE + 1)
+    across = np.abs(size)
+    forceless = normal_force(across, picture.thrust) < FORCELESS
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pressure = thrust_line(
+            across, picture.thrust, picture.crown_moment, picture.eta, picture.weight
+        )
+        shear = friction_line(across, picture.thrust, picture.mu)
+    rays = np.column_stack([np.sin(size), np.cos(size)])
+    drawn: list[Array] = []
+    for line in (pressure, shear):
+        radius = 1 - np.asarray(line) * picture.eta / 2
+        radius[forceless | (np.abs(line) > FARTHEST)] = np.nan
+        drawn.append(radius[:, None] * rays)
+    return drawn[0], drawn[1]
 
 
 def _draw_mechanism(axes: Axes, picture: ArchPicture, inner: float, outer: float) -> None:
@@ -216,9 +230,9 @@ def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -
             # A joint that opens at both ends parts: no hinge is left.
             if turns and not (out and into):
                 axes.plot(radius * math.sin(angle), radius * math.cos(angle), "o", ms=7,
-                          mfc="white", mec=STONE, mew=1.5, zorder=7)  # fmt: skip
+                          mfc="white", mec=INK, mew=1.5, zorder=7)  # fmt: skip
         if any(slides):
-            axes.plot(*_radius(angle, inner, outer), color=STONE, lw=3.2, zorder=6,
+            axes.plot(*_radius(angle, inner, outer), color=INK, lw=3.2, zorder=6,
                       solid_capstyle="butt")  # fmt: skip
             axes.plot(*_radius(angle, inner, outer), color="white", lw=1.2, ls=(0, (2, 1)),
                       zorder=6)  # fmt: skip
@@ -226,12 +240,12 @@ def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -
 
 def _handles() -> list[Line2D]:
     return [
-        Line2D([], [], color=STONE, lw=1.5, label="arch"),
+        Line2D([], [], color=INK, lw=1.5, label="arch"),
         Line2D([], [], color=THRUST, lw=2.0, label="line of thrust"),
         Line2D([], [], color=FRICTION, lw=1.5, ls=(0, (5, 1.6)), label="line of friction"),
         Line2D([], [], color=MECHANISM, lw=1.3, ls=(0, (6, 1.5, 1, 1.5)), label="mechanism"),
-        Line2D([], [], ls="", marker="o", ms=7, mfc="white", mec=STONE, mew=1.5, label="hinge"),
-        Line2D([], [], color=STONE, lw=3.2, label="sliding joint"),
+        Line2D([], [], ls="", marker="o", ms=7, mfc="white", mec=INK, mew=1.5, label="hinge"),
+        Line2D([], [], color=INK, lw=3.2, label="sliding joint"),
     ]
 
 

@@ -16,7 +16,7 @@ from blocksim.theory import equations, landmarks, least_thicknesses, regions
 from blocksim.theory.critical import rotational_thrust
 from blocksim.theory.map import divide_friction, iso_half_angle
 from blocksim.view.mapfigure import LARGEST_MU
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, INK, ISO, QUIET
 
 DASHED = (0, (5, 2))
 ISO_DEGREES = (60, 90, 110, 125, 135, 142.5, 145, 149.2, 155, 159)
@@ -53,16 +53,16 @@ def _line_map(span: tuple[float, float]) -> Figure:
         # Sliding both ways, any thickness beyond is critical: the line goes on upwards.
         divide = divide_friction(alpha)
         foot, _ = regions.at_inner_sliding(divide, alpha, "centreline")
-        axes.plot([divide, divide, *line.mu], [2.0, foot, *line.eta], color="#0072B2", lw=0.8)
+        axes.plot([divide, divide, *line.mu], [2.0, foot, *line.eta], color=ISO, lw=0.8)
         if span[0] < line.eta[-1] < span[1]:
             axes.annotate(f"{degrees:g}°", (LARGEST_MU, line.eta[-1]), xytext=(3, 0),
-                          va="center", textcoords="offset points", color="#0072B2",
+                          va="center", textcoords="offset points", color=ISO,
                           fontsize=8)  # fmt: skip
     _dividing_lines(axes)
-    axes.axhline(1.0, color="#777777", lw=0.8, ls=DASHED)
+    axes.axhline(1.0, color=QUIET, lw=0.8, ls=DASHED)
     for mark in marks.values():
         if span[0] <= mark.eta <= span[1]:
-            axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec="#222222", zorder=4)
+            axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4)
             axes.annotate(mark.name, (mark.mu, mark.eta), xytext=LABELS[mark.name],
                           fontweight="bold", textcoords="offset points",
                           annotation_clip=False)  # fmt: skip
@@ -74,9 +74,8 @@ def _line_map(span: tuple[float, float]) -> Figure:
 
 def _dividing_lines(axes: Axes) -> None:
     marks = landmarks()
-    black = "#222222"
     wide = regions.divide(np.linspace(0.02, marks["B"].mu, 200))
-    axes.plot(wide.mu, wide.eta, color=black, lw=2.0, label=r"$\mu=\mu_{ss}=\mu_{is}$")
+    axes.plot(wide.mu, wide.eta, color=INK, lw=2.0, label=r"$\mu=\mu_{ss}=\mu_{is}$")
     alpha = 2.645 * (1 - np.linspace(0.97, 0.0, 240) ** 2)
     thrust = np.array([rotational_thrust(float(a), "centreline") for a in alpha])
     eta = least_thicknesses(alpha, math.inf).eta
@@ -96,9 +95,9 @@ def _dividing_lines(axes: Axes) -> None:
         ),
     ):
         friction = np.asarray(values)
-        axes.plot(friction[real], eta[real], color=black, lw=1.5, ls=style, label=name)
-        axes.plot(friction[~real], eta[~real], color=black, lw=0.7, ls=DASHED)
+        axes.plot(friction[real], eta[real], color=INK, lw=1.5, ls=style, label=name)
+        axes.plot(friction[~real], eta[~real], color=INK, lw=0.7, ls=DASHED)
     equal = regions.equal_angles(np.linspace(marks["S"].mu + 1e-6, LARGEST_MU, 120))
     crown = regions.crown_hinge(np.linspace(marks["J"].mu + 1e-6, LARGEST_MU, 120))
-    axes.plot(equal.mu, equal.eta, color=black, lw=1.2, ls=":", label=r"$\beta_r=\beta_s$")
-    axes.plot(crown.mu, crown.eta, color=black, lw=1.2, ls="-.", label=r"$\beta_r=0$")
+    axes.plot(equal.mu, equal.eta, color=INK, lw=1.2, ls=":", label=r"$\beta_r=\beta_s$")
+    axes.plot(crown.mu, crown.eta, color=INK, lw=1.2, ls="-.", label=r"$\beta_r=0$")

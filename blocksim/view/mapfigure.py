@@ -20,7 +20,7 @@ from blocksim import theory
 from blocksim.assembly import Array
 from blocksim.modes import Mode
 from blocksim.theory import regions
-from blocksim.view.style import FONT, MISS, MODES, UNNAMED
+from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
 SMALLEST_MU, LARGEST_MU = 0.002, 4.0
 LAST_ANGLE = 2.635
@@ -138,12 +138,12 @@ def draw_regions(axes: Axes, *, central: bool = False) -> None:
     for mode, bottom, ceiling, where in parts:
         axes.fill_between(mu, bottom, ceiling, where=where, color=MODES[mode].tint, lw=0)
     for curve, style in ((divide, "-"), (first, "-"), (equal, ":"), (crown, "--")):
-        axes.plot(curve.mu, curve.eta, style, color="#222222", lw=1.1)
+        axes.plot(curve.mu, curve.eta, style, color=INK, lw=1.1)
     _name_regions(axes, central=central)
     for mark in marks.values():
         if central and mark.name == "B":
             continue
-        axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec="#222222", zorder=4)
+        axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4)
         axes.annotate(
             mark.name,
             (mark.mu, mark.eta),

@@ -1,10 +1,12 @@
-"""One colour for each mode, everywhere; told apart by colour-blind readers too."""
+"""One colour for each mode, verdict, joint and line, told apart by colour-blind readers too."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from blocksim.joints import JointState
 from blocksim.modes import Mode
+from blocksim.verdict import Verdict
 
 
 class Style(NamedTuple):
@@ -36,6 +38,24 @@ MODES = {
 }
 UNNAMED = Style("#000000", "#ffffff", "*")
 MISS = "#c00000"
+
+VERDICTS = {
+    Verdict.STANDS: "#0060A0",
+    Verdict.COLLAPSES: "#B84300",
+    Verdict.UNDECIDED: "#6b6b6b",
+}
+JOINTS = {
+    JointState.HINGE_INTRADOS: "#0072B2",
+    JointState.HINGE_EXTRADOS: "#E69F00",
+    JointState.SLIDES: "#009E73",
+    JointState.HINGE_AND_SLIDES: "#CC79A7",
+    JointState.OPEN: "#555555",
+}
+"""Of joints that take part; a closed one is drawn as stone."""
+THRUST, FRICTION, MECHANISM, ISO = "#D55E00", "#0072B2", "#009E73", "#0072B2"
+INK, QUIET = "#222222", "#5d5a53"
+"""Of lines and words, and of those that matter less."""
+STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
 
 FONT: dict[Any, Any] = {
     "font.family": "DejaVu Sans",

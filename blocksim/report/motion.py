@@ -1,0 +1,209 @@
+"""A recording as a drawing that a page can move: outlines, joints, poses in pixels.
+
+The moving run of a check ends when a corner has moved 0.02 r, too little to see. The
+drawing enlarges the motion; the page tells by how much.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.assembly import PLANAR, SUPPORT, Array
+from blocksim.joints import JointState, classify
+from blocksim.recording import Recording
+from blocksim.view.planar import HINGES
+from blocksim.view.stage import Stage
+
+SHOWN = 0.13
+"""Largest displacement in the drawing [r]."""
+KEYS = 12
+"""Poses between which the page interpolates."""
+UNIT = 100.0
+"""Pixels of the drawing in a radius."""
+DOT = 0.017
+"""Radius of the mark of a hinge, as a share of the drawing."""
+MARGIN = 0.2
+"""Free space around the arch, room for its motion [r]."""
+FIRST = 3e-4
+"""Displacement at which the joints are read: the motion still is the mechanism [r]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mark:
+    """A joint that takes part, drawn on one of its blocks or on a footing.
+
+    Parameters
+    ----------
+    state : str
+        As a class of the page's style.
+    line : str
+        Its two ends, as the points of a polyline.
+    hinge : (float, float) or None
+        Where it turns, drawn once for each joint.
+    """
+
+    state: str
+    line: str
+    hinge: tuple[float, float] | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """A voussoir: its outline at rest, the centre it turns about, its marks."""
+
+    outline: str
+    centre: tuple[float, float]
+    marks: tuple[Mark, ...]
+    moved: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """Everything a page needs to draw an arch and to move it.
+
+    Parameters
+    ----------
+    box : str
+        The drawing's viewBox.
+    rest : str
+        Outline of the arch at rest.
+    pieces : tuple of Piece
+    footings : tuple of str
+    supports : tuple of Mark
+        Active joints' faces that stay.
+    thrust : tuple of str
+        Line of thrust at rest.
+    ground : float
+        Level of the ground.
+    dot : float
+        Radius of the mark of a hinge.
+    frames : str
+        JSON: for each pose, for each piece, its shift x, y and turn [deg].
+    enlarged : float or None
+        How many times larger than recorded the motion is drawn; None where none is.
+    seconds : float
+        Length of the motion, in seconds of the arch.
+    joints : tuple of (float, str)
+        Angle [deg] and state of each joint that takes part.
+    """
+
+    box: str
+    rest: str
+    pieces: tuple[Piece, ...]
+    footings: tuple[str, ...]
+    supports: tuple[Mark, ...]
+    thrust: tuple[str, ...]
+    ground: float
+    dot: float
+    frames: str
+    enlarged: float | None
+    seconds: float
+    joints: tuple[tuple[float, str], ...]
+
+
+def drawing(recording: Recording, gravity: float) -> Drawing:
+    """Turn a recording into a drawing."""
+    stage = Stage(recording)
+    assembly = stage.assembly
+    displaced = recording.displacement
+    moves = bool(displaced[-1] > FIRST)
+    enlarged = SHOWN / float(displaced[-1]) if moves else None
+    late = np.flatnonzero(displaced > FIRST)
+    states = (
+        classify(assembly, recording.poses[late[0]])
+        if moves
+        else classify(assembly, recording.poses[0], least=math.inf)
+    )
+    outlines = [block.vertices / assembly.size for block in assembly.blocks]
+    frames = _frames(recording, enlarged or 0.0)
+    marks = _marks(stage, [joint.state for joint in states])
+    arrays = assembly.joint_arrays
+    rest = np.concatenate([arrays.ends[:, 0], arrays.ends[::-1, 1]])
+    corners = np.concatenate([rest, *stage.footings])
+    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
+    low[1] = stage.ground - MARGIN / 4
+    size = (high - low) * UNIT
+    last = frames[-1]
+    return Drawing(
+        box=f"{low[0] * UNIT:.1f} {-high[1] * UNIT:.1f} {size[0]:.1f} {size[1]:.1f}",
+        rest=_points(rest),
+        pieces=tuple(
+            Piece(
+                outline=_points(outline),
+                centre=_place(block.centre / assembly.size),
+                marks=marks[index],
+                moved=_transform(last[index], _place(block.centre / assembly.size)),
+            )
+            for index, (block, outline) in enumerate(
+                zip(assembly.blocks, outlines, strict=True)
+            )
+        ),
+        footings=tuple(_points(footing) for footing in stage.footings),
+        supports=marks[SUPPORT],
+        thrust=tuple(_points(piece[::8]) for piece in stage.thrust),
+        ground=round(-stage.ground * UNIT, 2),
+        dot=round(DOT * float(size.max()), 1),
+        frames=json.dumps(frames, separators=(",", ":")),
+        enlarged=enlarged,
+        seconds=float(recording.seconds(gravity)[-1]),
+        joints=tuple(
+            (math.degrees(joint.angle), joint.state.value)
+            for joint in states
+            if joint.state is not JointState.CLOSED
+        ),
+    )
+
+
+def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
+    """Poses spread evenly over the way moved, enlarged, y downwards."""
+    displaced: Array = np.maximum.accumulate(recording.displacement)
+    places = np.arange(len(displaced), dtype=np.float64)
+    wanted = np.linspace(0.0, float(displaced[-1]), KEYS + 1)
+    # Frames at rest share a displacement; the later of them counts.
+    where: Array = np.interp(wanted, displaced + 1e-15 * places, places)
+    earlier = where.astype(np.int64)
+    later = np.minimum(earlier + 1, len(places) - 1)
+    share = (where - earlier)[:, None, None]
+    poses = recording.poses[earlier] * (1 - share) + recording.poses[later] * share
+    moved = (poses - recording.poses[0])[..., :PLANAR]
+    drawn: Array = moved * [enlarged * UNIT, -enlarged * UNIT, -math.degrees(enlarged)]
+    # Adding zero turns -0 into 0.
+    return (drawn.round(2) + 0.0).tolist()
+
+
+def _marks(stage: Stage, states: list[JointState]) -> dict[int, tuple[Mark, ...]]:
+    """Collect the marks of active joints by block, `SUPPORT` for the footings."""
+    assembly = stage.assembly
+    found: dict[int, list[Mark]] = {
+        block: [] for block in (*range(len(assembly.blocks)), SUPPORT)
+    }
+    before, after, ends, *_ = assembly.joint_arrays
+    for joint, state in enumerate(states):
+        if state is JointState.CLOSED:
+            continue
+        end = HINGES.get(state)
+        hinge = None if end is None else _place(ends[joint, end])
+        line = _points(ends[joint])
+        # The dot is drawn with the later of the two blocks, in front of both.
+        owner = max(int(before[joint]), int(after[joint]))
+        for block in (int(before[joint]), int(after[joint])):
+            dot = hinge if block == owner else None
+            found[block].append(Mark(state=state.value, line=line, hinge=dot))
+    return {block: tuple(marks) for block, marks in found.items()}
+
+
+def _place(point: Array) -> tuple[float, float]:
+    return round(float(point[0]) * UNIT, 2), round(-float(point[1]) * UNIT, 2)
+
+
+def _points(points: Array) -> str:
+    return " ".join("{:g},{:g}".format(*_place(point)) for point in points)
+
+
+def _transform(pose: list[float], centre: tuple[float, float]) -> str:
+    x, y, turn = pose
+    return f"translate({x:g} {y:g}) rotate({turn:g} {centre[0]:g} {centre[1]:g})"

@@ -1,0 +1,183 @@
+"""The report of `validate`: one page that needs nothing else."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from statistics import fmean
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+from blocksim.arch import GRAVITY
+from blocksim.joints import JointState
+from blocksim.modes import Mode
+from blocksim.report.answers import ratio
+from blocksim.report.motion import Drawing, drawing
+from blocksim.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, numbered
+from blocksim.verdict import Verdict
+from blocksim.view import style
+
+STATES = {
+    JointState.HINGE_INTRADOS: "hinge at the intrados",
+    JointState.HINGE_EXTRADOS: "hinge at the extrados",
+    JointState.SLIDES: "slides",
+    JointState.HINGE_AND_SLIDES: "hinge and slides",
+    JointState.OPEN: "open",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """A row as the page shows it."""
+
+    row: Row
+    anchor: str
+    found: str
+    bracket: str
+    error: str
+    drawing: Drawing | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A scenario and what every engine showed of it."""
+
+    number: int
+    anchor: str
+    results: tuple[Result, ...]
+
+    @property
+    def row(self) -> Row:
+        """What all engines were given."""
+        return self.results[0].row
+
+
+def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str]) -> str:
+    """Write the page.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Of one engine or several.
+    map_svg : bytes
+        The map with the results.
+    machine : mapping
+        What the figures were measured on.
+
+    Returns
+    -------
+    str
+        HTML that loads nothing.
+    """
+    environment = Environment(
+        loader=PackageLoader("blocksim.report"),
+        autoescape=select_autoescape(),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "degrees": _degrees,
+        "friction": _friction,
+        "ratio": ratio,
+        "capitalised": _capitalised,
+    }
+    template = environment.get_template("report.html")
+    engines = list(dict.fromkeys(row.engine for row in rows))
+    return template.render(
+        cases=_cases(rows),
+        misses=[row for row in rows if row.miss],
+        notes=[row for row in rows if row.note and not row.miss],
+        engines=engines,
+        apart=disagreements(rows) if len(engines) > 1 else None,
+        sentence=summary(rows),
+        numbers=numbered(rows),
+        map_data=base64.b64encode(map_svg).decode(),
+        machine=machine,
+        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        seconds=sum(row.wall_s for row in rows),
+        tol=" and ".join(f"{_percent(TOLS[engine])} ({engine})" for engine in engines),
+        aside=_percent(ASIDE),
+        bound=_percent(ERROR_BOUND),
+        states=STATES,
+        joint_colours=style.JOINTS,
+        thrust_colour=style.THRUST,
+        verdict_colours=style.VERDICTS,
+        mode_styles=style.MODES,
+        modes=list(Mode),
+    )
+
+
+def summary(rows: Sequence[Row]) -> str:
+    """Say in a sentence or two how simulation and limit analysis agree."""
+    agree = sum(not row.miss for row in rows)
+    share = f"All {len(rows)}" if agree == len(rows) else f"{agree} of {len(rows)}"
+    parts = [f"{share} simulated arches agree with the exact answer in every respect"]
+    errors = [abs(row.error) for row in rows if row.error is not None]
+    if errors:
+        worst = _percent(max(errors), ".3f")
+        parts.append(f"the least thickness found is off by {worst} at most")
+    false = sum(row.below is Verdict.STANDS or row.above is Verdict.COLLAPSES for row in rows)
+    undecided = sum(Verdict.UNDECIDED in {row.below, row.above} for row in rows)
+    asked = sum((row.below is not None) + (row.above is not None) for row in rows)
+    parts.append(
+        f"of {asked} verdicts {_percent(ASIDE)} to either side of it "
+        f"{false or 'none'} {'is' if false <= 1 else 'are'} false and "
+        f"{undecided or 'none'} {'is' if undecided <= 1 else 'are'} undecided"
+    )
+    return "; ".join(parts) + "."
+
+
+def _cases(rows: Sequence[Row]) -> list[Case]:
+    return [
+        Case(
+            number=number,
+            anchor=f"case-{number}",
+            results=tuple(
+                _result(row, f"case-{number}-{place}")
+                for place, row in enumerate(r for r in rows if r.scenario == name)
+            ),
+        )
+        for name, number in numbered(rows).items()
+    ]
+
+
+def _result(row: Row, anchor: str) -> Result:
+    low, high = row.eta_low, row.eta_high
+    if row.verdict is not None:
+        bracket = "-"
+    elif high is None:
+        bracket = "none up to 2"
+    elif low is None:
+        bracket = f"below {ratio(high)}"
+    else:
+        bracket = f"{low:.6g} to {high:.6g}"
+    ends = [eta for eta in (low, high) if eta is not None]
+    nothing = not ends or (high is None and row.eta_limit is None)
+    return Result(
+        row=row,
+        anchor=anchor,
+        found=bracket if row.verdict else "none" if nothing else ratio(fmean(ends)),
+        bracket=bracket,
+        error="-" if row.error is None else _percent(row.error, "+.3f"),
+        drawing=None if row.recording is None else drawing(row.recording, GRAVITY),
+    )
+
+
+def _percent(share: float, digits: str = "g") -> str:
+    return f"{share * 100:{digits}}\N{NO-BREAK SPACE}%"
+
+
+def _capitalised(words: str) -> str:
+    return words[:1].upper() + words[1:]
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.4g}"
+
+
+def _friction(mu: float) -> str:
+    return "∞" if math.isinf(mu) else f"{mu:.4g}"

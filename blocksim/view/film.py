@@ -1,0 +1,252 @@
+"""One recording, or two side by side, as frames of a film: clock, words, legend."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import BinaryIO, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim import limit
+from blocksim.arch import GRAVITY
+from blocksim.joints import JointState
+from blocksim.recording import Recording
+from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
+from blocksim.view.planar import PlanarView
+from blocksim.view.spatial import SpatialView
+from blocksim.view.stage import Moment, Stage
+from blocksim.view.style import INK, JOINTS, QUIET, THRUST
+
+ViewName = Literal["2d", "3d"]
+LENGTH = 6.0
+"""How long the motion takes in a film whose slowness is not given, about [s]."""
+BEFORE, AFTER = 0.8, 1.2
+"""How long the first and the last frame stand [s]."""
+SLOW = (1, 2, 3, 4, 5, 6, 8)
+"""Slow motion is one of these times a power of ten."""
+TALL = 720
+"""Height for which sizes below are given [pixels]."""
+HEAD, FOOT = 74.0, 44.0
+ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
+WORDS = {
+    JointState.HINGE_INTRADOS: "hinge intrados",
+    JointState.HINGE_EXTRADOS: "hinge extrados",
+    JointState.SLIDES: "slides",
+    JointState.HINGE_AND_SLIDES: "hinge and slides",
+    JointState.OPEN: "open",
+}
+
+
+class View(Protocol):
+    """How a stage is looked at."""
+
+    @property
+    def still(self) -> list[Shape]:
+        """What stays the same in every frame."""
+        ...
+
+    def shapes(self, moment: Moment) -> list[Shape]:
+        """Draw a moment."""
+        ...
+
+    def scale_bar(self, length: float, words: str) -> tuple[list[Shape], list[Label]]:
+        """Draw a bar of a length in units of the radius, and its words."""
+        ...
+
+
+class Film:
+    """Frames drawn from recordings alone: equal recordings give equal frames.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        One, or two to show side by side on one clock.
+    view : {"2d", "3d"}
+    slow : float, optional
+        How many times slower than it happened; by default such that the motion takes
+        about six seconds.
+    height : int
+        Of a frame [pixels]; it is 16:9.
+    rate : int
+        Frames in a second.
+
+    Attributes
+    ----------
+    width, height : int
+        Both even, as video asks for.
+    seconds : float
+        How long the motion is that is shown.
+    on_ground : bool
+        Whether it ends because a block has reached the ground or a footing.
+    count : int
+        Number of frames.
+    """
+
+    def __init__(
+        self,
+        recordings: Sequence[Recording],
+        *,
+        view: ViewName = "2d",
+        slow: float | None = None,
+        height: int = TALL,
+        rate: int = 30,
+    ) -> None:
+        self.height = 2 * (height // 2)
+        self.width = 2 * round(height * 8 / 9)
+        self.rate = rate
+        self._stages = [Stage(recording) for recording in recordings]
+        self.seconds = self._duration()
+        self.on_ground = any(stage.end < stage.recording.times[-1] for stage in self._stages)
+        self.slow = _slowness(self.seconds) if slow is None else slow
+        self._size = self.height / TALL
+        self._panels = self._arrange()
+        kinds: dict[ViewName, type[PlanarView | SpatialView]] = {
+            "2d": PlanarView,
+            "3d": SpatialView,
+        }
+        # One scale for both, so that they can be compared.
+        shown = np.concatenate([stage.swept for stage in self._stages])
+        self._views: list[View] = [
+            kinds[view](stage, panel, shown)
+            for stage, panel in zip(self._stages, self._panels, strict=True)
+        ]
+        self._canvas = Canvas(self.width, self.height)
+        self._canvas.keep(*self._still())
+        self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
+
+    def frame(self, number: int) -> NDArray[np.uint8]:
+        """Draw a frame, shape (height, width, 4): red, green, blue, opacity."""
+        self._draw((number / self.rate - BEFORE) / self.slow)
+        return self._canvas.pixels()
+
+    def still(self, file: BinaryIO, kind: str, at: float | None = None) -> None:
+        """Write one frame as png or svg.
+
+        Parameters
+        ----------
+        file : BinaryIO
+        kind : {"png", "svg"}
+        at : float, optional
+            Seconds since the release; by default the end.
+        """
+        self._draw(self.seconds if at is None else at)
+        self._canvas.save(file, kind)
+
+    def _draw(self, seconds: float) -> None:
+        seconds = min(max(seconds, 0.0), self.seconds)
+        parts: list[Part] = []
+        for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
+            parts.append((panel, view.shapes(stage.at(seconds / _unit(stage.recording)))))
+        size = self._size
+        clock = self._clock(seconds)
+        label = Label(24 * size, 15 * size, clock, size=19 * size, bold=True)
+        self._canvas.draw(parts, [label])
+
+    def _duration(self) -> float:
+        """Seconds shown: until the last of those that move has ended."""
+        ends = [stage.end * _unit(stage.recording) for stage in self._stages]
+        moving = [end for end, stage in zip(ends, self._stages, strict=True) if stage.moves]
+        return max(moving or ends)
+
+    def _arrange(self) -> list[Panel]:
+        head, foot = HEAD * self._size, FOOT * self._size
+        wide = self.width / len(self._stages)
+        tall = self.height - head - foot
+        return [Panel(i * wide, foot, wide, tall) for i in range(len(self._stages))]
+
+    def _still(self) -> tuple[list[Part], list[Label]]:
+        """All that stays the same: surroundings, scale bars, words, legend."""
+        parts: list[Part] = []
+        labels: list[Label] = []
+        for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
+            radius = stage.recording.arch.radius
+            length = _round_length(0.5 * radius)
+            bar, words = view.scale_bar(length / radius, f"{length:g} m")
+            parts.append((panel, [*view.still, *bar]))
+            labels += words + self._title(stage, panel)
+        whole = Panel(0, 0, self.width, self.height)
+        rules = [
+            np.array([[panel.x, FOOT * self._size], [panel.x, self.height]])
+            for panel in self._panels[1:]
+        ]
+        lines = [Shape(r, edge=colour(INK, 0.25), width=1, closed=False) for r in rules]
+        legend, words = self._legend()
+        return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
+
+    def _title(self, stage: Stage, panel: Panel) -> list[Label]:
+        """Arch, engine and ratio to the least thickness, above a panel."""
+        size, arch = self._size, stage.recording.arch
+        friction = "∞" if math.isinf(stage.recording.mu) else f"{stage.recording.mu:.4g}"
+        head = (
+            f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
+            f"μ = {friction}   n = {arch.voussoirs}"
+        )
+        least = limit.least_thickness(
+            arch.half_angle, stage.recording.mu, arch.voussoirs, arch.weight
+        ).eta
+        share = "no thickness stands" if least is None else _share(arch.eta / least)
+        below = f"{stage.recording.engine} {stage.recording.engine_version}   {share}"
+        x, top = panel.x + 24 * size, self.height
+        return [
+            Label(x, top - 36 * size, head, size=20 * size, bold=True),
+            Label(x, top - 61 * size, below, size=15 * size, colour=QUIET),
+        ]
+
+    def _clock(self, seconds: float) -> str:
+        return f"t = {seconds:.{_digits(self.seconds)}f} s"
+
+    def _pace(self) -> Label:
+        words = "real time" if self.slow == 1 else f"{self.slow:g} times slower"
+        x = 48 * self._size + width_of(self._clock(self.seconds), 19 * self._size, bold=True)
+        return Label(x, 15 * self._size, words, size=14 * self._size, colour=QUIET)
+
+    def _legend(self) -> tuple[list[Shape], list[Label]]:
+        """Explain the colours that occur, from the lower right corner."""
+        states = {state for stage in self._stages for state in stage.states}
+        entries = [(WORDS[state], JOINTS[state]) for state in WORDS if state in states]
+        if any(stage.thrust for stage in self._stages):
+            entries.append(("line of thrust at rest", THRUST))
+        shapes, labels = list[Shape](), list[Label]()
+        size = self._size
+        x, y = self.width - 24 * size, 15 * size
+        for words, tone in reversed(entries):
+            x -= width_of(words, 13 * size)
+            labels.append(Label(x, y, words, size=13 * size))
+            line = np.array([[x - 28 * size, y + 5 * size], [x - 8 * size, y + 5 * size]])
+            shapes.append(Shape(line, edge=colour(tone), width=5 * size, closed=False))
+            x -= 54 * size
+        return shapes, labels
+
+
+def _unit(recording: Recording) -> float:
+    """Seconds in one sqrt(r/g)."""
+    return math.sqrt(recording.arch.radius / GRAVITY)
+
+
+def _slowness(seconds: float) -> float:
+    """Slow motion that makes a film about `LENGTH` long, never fast."""
+    wanted = max(1.0, LENGTH / max(seconds, 1e-9))
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return min((step * power for step in (*SLOW, 10)), key=lambda slow: abs(slow - wanted))
+
+
+def _digits(seconds: float) -> int:
+    """Decimals of the clock: thousandths of what is shown."""
+    return max(1, min(6, math.ceil(2 - math.log10(max(seconds, 1e-9)))))
+
+
+def _round_length(length: float) -> float:
+    """Largest 1, 2 or 5 times a power of ten that is no longer."""
+    power = 10.0 ** math.floor(math.log10(length))
+    return max(step * power for step in (1, 2, 5) if step * power <= length * (1 + 1e-9))
+
+
+def _share(ratio: float) -> str:
+    """Say how thick the arch is compared with the thinnest that stands."""
+    if ratio >= 2:
+        return f"{ratio:.3g} times the least thickness"
+    off = abs(ratio - 1) * 100
+    shown = f"{off:.2g}" if off < 10 else f"{off:.0f}"
+    return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness"

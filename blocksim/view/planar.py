@@ -1,0 +1,136 @@
+"""The view from the front: a recording in its plane."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from blocksim.assembly import SUPPORT, Array
+from blocksim.joints import JointState
+from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
+from blocksim.view.stage import Moment, Stage
+from blocksim.view.style import GROUND, INK, JOINTS, PAPER, STONE, THRUST
+
+MARGIN = 0.06
+"""Free share of a panel on each side."""
+FLOOR = 0.1
+"""Share of a panel that shows the ground, at least."""
+
+
+class PlanarView:
+    """Draws the moments of a stage into a panel.
+
+    Parameters
+    ----------
+    stage : Stage
+    panel : Panel
+    shown : (k, 3) float
+        Points that find place in the panel; the lowest lie on the ground.
+
+    Attributes
+    ----------
+    still : list of Shape
+        What stays the same.
+    """
+
+    def __init__(self, stage: Stage, panel: Panel, shown: Array) -> None:
+        self._stage, self._panel = stage, panel
+        low, high = shown[:, :2].min(axis=0), shown[:, :2].max(axis=0)
+        # Symmetric about the crown, so that side by side and from run to run arches match.
+        width, height = 2 * max(-low[0], high[0]), high[1] - low[1]
+        floor = FLOOR * panel.height
+        free = panel.width * (1 - 2 * MARGIN), panel.height * (1 - MARGIN) - floor
+        self._scale = min(free[0] / width, free[1] / height)
+        spare = free[1] - height * self._scale
+        level = panel.y + floor + min(spare / 2, floor)
+        self._origin = np.array([panel.x + panel.width / 2, level - low[1] * self._scale])
+        self._line = edge_width(self._scale, stage.grain)
+        self._tones = stone_tones(len(stage.assembly.blocks))
+        self.still = self._surroundings()
+
+    def scale_bar(self, length: float, words: str) -> tuple[list[Shape], list[Label]]:
+        """Draw a bar of a length [r] on the ground, with its words."""
+        end = self._panel.x + self._panel.width - 0.03 * self._panel.width
+        height = self._origin[1] + self._stage.ground * self._scale - 14
+        start = end - length * self._scale
+        ink = colour(INK)
+        bar = np.array([[start, height], [end, height]])
+        ticks = [np.array([[x, height - 4], [x, height + 4]]) for x in (start, end)]
+        shapes = [Shape(line, edge=ink, width=2, closed=False) for line in (bar, *ticks)]
+        return shapes, [Label((start + end) / 2, height - 20, words, size=13, across="center")]
+
+    def shapes(self, moment: Moment) -> list[Shape]:
+        """Draw a moment."""
+        corners = self._to_pixels(moment.corners.mean(axis=1)[..., :2])
+        edge = mixed(colour(STONE), colour(INK), 0.75)
+        blocks = [
+            Shape(outline, fill=tone, edge=edge, width=self._line)
+            for outline, tone in zip(corners, self._tones, strict=True)
+        ]
+        return [*blocks, *self._joints(moment), *self._thrust(moment)]
+
+    def _to_pixels(self, points: Array) -> Array:
+        return points * self._scale + self._origin
+
+    def _surroundings(self) -> list[Shape]:
+        """Ground and footings."""
+        panel, level = self._panel, self._stage.ground * self._scale + self._origin[1]
+        right, below = panel.x + panel.width, panel.y - 10
+        floor = np.array([[panel.x, below], [right, below], [right, level], [panel.x, level]])
+        ground = colour(GROUND)
+        stone = mixed(ground, colour(PAPER), 0.35)
+        edge = mixed(ground, colour(INK), 0.45)
+        footings = [
+            Shape(self._to_pixels(each), fill=stone, edge=edge, width=self._line)
+            for each in self._stage.footings
+        ]
+        line = np.array([[panel.x, level], [right, level]])
+        return [
+            *footings,
+            Shape(floor, fill=ground),
+            Shape(line, edge=edge, width=1.5, closed=False),
+        ]
+
+    def _joints(self, moment: Moment) -> list[Shape]:
+        """Colour the faces of joints that take part, and mark their hinges by dots."""
+        faces, dots = list[Shape](), list[Shape]()
+        width = max(2.0, 2.6 * self._line)
+        before, after, ends, *_ = self._stage.assembly.joint_arrays
+        sides = self._stage.joint_sides
+        for joint, state in enumerate(moment.joints):
+            if state is JointState.CLOSED:
+                continue
+            tone = colour(JOINTS[state])
+            places: list[Array] = []
+            for place, block in enumerate((before[joint], after[joint])):
+                if block == SUPPORT:
+                    pair = ends[joint]
+                else:
+                    pair = moment.corners[block].mean(axis=0)[list(sides[joint][place]), :2]
+                places.append(self._to_pixels(pair))
+                faces.append(Shape(places[-1], edge=tone, width=width, closed=False))
+            hinge = HINGES.get(state)
+            if hinge is not None:
+                middle = (places[0][hinge] + places[1][hinge]) / 2
+                dots.append(
+                    Shape(_circle(middle, 1.9 * width), colour(PAPER), tone, 0.7 * width)
+                )
+        return [*faces, *dots]
+
+    def _thrust(self, moment: Moment) -> list[Shape]:
+        """Draw the line of thrust while the arch is at rest."""
+        if moment.statics == 0.0:
+            return []
+        tone = colour(THRUST, moment.statics)
+        return [
+            Shape(self._to_pixels(piece), edge=tone, width=2.4, closed=False)
+            for piece in self._stage.thrust
+        ]
+
+
+HINGES = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
+"""End of the joint that stays closed: inner or outer."""
+
+
+def _circle(centre: Array, radius: float) -> Array:
+    turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    return centre + radius * np.column_stack([np.cos(turn), np.sin(turn)])

@@ -1,0 +1,287 @@
+"""A recording made ready for the eye: blocks in space at any time, supports, ground, joints.
+
+Lengths are in units of the arch's radius, times in units of sqrt(r/g). Engines know no
+ground. The arch is shown on footings that stand on one, `DROP` below the lower ends of its
+springings, and a film ends when the first block reaches it, or a footing it does not rest
+on: what the recording holds beyond would be blocks falling through the floor.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from blocksim.assembly import SPATIAL, SUPPORT, Array
+from blocksim.joints import JointState, classify
+from blocksim.recording import Recording
+from blocksim.view.archfigure import lines_of, picture_of_arch
+
+DROP = 0.4
+"""Height of the footings below the lower end of a springing [r]."""
+LEDGE = 0.12
+"""How far a footing reaches beyond its springing, as a share of the joint's length."""
+FEWEST = 4
+"""Sides of a footing, and of a block at least."""
+SUNK = 0.02
+"""Depth of a corner in the ground or in a footing that passes for touching it [r]."""
+SEEN = 4e-3
+"""Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
+WITHIN = 0.95
+"""Share of the line of thrust in or near the arch below which it is not drawn."""
+FARTHEST = 1.0
+"""Blocks are followed up to this far beyond the arch at rest [r]."""
+SAMPLES = 500
+"""Most frames that are looked at for what a film needs to know beforehand."""
+STILL, GONE = 2e-3, 3e-2
+"""Displacements between which the line of thrust fades: it is of the arch at rest [r]."""
+
+
+class Moment(NamedTuple):
+    """Where everything is at one time.
+
+    Parameters
+    ----------
+    time : float
+    corners : (blocks, 2, sides, 3) float
+        Of the near and the far face of each block: x, y, and z towards the viewer.
+    joints : tuple of JointState
+    statics : float
+        1 while the line of thrust of the arch at rest still says something, falling to 0.
+    """
+
+    time: float
+    corners: Array
+    joints: tuple[JointState, ...]
+    statics: float
+
+
+class Stage:
+    """Everything that is drawn of a recording, whatever the view.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Attributes
+    ----------
+    depth : float
+        Of the blocks, out of the plane.
+    ground : float
+        Level of the ground.
+    footings : tuple of (k, 2) float
+        Convex outlines of what the arch stands on.
+    grain : float
+        Distance from block to block.
+    """
+
+    def __init__(self, recording: Recording) -> None:
+        self.recording = recording
+        self.assembly = recording.arch.assembly()
+        size = self.assembly.size
+        self.depth = max(block.depth for block in self.assembly.blocks) / size
+        outlines = [(block.vertices - block.centre) / size for block in self.assembly.blocks]
+        sides = max(FEWEST, *(len(outline) for outline in outlines))
+        # A triangle (eta = 2) repeats a corner, so that all blocks are one array.
+        self._outlines = np.array(
+            [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for each in outlines]
+        )
+        springings = [j for j in self.assembly.joints if SUPPORT in (j.before, j.after)]
+        ends = np.array([(joint.inner, joint.outer) for joint in springings]) / size
+        self.ground = float(ends[..., 1].min()) - DROP
+        self.footings = tuple(_footing(pair, self.ground) for pair in ends)
+        self._bearing = [max(joint.before, joint.after) for joint in springings]
+        self.grain = float(np.hypot(*np.diff(self.assembly.centres, axis=0).T).min()) / size
+        self._turns = _quaternions(recording)
+
+    @cached_property
+    def end(self) -> float:
+        """Time at which a block has reached ground or footing, or the recording ends."""
+        times = self.recording.times
+        depths: list[float] = []
+        for frame in range(len(times) if self.moves else 0):
+            depths.append(self._sunk(self._corners(frame, frame, 0.0)[..., :2]))
+            # Where footings are so near that they meet blocks at rest, that is no end.
+            touch = SUNK + max(0.0, depths[0])
+            if depths[-1] > touch:
+                between = times[frame - 1 : frame + 1]
+                return float(np.interp(touch, depths[-2:], between))
+        return float(times[-1])
+
+    def _sunk(self, corners: Array) -> float:
+        """Deepest that a block is in the ground, or meets a footing of another block."""
+        outlines = corners[:, 0]
+        deepest = self.ground - float(outlines[..., 1].min())
+        for block, footing in zip(self._bearing, self.footings, strict=True):
+            others = np.delete(outlines, block, axis=0)
+            for points, around in ((others, footing), (footing, others[:, None])):
+                deepest = max(deepest, float(_depth(points, around).max()))
+        return deepest
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything can be seen to move."""
+        return bool(self._displaced.max() > SEEN)
+
+    @cached_property
+    def thrust(self) -> tuple[Array, ...]:
+        """Line of thrust of the arch at rest, by limit analysis, in pieces (k, 2)."""
+        line, _ = lines_of(picture_of_arch(self.recording.arch, self.recording.mu))
+        drawn = np.isfinite(line).all(axis=1)
+        pieces = np.split(line, np.flatnonzero(np.diff(drawn)) + 1)
+        within = drawn.mean() > WITHIN
+        return tuple(piece for piece in pieces if within and np.isfinite(piece[0]).all())
+
+    @cached_property
+    def states(self) -> tuple[JointState, ...]:
+        """Joint states that are ever seen, in the order of `JointState`, closed left out."""
+        poses = self.recording.poses
+        seen = {state for frame in self._shown for state in self._joints(poses[frame])}
+        return tuple(state for state in JointState if state in seen - {JointState.CLOSED})
+
+    @cached_property
+    def swept(self) -> Array:
+        """Every corner at every frame that is shown, and of the footings, (k, 3).
+
+        Blocks are followed up to `FARTHEST` beyond the arch at rest.
+        """
+        footings = np.concatenate(self.footings)
+        half = self.depth / 2
+        solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
+        rest = np.concatenate([self._corners(0, 0, 0.0).reshape(-1, 3), *solid])
+        moved = np.concatenate([self._corners(i, i, 0.0) for i in self._shown]).reshape(-1, 3)
+        low, high = rest.min(axis=0), rest.max(axis=0)
+        bounded = np.clip(
+            moved, [*(low[:1] - FARTHEST), low[1], low[2] - FARTHEST], high + FARTHEST
+        )
+        return np.concatenate([rest, bounded])
+
+    @cached_property
+    def joint_sides(self) -> tuple[tuple[tuple[int, int], tuple[int, int]], ...]:
+        """Corners of `before` and of `after` at the inner and outer end of each joint.
+
+        Zeros stand for the support.
+        """
+        return tuple(
+            (self._side(j.before, j.inner, j.outer), self._side(j.after, j.inner, j.outer))
+            for j in self.assembly.joints
+        )
+
+    def at(self, time: float) -> Moment:
+        """Return where everything is at a time, between frames by interpolation."""
+        times = self.recording.times
+        time = float(np.clip(time, times[0], self.end))
+        later = int(np.clip(np.searchsorted(times, time), 1, len(times) - 1))
+        earlier = later - 1 if len(times) > 1 else later
+        gap = times[later] - times[earlier]
+        share = float((time - times[earlier]) / gap) if gap > 0 else 0.0
+        one, two = self.recording.poses[earlier], self.recording.poses[later]
+        moved = float(np.interp(time, times, self._displaced))
+        return Moment(
+            time=time,
+            corners=self._corners(earlier, later, share),
+            joints=self._joints(one + (two - one) * share),
+            statics=float(np.interp(moved, (STILL, GONE), (1.0, 0.0))),
+        )
+
+    def _side(self, block: int, inner: Array, outer: Array) -> tuple[int, int]:
+        """Corners of a block that are the two ends of a joint, next to each other."""
+        if block == SUPPORT:
+            return 0, 0
+        corners = self._outlines[block] + self.assembly.centres[block] / self.assembly.size
+        after = np.roll(corners, -1, axis=0)
+        ends = np.array([inner, outer]) / self.assembly.size
+        off = [
+            np.linalg.norm(corners - ends[one], axis=1)
+            + np.linalg.norm(after - ends[1 - one], axis=1)
+            for one in (0, 1)
+        ]
+        turned, side = np.unravel_index(int(np.argmin(off)), (2, len(corners)))
+        first, last = int(side), (int(side) + 1) % len(corners)
+        return (last, first) if turned else (first, last)
+
+    @cached_property
+    def _displaced(self) -> Array:
+        return self.recording.displacement
+
+    @cached_property
+    def _shown(self) -> list[int]:
+        """Frames that are shown, or as many of them as tell enough of a long recording."""
+        last = int(np.searchsorted(self.recording.times, self.end, "right")) - 1
+        return sorted({*range(0, last, 1 + last // SAMPLES), last})
+
+    def _joints(self, poses: Array) -> tuple[JointState, ...]:
+        return tuple(joint.state for joint in classify(self.assembly, poses, least=SEEN))
+
+    def _corners(self, earlier: int, later: int, share: float) -> Array:
+        """Corners in space between two frames."""
+        centres = _centres(self.recording, earlier) * (1 - share)
+        centres += _centres(self.recording, later) * share
+        turns = self._turns[earlier] * (1 - share) + self._turns[later] * share
+        turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
+        half = self.depth / 2
+        near = np.pad(self._outlines, ((0, 0), (0, 0), (0, 1)), constant_values=half)
+        local = np.stack([near, near * [1, 1, -1]], axis=1)
+        return centres[:, None, None] + _turned(turns[:, None, None], local)
+
+
+def _depth(points: Array, outline: Array) -> Array:
+    """How far points are inside convex outlines, below 0 outside.
+
+    Parameters
+    ----------
+    points : (..., 2) float
+    outline : (..., sides, 2) float
+        Counter-clockwise; its leading axes go with those of the points.
+    """
+    along = np.roll(outline, -1, axis=-2) - outline
+    length = np.linalg.norm(along, axis=-1)
+    inward = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    height = ((points[..., None, :] - outline) * inward).sum(axis=-1)
+    # A corner given twice makes a side without length, which bounds nothing.
+    bounds = length > 0
+    return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)
+
+
+def _footing(springing: Array, ground: float) -> Array:
+    """Outline of what a springing stands on, down to the ground."""
+    inner, outer = springing
+    ledge = (outer - inner) * LEDGE
+    top = np.array([inner - ledge, outer + ledge])
+    top = top[np.argsort(top[:, 0])]
+    return np.array([top[0], [top[0, 0], ground], [top[1, 0], ground], top[1]])
+
+
+def _centres(recording: Recording, frame: int) -> Array:
+    """Centres of the blocks in space, (blocks, 3)."""
+    poses = recording.poses[frame]
+    centres = np.zeros((len(poses), 3))
+    centres[:, :2] = poses[:, :2]
+    if poses.shape[1] == SPATIAL:
+        centres[:, 2] = poses[:, 3]
+    return centres
+
+
+def _quaternions(recording: Recording) -> Array:
+    """Rotations as unit quaternions w, x, y, z that go on smoothly, (frames, blocks, 4)."""
+    poses = recording.poses
+    vectors = np.zeros((*poses.shape[:2], 3))
+    vectors[..., 2] = poses[..., 2]
+    if poses.shape[2] == SPATIAL:
+        vectors[..., :2] = poses[..., 4:]
+    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    # sin(angle/2)/angle, 1/2 where nothing turns.
+    turns = np.concatenate([np.cos(angle / 2), vectors * np.sinc(angle / (2 * np.pi)) / 2], -1)
+    for earlier, later in pairwise(turns):
+        # q and -q are one rotation: take the one nearer to the frame before.
+        later[(earlier * later).sum(axis=-1) < 0] *= -1
+    return turns
+
+
+def _turned(turns: Array, points: Array) -> Array:
+    """Rotate points by unit quaternions."""
+    axis = turns[..., 1:]
+    across = 2 * np.cross(axis, points)
+    return points + turns[..., :1] * across + np.cross(axis, across)

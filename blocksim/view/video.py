@@ -1,0 +1,131 @@
+# PyAV's annotations leave keyword arguments and types of packets open.
+# pyright: reportUnknownMemberType=false
+"""Films to files: mp4 by PyAV, gif by Pillow, single frames as png and svg."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import BinaryIO
+
+import av
+import numpy as np
+from av.video.reformatter import Colorspace
+from numpy.typing import NDArray
+from PIL import Image
+
+from blocksim.files import write_whole
+from blocksim.progress import Progress, silent
+from blocksim.recording import Recording
+from blocksim.view.film import TALL, Film, ViewName
+
+RATES = {"mp4": 30, "gif": 20}
+"""Frames in a second; a gif counts in hundredths."""
+STILLS = ("png", "svg")
+KINDS = (*RATES, *STILLS)
+QUALITY = "19"
+"""Constant rate factor of x264: lines stay crisp."""
+THREADS = 2
+"""Fixed, because x264's output depends on it."""
+COLOURS = 255
+
+
+def render(
+    recordings: Sequence[Recording],
+    out: Path,
+    *,
+    view: ViewName = "2d",
+    slow: float | None = None,
+    at: float | None = None,
+    height: int = TALL,
+    progress: Progress = silent,
+) -> Film:
+    """Draw recordings into a file, whole or not at all.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        One, or two to show side by side.
+    out : Path
+        Ending in .mp4 or .gif for a film, .png or .svg for one frame of it.
+    view : {"2d", "3d"}
+    slow : float, optional
+        How many times slower than it happened.
+    at : float, optional
+        For a single frame: seconds since the release, by default the end.
+    height : int
+        In pixels; frames are 16:9.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Film
+        As it was drawn.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    kind = out.suffix.removeprefix(".")
+    film = Film(recordings, view=view, slow=slow, height=height, rate=RATES.get(kind, 30))
+    if kind in STILLS:
+        write_whole(out, lambda file: film.still(file, kind, at))
+    else:
+        write: Callable[[Film, BinaryIO, Progress], None] = {"mp4": _mp4, "gif": _gif}[kind]
+        write_whole(out, lambda file: write(film, file, progress))
+    return film
+
+
+def _mp4(film: Film, file: BinaryIO, progress: Progress) -> None:
+    with av.open(file, "w", format="mp4") as container:
+        options = {"crf": QUALITY, "preset": "veryfast"}
+        stream = container.add_stream("libx264", rate=film.rate, options=options)
+        stream.width, stream.height = film.width, film.height
+        stream.pix_fmt = "yuv420p"
+        stream.thread_count = THREADS
+        # Players take HD video for BT.709; say so, and convert so.
+        stream.color_range, stream.colorspace = 1, Colorspace.ITU709
+        stream.color_primaries = stream.color_trc = 1
+
+        def encode(frame: NDArray[np.uint8]) -> None:
+            picture = av.VideoFrame.from_ndarray(frame, format="rgba")
+            converted = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709)
+            container.mux(stream.encode(converted))
+
+        # One frame is encoded while the next is drawn.
+        with ThreadPoolExecutor(1) as encoder:
+            encoded = encoder.submit(encode, film.frame(0))
+            for number in range(1, film.count):
+                frame = film.frame(number)
+                encoded.result()
+                encoded = encoder.submit(encode, frame)
+                progress((number + 1) / film.count, "rendering")
+            encoded.result()
+        container.mux(stream.encode(None))
+
+
+def _gif(film: Film, file: BinaryIO, progress: Progress) -> None:
+    def picture(number: int) -> Image.Image:
+        return Image.fromarray(film.frame(number)[..., :3])
+
+    # One palette for all frames, from three of them, so that colours do not flicker.
+    samples = [np.asarray(picture(n)) for n in (0, film.count // 2, film.count - 1)]
+    palette = Image.fromarray(np.concatenate(samples)).quantize(COLOURS)
+
+    def frames() -> Iterator[Image.Image]:
+        for number in range(film.count):
+            progress((number + 1) / film.count, "rendering")
+            yield picture(number).quantize(palette=palette, dither=Image.Dither.NONE)
+
+    every = frames()
+    next(every).save(
+        file,
+        format="GIF",
+        save_all=True,
+        append_images=every,
+        duration=1000 // film.rate,
+        loop=0,
+        optimize=False,
+    )

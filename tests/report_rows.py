@@ -1,0 +1,102 @@
+"""Rows of a validation as made up for tests of the report, in no time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from blocksim.arch import Arch
+from blocksim.engines.base import Settings
+from blocksim.modes import Mode
+from blocksim.recording import Recording
+from blocksim.validate import Row
+from blocksim.verdict import Verdict
+
+ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
+
+
+def sliding() -> Recording:
+    """The right half slides down at the crown, by 0.02 r in the end."""
+    assembly = ARCH.assembly()
+    rest = np.column_stack([assembly.centres, np.zeros(8)])
+    moved = np.zeros((11, 8, 3))
+    moved[:, 4:, 1] = -0.02 * np.linspace(0, 1, 11)[:, None] ** 2
+    return Recording(
+        arch=ARCH,
+        mu=0.7,
+        engine="pymunk",
+        engine_version="7.3",
+        settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
+        times=np.linspace(0, 2, 11),
+        poses=rest + moved,
+    )
+
+
+ROW = Row(
+    scenario="semicircle",
+    engine="pymunk",
+    half_angle=math.pi / 2,
+    mu=0.7,
+    voussoirs=8,
+    weight="centreline",
+    modes_published=(Mode.RRR,),
+    eta_published=0.107426,
+    eta_limit=0.106,
+    mode_limit=Mode.RRR,
+    eta_low=0.1059,
+    eta_high=0.1060,
+    error=-0.0005,
+    mode_observed=Mode.RRR,
+    below=Verdict.COLLAPSES,
+    above=Verdict.STANDS,
+    verdict_expected=None,
+    verdict=None,
+    confirmed=True,
+    miss="",
+    note="",
+    wall_s=2.5,
+    title="The semicircular arch",
+    source="A source",
+    recording=sliding(),
+)
+
+
+def rows() -> list[Row]:
+    """Two arches by two engines: all kinds of values that a row can have."""
+    hostile = replace(
+        ROW,
+        scenario="second<script>alert(1)</script>",
+        title='<img src=x onerror="alert(1)"> & co',
+        source='"><b>bold</b>',
+        mu=math.inf,
+    )
+    return [
+        ROW,
+        replace(ROW, engine="pybullet", error=0.004, miss="error +0.40 %", note="slack"),
+        replace(
+            hostile,
+            eta_limit=None,
+            eta_published=None,
+            eta_low=2.0,
+            eta_high=None,
+            error=None,
+            mode_observed=Mode.SS,
+            above=None,
+        ),
+        replace(
+            hostile,
+            engine="pybullet",
+            eta_low=None,
+            eta_high=None,
+            error=None,
+            mode_observed=None,
+            mode_limit=None,
+            below=None,
+            above=None,
+            confirmed=None,
+            recording=None,
+            miss="no bracket; nothing tried 1 % below",
+        ),
+    ]

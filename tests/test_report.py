@@ -1,0 +1,218 @@
+"""The report is one page that loads nothing, hides nothing and cannot be broken into."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections import Counter
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import combinations, pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from report_rows import ARCH, ROW, rows, sliding
+
+from blocksim.report.motion import KEYS, SHOWN, UNIT, drawing
+from blocksim.report.page import numbered, report_page, summary
+from blocksim.report.tables import write_results
+from blocksim.verdict import Verdict
+from blocksim.view import style
+
+
+class Page(HTMLParser):
+    """Elements with their attributes, and the words in between."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.open: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        while self.open and self.open.pop() != tag:
+            pass
+
+    def handle_data(self, data: str) -> None:
+        if not {"script", "style"} & set(self.open):
+            self.words.append(data)
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+@pytest.fixture(scope="module")
+def text() -> str:
+    return report_page(rows(), b"<svg/>", {"blocksim": "0.1", "python": "3.11"})
+
+
+def test_nothing_is_loaded(text: str) -> None:
+    page = Page(text)
+    assert not page.all("link")
+    assert not page.all("iframe")
+    assert all("src" not in attributes for attributes in page.all("script"))
+    assert [image["src"][:5] for image in page.all("img")] == ["data:"]
+    assert not re.search(r"url\(|@import|https?://", text)
+
+
+def test_input_is_escaped(text: str) -> None:
+    page = Page(text)
+    assert len(page.all("script")) == 1
+    assert len(page.all("img")) == 1
+    assert all(not name.startswith("on") for _, a in page.elements for name in a)
+    words = "".join(page.words)
+    assert '<img src=x onerror="alert(1)"> & co' in words
+    assert "second<script>alert(1)</script>" in words
+
+
+def test_every_row_is_told(text: str) -> None:
+    page = Page(text)
+    words = " ".join(" ".join(page.words).split())
+    for told in (
+        "error +0.40 %",
+        "Slack.",
+        "no bracket; nothing tried 1 % below",
+        "none up to 2",
+        "not tried",
+        "unnamed",
+        "∞",
+        "No moving run was made.",
+        "-0.050 %",
+    ):
+        assert told in words
+    assert len(page.all("article")) == 2
+    assert len(page.all("svg")) == 3
+    # Cells that engines share span their rows; with them, all rows are equally wide.
+    body = text[text.index("<tbody>") : text.index("</table>")]
+    lines = re.findall(r"<tr>.*?</tr>", body, re.DOTALL)
+    assert [len(re.findall("<t[dh]", line)) for line in lines] == [15, 7, 15, 7]
+    assert body.count('rowspan="2"') == 16
+
+
+def test_page_can_be_read_without_seeing_it(text: str) -> None:
+    page = Page(text)
+    assert page.all("html")[0]["lang"] == "en"
+    assert page.all("img")[0]["alt"]
+    ids = Counter(attributes["id"] for _, attributes in page.elements if "id" in attributes)
+    assert max(ids.values()) == 1
+    for picture in page.all("svg"):
+        assert picture["role"] == "img"
+        assert all(name in ids for name in (picture["aria-labelledby"] or "").split())
+    assert all(slider["aria-label"] for slider in page.all("input"))
+    targets = [(a["href"] or "")[1:] for a in page.all("a")]
+    assert all(target in ids for target in targets)
+    levels = [int(tag[1]) for tag, _ in page.elements if re.fullmatch("h[1-6]", tag)]
+    assert all(later - earlier <= 1 for earlier, later in pairwise(levels))
+
+
+def test_engines_share_the_number_of_an_arch() -> None:
+    assert list(numbered(rows()).values()) == [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "All 1 simulated arches agree"),
+        ({"miss": "x"}, "0 of 1 simulated arches agree"),
+        ({}, "off by 0.050\xa0% at most"),
+        ({}, "of 2 verdicts 1\xa0% to either side of it none is false and none is undecided."),
+        ({"above": Verdict.COLLAPSES}, "1 is false and none is undecided."),
+        ({"below": Verdict.STANDS}, "1 is false and none is undecided."),
+        ({"below": Verdict.UNDECIDED}, "none is false and 1 is undecided."),
+        ({"above": None}, "of 1 verdicts"),
+    ],
+)
+def test_sentence_counts(changes: dict[str, object], words: str) -> None:
+    assert words in summary([replace(ROW, **changes)])
+
+
+def test_drawing_enlarges_the_motion_recorded() -> None:
+    """Sliding down by 0.02 r, evenly in displacement: pose k of 12 is k/12 of 0.13 r."""
+    made = drawing(sliding(), 9.81)
+    frames = np.array(json.loads(made.frames))
+    assert frames.shape == (KEYS + 1, 8, 3)
+    assert np.abs(frames[:, :4]).max() == 0
+    expected = np.arange(KEYS + 1) / KEYS * SHOWN * UNIT
+    # Between frames of the recording the motion is linear, not quadratic.
+    np.testing.assert_allclose(frames[:, 4:, 1], expected[:, None].repeat(4, 1), atol=0.011)
+    assert made.enlarged == pytest.approx(SHOWN / 0.02)
+    assert made.seconds == pytest.approx(2 / math.sqrt(9.81))
+    assert [(round(angle), state) for angle, state in made.joints] == [(0, "slides")]
+
+
+def test_drawing_of_what_stands() -> None:
+    still = replace(sliding(), poses=np.repeat(sliding().poses[:1], 11, axis=0))
+    made = drawing(still, 9.81)
+    assert made.enlarged is None
+    assert made.joints == ()
+    assert np.abs(np.array(json.loads(made.frames))).max() == 0
+    text = report_page([replace(ROW, recording=still)], b"<svg/>", {"blocksim": "0.1"})
+    assert "nothing moved in" in text
+    assert "<button" not in text
+
+
+def test_written_with_the_rest(tmp_path: Path) -> None:
+    write_results([ROW], tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "data:image/svg+xml;base64," in page
+    assert len(page) < 1_500_000
+    record = json.loads((tmp_path / "validate.json").read_text())["rows"][0]
+    assert "recording" not in record
+    assert record["title"] == "The semicircular arch"
+    assert ARCH.voussoirs == record["voussoirs"]
+
+
+def luminance(name: str) -> float:
+    """Relative luminance as WCAG 2 defines it."""
+    shares = [int(name[place : place + 2], 16) / 255 for place in (1, 3, 5)]
+    linear = [s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4 for s in shares]
+    return float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
+
+
+def contrast(one: str, other: str) -> float:
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def seen(name: str, kind: str) -> np.ndarray:
+    """A colour as a dichromat sees it (Vienot, Brettel and Mollon 1999), linear RGB."""
+    shares = np.array([int(name[place : place + 2], 16) / 255 for place in (1, 3, 5)])
+    linear = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+    to_cones = np.array(
+        [
+            [17.8824, 43.5161, 4.11935],
+            [3.45565, 27.1554, 3.86714],
+            [0.0299566, 0.184309, 1.46709],
+        ]
+    )
+    missing = {
+        "protan": [[0, 2.02344, -2.52581], [0, 1, 0], [0, 0, 1]],
+        "deutan": [[1, 0, 0], [0.494207, 0, 1.24827], [0, 0, 1]],
+    }[kind]
+    return np.linalg.inv(to_cones) @ np.array(missing) @ to_cones @ linear
+
+
+@pytest.mark.parametrize("kind", ["protan", "deutan"])
+def test_colours_differ_for_colour_blind_readers(kind: str) -> None:
+    """Modes have shapes as well; joints and verdicts must differ in what is seen."""
+    for tones in (list(style.JOINTS.values()), list(style.VERDICTS.values())):
+        for one, other in combinations(tones, 2):
+            assert np.linalg.norm(seen(one, kind) - seen(other, kind)) > 0.08
+
+
+def test_verdicts_can_be_read_on_paper() -> None:
+    for tone in style.VERDICTS.values():
+        assert contrast(tone, "#ffffff") > 4.5
+        assert contrast(tone, style.PAPER) > 4.5
+    for look in style.MODES.values():
+        assert contrast("#1c1c1c", look.tint) > 7

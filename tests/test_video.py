@@ -1,0 +1,426 @@
+"""Films show where the blocks are, in the order they hide each other, and are written whole."""
+
+from __future__ import annotations
+
+import io
+import math
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+from scipy.spatial.transform import Rotation
+
+from blocksim.arch import GRAVITY, Arch
+from blocksim.assembly import Array
+from blocksim.engines.base import Settings
+from blocksim.errors import InputError
+from blocksim.joints import JointState, classify, joint_motion
+from blocksim.recording import Recording, load_recording
+from blocksim.view.canvas import Canvas, Panel, Shape, colour
+from blocksim.view.film import Film
+from blocksim.view.order import painting_order
+from blocksim.view.spatial import SpatialView
+from blocksim.view.stage import DROP, SUNK, Stage
+from blocksim.view.style import JOINTS
+from blocksim.view.video import render
+
+ARCH = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=6, radius=2.0, depth=1.0)
+
+
+def rest(arch: Arch = ARCH) -> Array:
+    assembly = arch.assembly()
+    return np.column_stack([assembly.centres / assembly.size, np.zeros(arch.voussoirs)])
+
+
+def recording(moved: Array, times: Array, arch: Arch = ARCH) -> Recording:
+    """Record given displacements, (frames, blocks, 3)."""
+    return Recording(
+        arch=arch,
+        mu=0.7,
+        engine="pymunk",
+        engine_version="7.3",
+        settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
+        times=times,
+        poses=rest(arch) + moved,
+    )
+
+
+def turned_about(point: Array, angle: float, blocks: list[int]) -> Array:
+    """Displacements of blocks that turn as one piece about a point."""
+    moved = np.zeros((ARCH.voussoirs, 3))
+    spin = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    for block in blocks:
+        arm = rest()[block, :2] - point
+        moved[block, :2] = spin @ arm - arm
+        moved[block, 2] = angle
+    return moved
+
+
+def falling(frames: int = 40) -> Recording:
+    """All blocks fall freely."""
+    times = np.linspace(0, 1.6, frames)
+    moved = np.zeros((frames, ARCH.voussoirs, 3))
+    moved[..., 1] = -(times**2)[:, None] / 2
+    # Only the two at the crown, so that no footing is met.
+    moved[:, [0, 1, 4, 5]] = 0
+    return recording(moved, times)
+
+
+def test_corners_are_those_of_rigid_bodies_in_space() -> None:
+    """Against scipy's rotations; halfway between equal frames nothing changes."""
+    random = np.random.default_rng(3)
+    vectors = random.normal(size=(ARCH.voussoirs, 3))
+    shift = random.normal(size=(ARCH.voussoirs, 3))
+    moved = np.column_stack([shift[:, :2], vectors[:, 2]])
+    beyond = np.column_stack([shift[:, 2], vectors[:, :2]])
+    flat = recording(np.array([moved, moved]), np.array([0.0, 1.0]))
+    poses = np.concatenate([flat.poses, np.array([beyond, beyond])], axis=-1)
+    stage = Stage(replace(flat, poses=poses))
+    assembly = ARCH.assembly()
+    for block, seen in enumerate(stage.at(0.0).corners):
+        arms = (assembly.blocks[block].vertices - assembly.blocks[block].centre) / 2.0
+        for end, z in ((0, 0.25), (1, -0.25)):
+            local = np.column_stack([arms, np.full(len(arms), z)])
+            centre = np.append(rest()[block, :2], 0.0) + shift[block]
+            expected = Rotation.from_rotvec(vectors[block]).apply(local) + centre
+            np.testing.assert_allclose(seen[end], expected, atol=1e-12)
+
+
+def test_between_frames_blocks_turn_at_constant_speed_and_stay_rigid() -> None:
+    moved = turned_about(np.zeros(2), 0.2, [2, 3])
+    stage = Stage(recording(np.array([0 * moved, moved]), np.array([0.0, 1.0])))
+    stage.end = 1.0
+    half = stage.at(0.5).corners[2, 0]
+    angles = [
+        math.atan2(*(each[1] - each[0])[1::-1]) for each in (stage.at(0).corners[2, 0], half)
+    ]
+    assert angles[1] - angles[0] == pytest.approx(0.1, abs=1e-9)
+    sides = [
+        np.hypot(*np.diff(each[:, :2], axis=0).T) for each in (stage.at(0).corners[2, 0], half)
+    ]
+    np.testing.assert_allclose(sides[0], sides[1], rtol=1e-12)
+
+
+def test_turns_beyond_half_a_turn_go_the_short_way() -> None:
+    """A rotation vector that jumps from pi to -pi is hardly a motion."""
+    moved = np.zeros((2, ARCH.voussoirs, 3))
+    moved[:, 2, 2] = [math.pi - 0.01, -math.pi + 0.01]
+    stage = Stage(recording(moved, np.array([0.0, 1.0])))
+    stage.end = 1.0
+    way = [stage.at(t).corners[2, 0] - stage.at(0.0).corners[2, 0] for t in (0.5, 1.0)]
+    assert np.abs(way[1]).max() < 0.01
+    assert np.abs(way[0]).max() < 0.01
+
+
+def test_a_film_ends_when_a_falling_block_reaches_the_ground() -> None:
+    """Free fall of the crown: the lowest corner of the two crown blocks has DROP plus its
+    height above the springings to go."""
+    stage = Stage(falling(frames=400))
+    assembly = ARCH.assembly()
+    lowest = min(assembly.blocks[block].vertices[:, 1].min() for block in (2, 3)) / 2.0
+    expected = math.sqrt(2 * (lowest + DROP + SUNK))
+    assert stage.end == pytest.approx(expected, abs=1e-4)
+    assert stage.ground == pytest.approx(-DROP, abs=1e-15)
+    assert Film([falling()]).on_ground
+
+
+def test_a_film_ends_when_a_block_goes_into_a_footing() -> None:
+    times = np.linspace(0, 1, 101)
+    moved = np.zeros((101, ARCH.voussoirs, 3))
+    # The second block jumps over the left footing and moves down at speed 1.
+    moved[1:, 1, 0] = -0.17
+    moved[:, 1, 1] = -times
+    stage = Stage(recording(moved, times))
+    low = ARCH.assembly().blocks[1].vertices[:, 1].min() / 2.0
+    assert stage.end == pytest.approx(low + SUNK, abs=1e-9)
+
+
+def test_joint_arrays_are_the_joints() -> None:
+    assembly = ARCH.assembly()
+    arrays = assembly.joint_arrays
+    assert arrays is assembly.joint_arrays
+    for index, joint in enumerate(assembly.joints):
+        assert (arrays.before[index], arrays.after[index]) == (joint.before, joint.after)
+        np.testing.assert_array_equal(arrays.ends[index] * 2.0, [joint.inner, joint.outer])
+        np.testing.assert_allclose(arrays.normal[index], joint.normal, atol=1e-16)
+        assert arrays.length[index] == joint.length / 2.0
+
+
+@pytest.mark.parametrize("angle", [0.01, 0.3, 0.8])
+def test_a_hinge_is_a_hinge_however_far_it_has_turned(angle: float) -> None:
+    """The right springing turns about its extrados, the crown about its own."""
+    joint = ARCH.assembly().joints[-1]
+    moved = turned_about(joint.outer / 2.0, -angle, [5])
+    motion = joint_motion(ARCH.assembly(), rest() + moved)
+    assert motion.slip[-1] == pytest.approx(0, abs=1e-12)
+    # The inner end parts by the chord.
+    assert motion.gap[-1].tolist() == pytest.approx([0.6 * math.sin(angle / 2), 0], abs=1e-12)
+    states = classify(ARCH.assembly(), rest() + moved, least=1e-3)
+    assert states[-1].state is JointState.HINGE_EXTRADOS
+
+
+def test_least_motion_is_absolute_where_given() -> None:
+    moved = np.zeros((ARCH.voussoirs, 3))
+    moved[3:, 0] = 2e-3
+    for least, state in ((1e-3, JointState.CLOSED), (3e-3, JointState.CLOSED)):
+        seen = classify(ARCH.assembly(), rest() + moved, least=least)
+        assert seen[1].state is state
+    slid = np.zeros((ARCH.voussoirs, 3))
+    slid[3:, 1] = -2e-3
+    assert classify(ARCH.assembly(), rest() + slid, least=1e-3)[3].state is JointState.SLIDES
+    assert classify(ARCH.assembly(), rest() + slid, least=3e-3)[3].state is JointState.CLOSED
+
+
+def test_a_joint_that_turns_is_seen_in_its_colour() -> None:
+    crown = ARCH.assembly().joints[3].outer / 2.0
+    moved = turned_about(crown, 0.05, [3, 4, 5])
+    film = Film([recording(np.array([0 * moved, moved]), np.array([0.0, 1.0]))])
+    tone = np.round(255 * np.array(colour(JOINTS[JointState.HINGE_EXTRADOS])[:3]))
+
+    def pixels(frame: int) -> int:
+        inside = film.frame(frame)[80 : film.height - 50, :, :3]
+        return int((np.abs(inside - tone).max(axis=-1) < 2).sum())
+
+    assert pixels(0) == 0
+    assert pixels(film.count - 1) > 100
+
+
+def boxes(centres: Array, half: Array) -> tuple[Array, Array, Array]:
+    """Corners, normals and offsets of axis-parallel boxes."""
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    corners = centres[:, None] + signs * half[:, None]
+    normals = np.concatenate([np.eye(3), -np.eye(3)])
+    offsets = centres @ normals.T + np.concatenate([half, half], axis=1)
+    return corners, np.broadcast_to(normals, (len(centres), 6, 3)), offsets
+
+
+def entry(start: Array, way: Array, low: Array, high: Array) -> float:
+    """Where a ray enters a box; inf where it misses (slab method)."""
+    with np.errstate(divide="ignore"):
+        one, two = (low - start) / way, (high - start) / way
+    near, far = np.minimum(one, two).max(), np.maximum(one, two).min()
+    return float(near) if near < far else math.inf
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=40)
+def test_what_is_painted_later_is_nearer_along_every_ray(seed: int) -> None:
+    """Boxes in cells of a grid that do not meet, against rays cast through them."""
+    random = np.random.default_rng(seed)
+    cells = random.choice(27, size=9, replace=False)
+    places = np.stack(np.unravel_index(cells, (3, 3, 3)), axis=1) - 1.0
+    half = random.uniform(0.1, 0.5, size=(9, 3))
+    centres = places + random.uniform(-1, 1, size=(9, 3)) * (0.5 - half)
+    corners, normals, offsets = boxes(centres, half)
+    eye = random.normal(size=3)
+    eye *= 6 / np.linalg.norm(eye)
+    everywhere = np.tile([[-np.inf, -np.inf], [np.inf, np.inf]], (9, 1, 1))
+    order = painting_order(corners, normals, offsets, eye, everywhere)
+    assert sorted(order) == list(range(9))
+    for _ in range(60):
+        way = random.uniform(-1.5, 1.5, size=3) - eye
+        seen = [entry(eye, way, c - h, c + h) for c, h in zip(centres, half, strict=True)]
+        along = [seen[body] for body in order if seen[body] < math.inf]
+        assert along == sorted(along, reverse=True)
+
+
+def test_bodies_that_hide_each_other_in_a_ring_are_all_painted() -> None:
+    """Three bars, each over the next: no order is right, but none may be lost."""
+    centres = np.array([[0.0, 1.0, 0.0], [0.9, -0.5, 0.0], [-0.9, -0.5, 0.0]])
+    corners, normals, offsets = boxes(centres, np.full((3, 3), 0.4))
+    shifted = offsets - 10.0  # planes that claim everything is in front of everything
+    everywhere = np.tile([[-np.inf, -np.inf], [np.inf, np.inf]], (3, 1, 1))
+    order = painting_order(corners, normals, shifted, np.array([0.0, 0.0, 9.0]), everywhere)
+    assert sorted(order) == [0, 1, 2]
+
+
+def test_near_blocks_hide_far_ones() -> None:
+    """Seen from the left, in space, the left springing's footing hides what is behind it."""
+    stage = Stage(falling())
+    view = SpatialView(stage, Panel(0, 0, 640, 360), stage.swept)
+    canvas = Canvas(640, 360)
+    canvas.keep([(Panel(0, 0, 640, 360), view.still)])
+    canvas.draw([(Panel(0, 0, 640, 360), view.shapes(stage.at(0.0)))])
+    assert len(np.unique(canvas.pixels().reshape(-1, 4), axis=0)) > 50
+
+
+def test_polygons_are_smooth_and_where_they_should_be() -> None:
+    canvas = Canvas(40, 20)
+    panel = Panel(0, 0, 40, 20)
+    square = np.array([[10.0, 5.0], [20.5, 5.0], [20.5, 15.0], [10.0, 15.0]])
+    canvas.keep([])
+    red = Shape(square, fill=(1.0, 0.0, 0.0, 1.0))
+    canvas.draw([(panel, [red, red._replace(points=square - [0, 30])])])
+    pixels = canvas.pixels()
+    assert pixels.shape == (20, 40, 4)
+    assert pixels[10, 15].tolist() == [255, 0, 0, 255]
+    assert pixels[10, 25, 1] > 240
+    # Half a pixel is covered.
+    assert 110 < int(pixels[10, 20, 1]) < 140
+
+
+@pytest.mark.parametrize("view", ["2d", "3d"])
+def test_frames_depend_on_the_recording_alone(view: str, tmp_path: Path) -> None:
+    one = falling()
+    one.save(tmp_path / "run.npz")
+    films = [
+        Film([r], view=view, height=240) for r in (one, load_recording(tmp_path / "run.npz"))
+    ]
+    for number in (0, 40, films[0].count - 1):
+        later = films[1].frame(number)
+        assert np.array_equal(films[0].frame(number), later)
+        films[1].frame(7)
+        assert np.array_equal(films[1].frame(number), later)
+
+
+def test_slow_motion_and_length() -> None:
+    """The release shows for 0.8 s, the end for 1.2 s, the motion as many times slower."""
+    seconds = Stage(falling()).end * math.sqrt(2.0 / GRAVITY)
+    film = Film([falling()], slow=10, rate=20, height=240)
+    assert film.seconds == pytest.approx(seconds, rel=1e-12)
+    assert film.count == 1 + round(20 * (2.0 + 10 * seconds))
+    # 8.7 times slower it would take six seconds.
+    assert Film([falling()], height=240).slow == 8
+    assert not np.array_equal(film.frame(15)[:200], film.frame(100)[:200])
+
+
+def test_side_by_side_has_one_clock_and_one_scale() -> None:
+    still = recording(np.zeros((2, ARCH.voussoirs, 3)), np.array([0.0, 10.0]))
+    both = Film([falling(), still], height=360)
+    alone = Film([still, still], height=360)
+    assert both.seconds == Film([falling()]).seconds
+    assert (both.width, both.height) == (640, 360)
+    left, right = np.split(both.frame(0)[60:330, :, :3], 2, axis=1)
+    # The same arch at rest on both sides of the dividing line.
+    assert np.abs(left[:, 4:].astype(int) - right[:, 4:]).mean() < 1
+    assert alone.seconds == pytest.approx(10 * math.sqrt(2.0 / GRAVITY))
+
+
+def test_mp4_can_be_read_back(tmp_path: Path) -> None:
+    out = tmp_path / "film.mp4"
+    told: list[float] = []
+    film = render(
+        [falling()], out, slow=2, height=240, progress=lambda share, _: told.append(share)
+    )
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    with av.open(str(out)) as container:
+        stream = container.streams.video[0]
+        assert (stream.width, stream.height) == (film.width, film.height) == (426, 240)
+        assert stream.average_rate == 30
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(stream)]
+    assert len(frames) == film.count
+    for number in (0, film.count // 2, film.count - 1):
+        drawn = film.frame(number)[..., :3].astype(int)
+        assert np.abs(frames[number] - drawn).mean() < 4
+    again = tmp_path / "again.mp4"
+    render([falling()], again, slow=2, height=240)
+    assert out.read_bytes() == again.read_bytes()
+
+
+def test_gif_can_be_read_back(tmp_path: Path) -> None:
+    out = tmp_path / "film.gif"
+    film = render([falling()], out, slow=2, height=180)
+    with Image.open(out) as picture:
+        assert picture.size == (film.width, film.height)
+        # Frames that are equal are one that stands longer.
+        total = 0
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            total += picture.info["duration"]
+        assert total == pytest.approx(1000 * film.count / film.rate, abs=1)
+        last = np.asarray(picture.convert("RGB")).astype(int)
+    assert np.abs(last - film.frame(film.count - 1)[..., :3]).mean() < 4
+
+
+def test_svg_is_reproducible_and_well_formed() -> None:
+    files = []
+    for _ in range(2):
+        file = io.BytesIO()
+        Film([falling()], height=240).still(file, "svg", at=0.3)
+        files.append(file.getvalue())
+    assert files[0] == files[1]
+    assert ET.fromstring(files[0]).tag.endswith("svg")  # noqa: S314 - our own file
+
+
+def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:
+    out = tmp_path / "film.mp4"
+    out.write_bytes(b"kept")
+
+    def interrupt(share: float, _: str) -> None:
+        if share > 0.2:
+            raise KeyboardInterrupt
+
+    for name in ("film.mp4", "new.mp4", "new.gif"):
+        with pytest.raises(KeyboardInterrupt):
+            render([falling()], tmp_path / name, height=240, progress=interrupt)
+    assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
+    assert out.read_bytes() == b"kept"
+    with pytest.raises(InputError, match="writable"):
+        render([falling()], tmp_path / "none" / "film.png", height=240)
+
+
+def blocksim(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "blocksim", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_command_films_recordings(tmp_path: Path) -> None:
+    run = str(tmp_path / "run.npz")
+    falling().save(Path(run))
+    done = blocksim("render", run, "--view", "3d", "--at", "0.2", "--out", f"{tmp_path}/a.png")
+    assert (done.returncode, done.stderr) == (0, "")
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == (1280, 720)
+    small = ("--beside", run, "--height", "180", "--slow", "1")
+    done = blocksim("render", run, *small, "--out", f"{tmp_path}/b.gif")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "b.gif", "run.npz"]
+
+
+def test_command_films_a_scenario(tmp_path: Path) -> None:
+    """1 % below the least thickness it falls to the ground in about a second."""
+    out = tmp_path / "film.mp4"
+    done = blocksim("render", "semicircle", "--height", "180", "--slow", "1", "--out", str(out))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "until a block reaches the ground" in done.stdout
+    with av.open(str(out)) as container:
+        assert 2.5 < float(container.duration or 0) / 1e6 < 3.5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("none.npz",), "recording = 'none.npz': must be an existing .npz file"),
+        (("RUN", "--mu", "1"), "--mu = 1.0: must be left out"),
+        (("RUN", "--height", "241"), "--height = 241: must be an even number"),
+        (("RUN", "--slow", "0"), "--slow = 0.0: must be above 0"),
+        (("RUN", "--at", "-1"), "--at = -1.0: must be 0 or above"),
+        (("RUN", "--beside", "none.npz"), "an existing .npz file"),
+        (("semicircle_sliding",), "eta is missing"),
+        (("semicircle", "--method", "limit"), "--method = 'limit'"),
+    ],
+)
+def test_wrong_input_is_one_line(
+    arguments: tuple[str, ...], words: str, tmp_path: Path
+) -> None:
+    run = tmp_path / "run.npz"
+    falling().save(run)
+    given_ = [str(run) if each == "RUN" else each for each in arguments]
+    done = blocksim("render", *given_, "--out", f"{tmp_path}/film.mp4")
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["run.npz"]
