@@ -25,9 +25,8 @@ from blocksim.modes import Mode
 from blocksim.theory.critical import Critical, inner_sliding
 from blocksim.theory.equations import normal_force
 from blocksim.theory.lines import critical_moment, friction_line, thrust_line
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, FRICTION, MECHANISM, STONE, THRUST
 
-THRUST, FRICTION, MECHANISM, STONE = "#D55E00", "#0072B2", "#009E73", "#222222"
 MOVED = 0.16
 """Largest displacement drawn, in mean radii."""
 FINE = 400

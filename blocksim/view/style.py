@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from blocksim.modes import Mode
+from blocksim.verdict import Verdict
 
 
 class Style(NamedTuple):
@@ -36,6 +37,16 @@ MODES = {
 }
 UNNAMED = Style("#000000", "#ffffff", "*")
 MISS = "#c00000"
+
+THRUST, FRICTION, MECHANISM, STONE = "#D55E00", "#0072B2", "#009E73", "#222222"
+"""Lines of an arch: of thrust, of friction, its collapse, its outline."""
+
+VERDICTS = {
+    Verdict.STANDS: "#117733",
+    Verdict.COLLAPSES: "#882255",
+    Verdict.UNDECIDED: "#6b6b6b",
+}
+"""Green and wine of Tol's muted palette; a word always goes with them."""
 
 FONT: dict[Any, Any] = {
     "font.family": "DejaVu Sans",

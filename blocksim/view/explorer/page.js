@@ -1,0 +1,343 @@
+"use strict";
+/* The page: what is looked at, what is said of it, and how it is chosen. */
+
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const DEGREE = Math.PI / 180;
+  const ON_THE_VERGE = 1e-7; // share of strength needed, this near to all of it
+  const MOVED = 0.16; // largest displacement drawn, over r
+  const FALLING = 2200, RESTING = 700, RETURNING = 500; // the motion shown, again and again [ms]
+  const LINE_POINTS = 120;
+  const NEAR = 12; // pixels within which a result is meant
+  const RANGES = { alpha: [10, 170], mu: [0.01, data.largestMu], eta: [0.002, 2] };
+
+  const find = (id) => document.getElementById(id);
+  const state = { halfAngle: 120 * DEGREE, mu: 1.2, eta: 0.3, weight: "centreline" };
+  let frame, layer, seen, setPose, amountShown = 0, drawing = false;
+  const still = matchMedia("(prefers-reduced-motion: reduce)");
+  let playing = !still.matches;
+
+  /* What is known of the arch looked at. */
+
+  function assess({ halfAngle, mu, eta, weight }) {
+    const critical = theory.leastThickness(halfAngle, mu, weight);
+    const balance = theory.equilibrium(halfAngle, mu, eta, weight);
+    const verge = balance !== null && Math.abs(balance.share - 1) < ON_THE_VERGE;
+    const stands = verge || (critical.eta !== null && eta >= critical.eta);
+    // Thick enough and yet on the verge: it is friction that has nothing to spare.
+    const slides = verge && critical.eta !== null && eta > critical.eta * (1 + 1e-6);
+    const mode = slides ? "ss" : critical.mode;
+    const betaS = critical.betaS ?? null;
+    const joints = mechanism.activeJoints(mode, halfAngle, critical.betaR ?? 0, betaS ?? 0);
+    const friction = theory.leastFriction(halfAngle, eta, weight);
+    return { critical, balance, verge, stands, slides, mode, joints, friction };
+  }
+
+  const decimals = (value, digits) => value.toPrecision(digits).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+  const number = (value, digits = 4) =>
+    value === null ? "–" : value === Infinity ? "∞" : value < 1e-3 ? value.toExponential(2) : decimals(value, digits);
+  const degrees = (angle) => (angle === null ? "–" : `${(angle / DEGREE).toFixed(2)}°`);
+  const percent = (share) => {
+    const value = Math.abs(share) * 100;
+    return `${value < 10 ? value.toPrecision(2) : value.toFixed(0)} %`;
+  };
+
+  function headline({ critical, verge, stands, slides, mode }) {
+    if (slides) return "Just stands: no friction to spare";
+    if (verge) return "Just stands: this is the least thickness";
+    if (critical.eta === null) {
+      return mode === "ss"
+        ? "Collapses: too little friction for any thickness"
+        : "Collapses: no thickness up to η = 2 will do";
+    }
+    const margin = state.eta / critical.eta - 1;
+    if (stands) {
+      return margin > 1
+        ? `Stands: ${decimals(margin + 1, 2)} times the least thickness`
+        : `Stands: thickness ${percent(margin)} above the least`;
+    }
+    return `Collapses: thickness ${percent(margin)} below the least`;
+  }
+
+  function because({ critical, balance, verge, stands, slides, mode, friction }) {
+    const name = `${mode} (${data.modes[mode].description})`;
+    if (slides) {
+      return `Springings and inner joints are about to slide, mode ${name}. With less friction, or
+        opened wider, it falls, however thick.`;
+    }
+    if (verge) return `The lines touch wherever a joint is about to move: any thinner, it falls in mode ${name}.`;
+    if (stands) {
+      return `A line of thrust and a line of friction fit inside it: ${percent(balance.share)} of thickness
+        and friction would do. At its least thickness, η = ${number(critical.eta)}, it falls in mode ${name}.`;
+    }
+    const needs = balance
+      ? `No line of thrust and of friction fit inside it: ${percent(balance.share)} of its thickness and
+         friction would be needed.`
+      : "No thrust holds it up: its halves overturn by themselves.";
+    const remedy = friction !== Infinity && friction > state.mu
+      ? ` At this thickness it stands from μ = ${number(friction)} on.` : "";
+    return `${needs} It falls in mode ${name}.${remedy}`;
+  }
+
+  const KINDS = {
+    extrados: "turns about its extrados", intrados: "turns about its intrados",
+    out: "slides outwards", in: "slides inwards", parts: "parts",
+  };
+
+  function jointsInWords({ joints }) {
+    return joints.map(({ angle, kind }) => {
+      const where = angle === 0 ? "the crown" : angle === state.halfAngle
+        ? "each springing" : `the joint at ${(angle / DEGREE).toFixed(1)}°`;
+      return `${where} ${KINDS[kind]}`;
+    }).join(", ");
+  }
+
+  /* Showing it. */
+
+  function update(change) {
+    Object.assign(state, change);
+    if (drawing) return;
+    drawing = true;
+    requestAnimationFrame(() => {
+      drawing = false;
+      show();
+    });
+  }
+
+  function show() {
+    seen = assess(state);
+    const verdict = seen.stands ? "stands" : "collapses";
+    const moves = !seen.stands || seen.verge;
+    put("verdict", headline(seen));
+    find("verdict").className = `verdict ${verdict}`;
+    put("because", because(seen));
+    put("joints", `${moves ? "As it falls" : "As it would fall at its least thickness"}: ${jointsInWords(seen)}.`);
+    showFigures();
+    showControls();
+    drawing || drawMapPoint(verdict);
+    amountShown = moves ? mechanism.amountFor(seen.joints, state.eta, MOVED) : 0;
+    setPose = draw.arch(find("arch"), { state, ...seen, moves, reach: moves ? MOVED : 0 });
+    setPose(0);
+    if (moves && !playing) setPose(amountShown);
+    find("play").disabled = !moves;
+    find("arch").setAttribute("aria-label",
+      `Arch of half-angle ${degrees(state.halfAngle)}, friction ${number(state.mu)}, ` +
+      `thickness ${number(state.eta)}. ${headline(seen)}. ${jointsInWords(seen)}.`);
+  }
+
+  function put(id, text) {
+    const words = text.replace(/\s+/g, " ");
+    // Untouched where nothing changed, so that screen readers stay silent.
+    if (find(id).textContent !== words) find(id).textContent = words;
+  }
+
+  function showFigures() {
+    const { critical, friction, mode } = seen;
+    const uses = (kind) => seen.joints.some((joint) => kind.includes(joint.kind));
+    put("figure-eta", number(critical.eta, 6));
+    put("figure-mu", number(friction === Infinity ? null : friction, 6));
+    put("figure-h", number(critical.thrust, 6));
+    put("figure-r", degrees(uses(["intrados"]) ? critical.betaR : null));
+    put("figure-s", degrees(uses(["in"]) ? critical.betaS : null));
+    find("figure-mode").replaceChildren(modeName(mode), ` ${data.modes[mode].description}`);
+  }
+
+  function modeName(mode) {
+    const name = document.createElement("b");
+    name.className = "mode";
+    name.style.setProperty("--colour", data.modes[mode].colour);
+    name.textContent = mode;
+    return name;
+  }
+
+  function showControls() {
+    const values = { alpha: state.halfAngle / DEGREE, mu: state.mu, eta: state.eta };
+    for (const [name, value] of Object.entries(values)) {
+      const [slider, box] = [find(name), find(`${name}-number`)];
+      const finite = value === Infinity ? RANGES.mu[1] : value;
+      slider.value = finite;
+      slider.setAttribute("aria-valuetext", value === Infinity ? "unbounded" : number(value));
+      slider.disabled = box.disabled = value === Infinity;
+      if (document.activeElement !== box) box.value = value === Infinity ? "" : +finite.toPrecision(6);
+    }
+    find("unbounded").checked = state.mu === Infinity;
+    find("weight").value = state.weight;
+    find("least").disabled = seen.critical.eta === null;
+  }
+
+  const results = () => data.results.filter((row) => row.weight === state.weight);
+
+  function drawMapPoint(verdict) {
+    const { halfAngle, weight } = state;
+    const divide = theory.leastFriction(halfAngle, Infinity, weight);
+    const iso = [];
+    for (let i = 0; i <= LINE_POINTS && divide < data.largestMu; i++) {
+      // Denser next to the divide, where the line is steep.
+      const mu = divide * (1 + 1e-9) + (data.largestMu - divide) * (i / LINE_POINTS) ** 2;
+      const { needed } = theory.leastThickness(halfAngle, mu, weight);
+      if (i === 0) iso.push([mu, 2]); // sliding both ways, any thickness beyond is critical
+      iso.push([mu, Math.min(needed, 3)]);
+    }
+    draw.mapPoint(layer, frame, { state, verdict, iso, data, critical: seen.critical, results: results() });
+  }
+
+  function drawMap() {
+    const box = find("map-box");
+    frame = draw.mapFrame(box.clientWidth, data.largestMu);
+    layer = draw.mapBase(find("map"), frame, data.maps[state.weight], data);
+    for (const table of document.querySelectorAll("[data-weight]")) table.hidden = table.dataset.weight !== state.weight;
+  }
+
+  /* Moving it. */
+
+  let started = null;
+
+  function step(now) {
+    if (playing && setPose && amountShown > 0) {
+      started ??= now;
+      const time = (now - started) % (FALLING + RESTING + RETURNING);
+      const back = Math.max(0, time - FALLING - RESTING) / RETURNING;
+      const share = back > 0 ? (1 - back) ** 2 : Math.min(1, time / FALLING) ** 2;
+      setPose(share * amountShown);
+    }
+    if (playing) requestAnimationFrame(step);
+  }
+
+  function setPlaying(value) {
+    playing = value;
+    started = null;
+    find("play").textContent = playing ? "Pause" : "Play";
+    find("play").setAttribute("aria-pressed", String(!playing));
+    if (playing) requestAnimationFrame(step);
+    else if (setPose) setPose(amountShown);
+  }
+
+  /* Choosing it. */
+
+  const within = (name, value) => Math.min(RANGES[name][1], Math.max(RANGES[name][0], value));
+
+  /** Point of the map under the pointer, or null outside. */
+  function pointAt(event) {
+    const box = find("map").getBoundingClientRect();
+    const [x, y] = [event.clientX - box.left, event.clientY - box.top];
+    const mu = frame.mu(x);
+    return {
+      x, y,
+      inside: x >= frame.left && x <= frame.stripLeft + frame.strip && y >= frame.top && y <= frame.top + frame.up,
+      mu: mu === Infinity ? mu : within("mu", mu),
+      eta: within("eta", frame.eta(y)),
+    };
+  }
+
+  /** Look at the arch of a point of the map: the widest that stands there. */
+  function choose(mu, eta) {
+    update({ mu, eta, halfAngle: theory.atPoint(eta, mu, state.weight).halfAngle });
+  }
+
+  const resultNear = ({ x, y }) =>
+    results().find((row) => Math.hypot(frame.x(row.place) - x, frame.y(row.eta) - y) < NEAR);
+
+  const chooseResult = (row) =>
+    update({ mu: row.mu ?? Infinity, eta: row.eta, halfAngle: row.alpha * DEGREE, weight: row.weight });
+
+  function tell(event) {
+    const point = pointAt(event);
+    const tip = find("tip");
+    tip.hidden = !point.inside;
+    if (!point.inside) return;
+    const row = resultNear(point);
+    if (row) tip.replaceChildren(row.scenario, document.createElement("br"), row.said);
+    else {
+      const { halfAngle, modes, critical } = theory.atPoint(point.eta, point.mu, state.weight);
+      const names = modes.flatMap((mode, i) => [i ? ", " : "", modeName(mode)]);
+      tip.replaceChildren(
+        `η ${number(point.eta, 3)}  μ ${number(point.mu, 3)}`, document.createElement("br"),
+        `α ${degrees(halfAngle)}  h ${number(critical.thrust, 3)}`, document.createElement("br"),
+        ...names, ` ${data.modes[modes[0]].description.split(" (")[0]}`);
+    }
+    const [width, height] = [tip.offsetWidth, tip.offsetHeight];
+    const left = point.x + 16 + width > frame.width ? point.x - 16 - width : point.x + 16;
+    tip.style.left = `${Math.max(0, left)}px`;
+    tip.style.top = `${Math.max(0, point.y - height - 10)}px`;
+  }
+
+  function listenToMap() {
+    const map = find("map");
+    let dragging = false;
+    const pick = (event) => {
+      const { mu, eta } = pointAt(event);
+      choose(mu, eta);
+    };
+    map.addEventListener("pointerdown", (event) => {
+      // A finger scrolls the page unless it takes hold of the point.
+      const touch = event.pointerType === "touch" && !event.target.closest(".handle");
+      if (touch || event.button !== 0 || !pointAt(event).inside) return;
+      if (resultNear(pointAt(event))) return;
+      dragging = true;
+      map.setPointerCapture(event.pointerId);
+      pick(event);
+    });
+    map.addEventListener("pointermove", (event) => {
+      if (dragging) pick(event);
+      if (event.pointerType !== "touch") tell(event);
+    });
+    for (const end of ["pointerup", "pointercancel"]) map.addEventListener(end, () => (dragging = false));
+    map.addEventListener("pointerleave", () => (find("tip").hidden = true));
+    map.addEventListener("click", (event) => {
+      const point = pointAt(event);
+      const row = resultNear(point);
+      if (row) chooseResult(row);
+      else if (point.inside) pick(event);
+    });
+    map.addEventListener("keydown", (event) => {
+      const [right, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+      if (!right && !up) return;
+      event.preventDefault();
+      const stride = event.shiftKey ? 10 : 1;
+      const eta = within("eta", state.eta + 0.01 * stride * up);
+      if (state.mu === Infinity) return choose(right < 0 ? data.largestMu : Infinity, eta);
+      const mu = state.mu + 0.02 * stride * right;
+      return choose(mu > data.largestMu && right ? Infinity : within("mu", mu), eta);
+    });
+  }
+
+  function listenToControls() {
+    const set = {
+      alpha: (value) => ({ halfAngle: value * DEGREE }), mu: (mu) => ({ mu }), eta: (eta) => ({ eta }),
+    };
+    for (const name of Object.keys(set)) {
+      find(name).addEventListener("input", (event) => update(set[name](within(name, +event.target.value))));
+      find(`${name}-number`).addEventListener("input", (event) => {
+        const value = event.target.valueAsNumber;
+        if (value >= RANGES[name][0] && value <= RANGES[name][1]) update(set[name](value));
+      });
+      find(`${name}-number`).addEventListener("blur", () => update({}));
+    }
+    find("unbounded").addEventListener("change", (event) =>
+      update({ mu: event.target.checked ? Infinity : data.largestMu }));
+    find("least").addEventListener("click", () => update({ eta: seen.critical.eta }));
+    find("weight").addEventListener("change", (event) => {
+      state.weight = event.target.value;
+      drawMap();
+      update({});
+    });
+    find("play").addEventListener("click", () => setPlaying(!playing));
+    still.addEventListener("change", () => setPlaying(!still.matches));
+    for (const button of document.querySelectorAll("[data-row]")) {
+      button.addEventListener("click", () => chooseResult(data.results[+button.dataset.row]));
+    }
+  }
+
+  for (const row of data.results) row.place = row.mu === null ? Infinity : Math.min(row.mu, data.largestMu);
+  drawMap();
+  state.halfAngle = theory.atPoint(state.eta, state.mu, state.weight).halfAngle;
+  show();
+  listenToMap();
+  listenToControls();
+  setPlaying(playing);
+  new ResizeObserver(() => {
+    if (find("map-box").clientWidth === frame.width) return;
+    drawMap();
+    update({});
+  }).observe(find("map-box"));
+})();
