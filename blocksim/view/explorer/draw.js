@@ -9,6 +9,7 @@ const draw = (() => {
   const OUTSIDE = 2.4; // how far out of the arch, in half thicknesses, lines are drawn
   const FORCELESS = 1e-9;
   const SAMPLES = 240;
+  const LABEL_HEIGHT = 10; // pixels
 
   function add(parent, name, attributes = {}, text = "") {
     const element = document.createElementNS(SVG, name);
@@ -78,11 +79,14 @@ const draw = (() => {
         x: stripLeft, y: y(to), width: strip, height: y(from) - y(to), class: "region", style: modeStyle(mode),
       });
     }
+    let labelled = Infinity;
     for (const { degrees, points, unbounded } of map.iso) {
       if (points.length) add(inside, "path", { d: pathOf(points.map(place)), class: "iso" });
       const level = y(unbounded);
       add(inside, "path", { d: `M${stripLeft} ${level}H${stripLeft + strip}`, class: "iso" });
+      if (labelled - level < LABEL_HEIGHT) continue;
       add(svg, "text", { x: stripLeft + strip + 3, y: level + 4, class: "iso-label" }, `${degrees}°`);
+      labelled = level;
     }
     for (const { name, points } of map.lines) {
       add(inside, "path", { d: pathOf(points.map(place)), class: `border ${name}` });
@@ -158,8 +162,9 @@ const draw = (() => {
     return pathOf([...angles.map((a) => at(a, outer)), ...angles.reverse().map((a) => at(a, inner))]) + "Z";
   }
 
-  /** Draw an arch. Returns a function that moves its pieces by an amount at the springing. */
-  function arch(svg, { state, balance, joints, moves, reach }) {
+  /** Draw an arch. Returns a function that moves its pieces, by a share of `amount` at the
+      springing, 0 for one that stands. */
+  function arch(svg, { state, balance, joints, amount, reach }) {
     const { halfAngle, eta, mu, weight } = state;
     const [inner, outer] = [1 - eta / 2, 1 + eta / 2];
     svg.replaceChildren();
@@ -169,15 +174,16 @@ const draw = (() => {
     for (const half of halves) {
       const abutment = ring(halfAngle + below, halfAngle, Math.max(inner - 0.03, 0), outer + 0.03);
       add(half, "path", { d: abutment, class: "abutment" });
-      if (moves) add(half, "path", { d: ring(halfAngle, 0, inner, outer), class: "ghost" });
     }
+    if (amount) add(svg, "path", { d: ring(halfAngle, -halfAngle, inner, outer), class: "ghost" });
     const groups = halves.map((half) =>
       mechanism.pieces(joints).map((faces) => stones(add(half, "g"), faces, halfAngle, inner, outer)));
-    forces(svg, { halfAngle, eta, mu, weight, balance });
+    const lines = add(svg, "g");
+    forces(lines, { halfAngle, eta, mu, weight, balance });
     const marks = halves.map((_, side) =>
       mechanism.pieces(joints).map(() => add(svg, "g", { class: "marks", "data-side": side })));
     const still = halves.map((_, side) => add(svg, "g", { transform: `scale(${side ? -1 : 1} 1)` }));
-    if (moves) {
+    if (amount) {
       joints.forEach((joint, i) => {
         for (const side of [0, 1]) {
           if (side && joint.angle === 0) continue;
@@ -185,8 +191,10 @@ const draw = (() => {
         }
       });
     }
-    return (amount) => {
-      const { motions } = mechanism.pose(joints, eta, amount);
+    return (share) => {
+      // The lines belong to the arch at rest.
+      lines.setAttribute("opacity", 1 - 0.6 * share);
+      const { motions } = mechanism.pose(joints, eta, share * amount);
       motions.forEach((motion, i) => {
         const [c, s] = [Math.cos(motion.turn), Math.sin(motion.turn)];
         const matrix = `matrix(${c} ${s} ${-s} ${c} ${SCALE * motion.x} ${-SCALE * motion.y})`;

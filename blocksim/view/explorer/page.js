@@ -13,7 +13,7 @@
 
   const find = (id) => document.getElementById(id);
   const state = { halfAngle: 120 * DEGREE, mu: 1.2, eta: 0.3, weight: "centreline" };
-  let frame, layer, seen, setPose, amountShown = 0, drawing = false;
+  let frame, layer, seen, setPose, amount = 0, drawing = false;
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   let playing = !still.matches;
 
@@ -42,6 +42,12 @@
     return `${value < 10 ? value.toPrecision(2) : value.toFixed(0)} %`;
   };
 
+  const shortly = (mode) => data.modes[mode].description.split(" (")[0];
+  const share = (balance) => {
+    const near = Math.abs(balance.share - 1) < 0.02;
+    return `${(balance.share * 100).toFixed(near ? 2 : 0)} %`;
+  };
+
   function headline({ critical, verge, stands, slides, mode }) {
     if (slides) return "Just stands: no friction to spare";
     if (verge) return "Just stands: this is the least thickness";
@@ -60,23 +66,25 @@
   }
 
   function because({ critical, balance, verge, stands, slides, mode, friction }) {
-    const name = `${mode} (${data.modes[mode].description})`;
+    const name = `${mode}, ${shortly(mode)}`;
     if (slides) {
       return `Springings and inner joints are about to slide, mode ${name}. With less friction, or
         opened wider, it falls, however thick.`;
     }
     if (verge) return `The lines touch wherever a joint is about to move: any thinner, it falls in mode ${name}.`;
     if (stands) {
-      return `A line of thrust and a line of friction fit inside it: ${percent(balance.share)} of thickness
+      return `A line of thrust and a line of friction fit inside it: ${share(balance)} of thickness
         and friction would do. At its least thickness, η = ${number(critical.eta)}, it falls in mode ${name}.`;
     }
     const needs = balance
-      ? `No line of thrust and of friction fit inside it: ${percent(balance.share)} of its thickness and
-         friction would be needed.`
+      ? `No line of thrust and of friction fit inside it: that takes ${share(balance)} of its thickness
+         and friction.`
       : "No thrust holds it up: its halves overturn by themselves.";
-    const remedy = friction !== Infinity && friction > state.mu
-      ? ` At this thickness it stands from μ = ${number(friction)} on.` : "";
-    return `${needs} It falls in mode ${name}.${remedy}`;
+    const grip = theory.leastFriction(state.halfAngle, Infinity, state.weight);
+    const remedy = friction === Infinity ? " At this thickness no friction would do."
+      : friction > state.mu ? ` At this thickness it stands from μ = ${number(friction)} on.` : "";
+    const bare = grip > state.mu ? ` Opened so wide, nothing stands below μ = ${number(grip)}.` : "";
+    return `${needs} It falls in mode ${name}.${bare}${remedy}`;
   }
 
   const KINDS = {
@@ -114,11 +122,10 @@
     put("joints", `${moves ? "As it falls" : "As it would fall at its least thickness"}: ${jointsInWords(seen)}.`);
     showFigures();
     showControls();
-    drawing || drawMapPoint(verdict);
-    amountShown = moves ? mechanism.amountFor(seen.joints, state.eta, MOVED) : 0;
-    setPose = draw.arch(find("arch"), { state, ...seen, moves, reach: moves ? MOVED : 0 });
-    setPose(0);
-    if (moves && !playing) setPose(amountShown);
+    drawMapPoint(verdict);
+    amount = moves ? mechanism.amountFor(seen.joints, state.eta, MOVED) : 0;
+    setPose = draw.arch(find("arch"), { state, ...seen, amount, reach: MOVED });
+    setPose(moves && !playing ? 1 : 0);
     find("play").disabled = !moves;
     find("arch").setAttribute("aria-label",
       `Arch of half-angle ${degrees(state.halfAngle)}, friction ${number(state.mu)}, ` +
@@ -158,7 +165,7 @@
       slider.value = finite;
       slider.setAttribute("aria-valuetext", value === Infinity ? "unbounded" : number(value));
       slider.disabled = box.disabled = value === Infinity;
-      if (document.activeElement !== box) box.value = value === Infinity ? "" : +finite.toPrecision(6);
+      if (document.activeElement !== box) box.value = value === Infinity ? "" : +finite.toPrecision(5);
     }
     find("unbounded").checked = state.mu === Infinity;
     find("weight").value = state.weight;
@@ -185,7 +192,6 @@
     const box = find("map-box");
     frame = draw.mapFrame(box.clientWidth, data.largestMu);
     layer = draw.mapBase(find("map"), frame, data.maps[state.weight], data);
-    for (const table of document.querySelectorAll("[data-weight]")) table.hidden = table.dataset.weight !== state.weight;
   }
 
   /* Moving it. */
@@ -193,12 +199,12 @@
   let started = null;
 
   function step(now) {
-    if (playing && setPose && amountShown > 0) {
+    if (playing && setPose && amount > 0) {
       started ??= now;
       const time = (now - started) % (FALLING + RESTING + RETURNING);
       const back = Math.max(0, time - FALLING - RESTING) / RETURNING;
       const share = back > 0 ? (1 - back) ** 2 : Math.min(1, time / FALLING) ** 2;
-      setPose(share * amountShown);
+      setPose(share);
     }
     if (playing) requestAnimationFrame(step);
   }
@@ -209,7 +215,7 @@
     find("play").textContent = playing ? "Pause" : "Play";
     find("play").setAttribute("aria-pressed", String(!playing));
     if (playing) requestAnimationFrame(step);
-    else if (setPose) setPose(amountShown);
+    else setPose(amount > 0 ? 1 : 0);
   }
 
   /* Choosing it. */
@@ -253,7 +259,7 @@
       tip.replaceChildren(
         `η ${number(point.eta, 3)}  μ ${number(point.mu, 3)}`, document.createElement("br"),
         `α ${degrees(halfAngle)}  h ${number(critical.thrust, 3)}`, document.createElement("br"),
-        ...names, ` ${data.modes[modes[0]].description.split(" (")[0]}`);
+        ...names, ` ${shortly(modes[0])}`);
     }
     const [width, height] = [tip.offsetWidth, tip.offsetHeight];
     const left = point.x + 16 + width > frame.width ? point.x - 16 - width : point.x + 16;
@@ -328,6 +334,7 @@
     }
   }
 
+  for (const [mode, style] of Object.entries(data.modes)) draw.marker(find(`legend-${mode}`), style, 0, 0, 6);
   for (const row of data.results) row.place = row.mu === null ? Infinity : Math.min(row.mu, data.largestMu);
   drawMap();
   state.halfAngle = theory.atPoint(state.eta, state.mu, state.weight).halfAngle;

@@ -46,7 +46,7 @@ LABELS: dict[Weight, tuple[Label, ...]] = {
 }
 """Where each mode's name stands: friction (None is unbounded), thickness, and for a region
 too thin for it the point its line leads to."""
-LETTERS = {"T": (-10, -2), "S": (-9, -9), "J": (-10, 3), "B": (11, -11)}
+LETTERS = {"T": (-10, -2), "S": (-11, -9), "J": (-7, 9), "B": (11, -11)}
 """Where the letter of each landmark stands, in pixels from it, up and to the right."""
 
 

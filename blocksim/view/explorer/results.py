@@ -32,6 +32,8 @@ class Result:
     voussoirs : int
     eta : float
         Centre of the bracket; 2 where nothing stands.
+    nothing_stands : bool
+        No thickness up to 2 does.
     mode : str or None
         As observed.
     miss : str
@@ -47,6 +49,7 @@ class Result:
     mu: float | None
     voussoirs: int
     eta: float
+    nothing_stands: bool
     mode: str | None
     miss: str
     said: str
@@ -101,6 +104,7 @@ def _result(row: dict[str, Any]) -> Result | None:
     )
     if not sound:
         raise ValueError
+    shown = "none stands" if high is None else f"η {eta:.4g}"
     return Result(
         scenario=str(row["scenario"]),
         engine=str(row["engine"]),
@@ -109,7 +113,8 @@ def _result(row: dict[str, Any]) -> Result | None:
         mu=None if math.isinf(mu) else mu,
         voussoirs=row["voussoirs"],
         eta=eta,
+        nothing_stands=high is None,
         mode=mode,
         miss=str(row["miss"]),
-        said=f"{row['engine']}: η {eta:.4g}, mode {mode or 'unnamed'}, n = {row['voussoirs']}",
+        said=f"{row['engine']}: {shown}, mode {mode or 'unnamed'}, n = {row['voussoirs']}",
     )

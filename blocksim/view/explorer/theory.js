@@ -177,7 +177,10 @@ const theory = (() => {
   /** Least friction at which an arch stands; Infinity where none will do. With eta = Infinity it
       is the friction at and below which no thickness stands, where (8) and (9) meet. */
   function leastFriction(halfAngle, eta, weight = "centreline") {
-    const enough = (angle) => leastThickness(halfAngle, Math.tan(angle), weight).needed <= eta;
+    const enough = (angle) => {
+      const { needed } = leastThickness(halfAngle, Math.tan(angle), weight);
+      return needed < Infinity && needed <= eta;
+    };
     let [low, high] = [0, Math.PI / 2];
     for (let i = 0; i < HALVINGS; i++) {
       const middle = (low + high) / 2;
