@@ -79,8 +79,10 @@ def map_shapes(weight: Weight = "centreline") -> MapShapes:
 
     top = np.where(mu <= marks["B"].mu, np.interp(mu, divide.mu, divide.eta), 2.0)
     low = np.minimum(np.interp(mu, first.mu, first.eta), top)
-    between = np.where(mu < marks["S"].mu, top, np.interp(mu, equal.mu, equal.eta))
     over = np.where(mu < marks["J"].mu, top, np.interp(mu, crown.mu, crown.eta))
+    over = np.minimum(over, top)
+    between = np.where(mu < marks["S"].mu, top, np.interp(mu, equal.mu, equal.eta))
+    between = np.minimum(between, over)
     left, right = mu <= marks["T"].mu, mu >= marks["T"].mu
     parts = (
         (Mode.RRR, np.zeros_like(mu), low, mu > 0),

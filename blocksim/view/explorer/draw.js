@@ -11,10 +11,10 @@ const draw = (() => {
   const SAMPLES = 240;
   const LABEL_HEIGHT = 10; // pixels
 
-  function add(parent, name, attributes = {}, text = "") {
+  function add(parent, name, attributes = {}, text = null) {
     const element = document.createElementNS(SVG, name);
     for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-    if (text) element.textContent = text;
+    if (text !== null) element.textContent = text;
     parent.append(element);
     return element;
   }
@@ -58,12 +58,12 @@ const draw = (() => {
     };
   }
 
-  /** The map without what changes: regions, lines, axes. Returns a group for what does. */
+  /** The map without what changes: regions, lines, axes. Returns groups, under and over the names,
+      for what does. */
   function mapBase(svg, frame, map, data) {
     const { x, y, left, top, across, up, strip, stripLeft } = frame;
     svg.replaceChildren();
     svg.setAttribute("viewBox", `0 0 ${frame.width} ${frame.height}`);
-    svg.setAttribute("height", frame.height);
     const place = ([mu, eta]) => [x(mu), y(eta)];
     const clip = add(add(svg, "defs"), "clipPath", { id: "map-clip" });
     add(clip, "rect", { x: left, y: top, width: across, height: up });
@@ -94,6 +94,7 @@ const draw = (() => {
     add(inside, "path", { d: `M${stripLeft} ${y(map.overturning)}H${stripLeft + strip}`, class: "border" });
 
     axes(svg, frame, data.largestMu);
+    const under = add(svg, "g", { "clip-path": "url(#map-clip)" });
     for (const { mode, mu, eta, target } of map.labels) {
       const here = mu === null ? Infinity : mu;
       if (target) {
@@ -105,7 +106,7 @@ const draw = (() => {
       add(svg, "circle", { cx: x(mu), cy: y(eta), r: 3, class: "landmark" });
       add(svg, "text", { x: x(mu) + shift[0], y: y(eta) - shift[1], class: "landmark-label" }, name);
     }
-    return { moving: add(svg, "g"), clip: "url(#map-clip)" };
+    return { under, over: add(svg, "g") };
   }
 
   function axes(svg, { x, y, left, top, across, up, strip, stripLeft, narrow }, largestMu) {
@@ -129,24 +130,24 @@ const draw = (() => {
   /** What changes on the map: results, the line of equal half-angle, the point looked at. */
   function mapPoint(layer, frame, { state, critical, verdict, iso, results, data }) {
     const { x, y } = frame;
-    layer.moving.replaceChildren();
-    const inside = add(layer.moving, "g", { "clip-path": layer.clip });
-    add(inside, "path", { d: pathOf(iso.map(([mu, eta]) => [x(mu), y(eta)])), class: "iso-here" });
+    layer.under.replaceChildren();
+    layer.over.replaceChildren();
+    add(layer.under, "path", { d: pathOf(iso.map(([mu, eta]) => [x(mu), y(eta)])), class: "iso-here" });
     const [atX, atY] = [x(state.mu), y(state.eta)];
     if (state.mu === Infinity && critical.eta !== null) {
       const half = frame.strip / 2;
-      add(inside, "path", { d: `M${atX - half} ${y(critical.eta)}h${2 * half}`, class: "iso-here" });
+      add(layer.under, "path", { d: `M${atX - half} ${y(critical.eta)}h${2 * half}`, class: "iso-here" });
     }
     for (const row of results) {
       const style = row.mode ? data.modes[row.mode] : data.unnamed;
       const [px, py] = [x(row.place), y(row.eta)];
-      if (row.miss) add(layer.moving, "circle", { cx: px, cy: py, r: 9, class: "miss" });
-      marker(layer.moving, style, px, py, 4.5);
+      if (row.miss) add(layer.over, "circle", { cx: px, cy: py, r: 9, class: "miss" });
+      marker(layer.over, style, px, py, 4.5);
     }
     if (critical.eta !== null) {
-      add(layer.moving, "path", { d: `M${atX} ${atY}V${y(critical.eta)}`, class: "reserve" });
+      add(layer.over, "path", { d: `M${atX} ${atY}V${y(critical.eta)}`, class: "reserve" });
     }
-    const handle = add(layer.moving, "g", { class: `handle ${verdict}` });
+    const handle = add(layer.over, "g", { class: `handle ${verdict}` });
     add(handle, "circle", { cx: atX, cy: atY, r: 20, class: "grip" });
     add(handle, "circle", { cx: atX, cy: atY, r: 8, class: "halo" });
     add(handle, "circle", { cx: atX, cy: atY, r: 8, class: "ring" });

@@ -5,7 +5,9 @@
    closed, sliding joints slide as Coulomb friction has it, without opening. */
 
 const mechanism = (() => {
-  const STEP = 1e-4; // amount of motion small enough to be a rate
+  const STEP = 1e-6; // amount of motion small enough to be a rate
+  const CLOSED = 1e-12; // distance from the axis at which the crown is on it
+  const ROUNDS = 30;
 
   /** Joints that move, from the springing up: where, and what the piece above does. */
   function activeJoints(mode, halfAngle, betaR, betaS) {
@@ -62,24 +64,29 @@ const mechanism = (() => {
   /** Move the mechanism by an amount at the springing (a turn, or a slip over r).
 
       Every other amount follows from symmetry: the crown stays on the axis, and where nothing
-      turns there it does not turn. */
+      turns there it does not turn. `closed` is false where so large a motion is not possible. */
   function pose(joints, eta, amount) {
     const atCrown = joints.find((joint) => joint.angle === 0);
     const free = joints.filter((joint) => joint.angle > 0);
-    if (free.length === 1) return { amounts: [amount], motions: chain(free, [amount], eta) };
+    if (free.length === 1) {
+      return { closed: true, amounts: [amount], motions: chain(free, [amount], eta) };
+    }
     const unknown = free.findIndex((joint, i) => i > 0 && (atCrown || joint.kind === "in"));
     const radius = atCrown && atCrown.kind === "intrados" ? 1 - eta / 2 : 1 + eta / 2;
-    const amountsWith = (value) => free.map((_, i) => (i === unknown ? value : amount));
-    const aside = (value) => move(chain(free, amountsWith(value), eta).at(-1), 0, radius)[0];
-    let [before, value] = [0, amount];
-    let [asideBefore, asideNow] = [aside(before), aside(value)];
-    for (let i = 0; i < 30 && Math.abs(asideNow) > 1e-15 && asideNow !== asideBefore; i++) {
+    const amountsAt = (first, value) => free.map((_, i) => (i === unknown ? value : first));
+    const aside = (first, value) => move(chain(free, amountsAt(first, value), eta).at(-1), 0, radius)[0];
+    // At small amounts they are proportional; from there on by the secant method.
+    const ratio = -aside(STEP, 0) / (aside(STEP, STEP) - aside(STEP, 0));
+    let [before, value] = [0.99 * ratio * amount, ratio * amount];
+    let [asideBefore, asideNow] = [aside(amount, before), aside(amount, value)];
+    for (let i = 0; i < ROUNDS && Math.abs(asideNow) > CLOSED / 10 && asideNow !== asideBefore; i++) {
       const next = value - (asideNow * (value - before)) / (asideNow - asideBefore);
       [before, asideBefore, value] = [value, asideNow, next];
-      asideNow = aside(value);
+      asideNow = aside(amount, value);
     }
-    const amounts = amountsWith(value);
-    return { amounts, motions: chain(free, amounts, eta) };
+    const amounts = amountsAt(amount, value);
+    const closed = Math.abs(asideNow) < CLOSED && value >= 0 && value < 3 * ratio * amount + CLOSED;
+    return { closed, amounts, motions: chain(free, amounts, eta) };
   }
 
   /** Faces between which the pieces of the right half lie: [[lower, upper], ...] angles. */
@@ -89,10 +96,10 @@ const mechanism = (() => {
     return angles.slice(1).map((upper, i) => [angles[i], upper]);
   }
 
-  /** Amount at the springing that moves the farthest corner about this far, over r. */
-  function amountFor(joints, eta, distance) {
-    const { motions } = pose(joints, eta, STEP);
-    let farthest = 0;
+  /** How far, over r, an amount at the springing moves the farthest corner. */
+  function reachOf(joints, eta, amount) {
+    const { closed, motions } = pose(joints, eta, amount);
+    let farthest = closed ? 0 : Infinity;
     pieces(joints).forEach(([lower, upper], i) => {
       for (const angle of [lower, upper]) {
         for (const radius of [1 - eta / 2, 1 + eta / 2]) {
@@ -102,7 +109,15 @@ const mechanism = (() => {
         }
       }
     });
-    return (STEP * distance) / farthest;
+    return farthest;
+  }
+
+  /** Amount at the springing that moves the farthest corner about this far, over r: less where
+      pieces would lock before, as the hinges of a flat arch do once they lie on a line. */
+  function amountFor(joints, eta, distance) {
+    let amount = (STEP * distance) / reachOf(joints, eta, STEP);
+    while (amount > STEP && reachOf(joints, eta, amount) > 1.3 * distance) amount *= 0.95;
+    return amount;
   }
 
   return { activeJoints, pieces, pose, move, amountFor };

@@ -33,9 +33,9 @@
     return { critical, balance, verge, stands, slides, mode, joints, friction };
   }
 
-  const decimals = (value, digits) => value.toPrecision(digits).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
+  const decimals = (value, digits) => String(+value.toPrecision(digits));
   const number = (value, digits = 4) =>
-    value === null ? "–" : value === Infinity ? "∞" : value < 1e-3 ? value.toExponential(2) : decimals(value, digits);
+    value === null ? "–" : value === Infinity ? "∞" : value > 0 && value < 1e-3 ? value.toExponential(2) : decimals(value, digits);
   const degrees = (angle) => (angle === null ? "–" : `${(angle / DEGREE).toFixed(2)}°`);
   const percent = (share) => {
     const value = Math.abs(share) * 100;
@@ -269,17 +269,17 @@
 
   function listenToMap() {
     const map = find("map");
-    let dragging = false;
+    let [dragging, dragged] = [false, false];
     const pick = (event) => {
       const { mu, eta } = pointAt(event);
       choose(mu, eta);
     };
     map.addEventListener("pointerdown", (event) => {
-      // A finger scrolls the page unless it takes hold of the point.
-      const touch = event.pointerType === "touch" && !event.target.closest(".handle");
-      if (touch || event.button !== 0 || !pointAt(event).inside) return;
-      if (resultNear(pointAt(event))) return;
-      dragging = true;
+      const point = pointAt(event);
+      // A finger scrolls the page unless it takes hold of the point; taps are clicks.
+      const scrolls = event.pointerType === "touch" && !event.target.closest(".handle");
+      dragging = dragged = !scrolls && event.button === 0 && point.inside && !resultNear(point);
+      if (!dragging) return;
       map.setPointerCapture(event.pointerId);
       pick(event);
     });
@@ -292,8 +292,9 @@
     map.addEventListener("click", (event) => {
       const point = pointAt(event);
       const row = resultNear(point);
+      if (dragged || !point.inside) return;
       if (row) chooseResult(row);
-      else if (point.inside) pick(event);
+      else pick(event);
     });
     map.addEventListener("keydown", (event) => {
       const [right, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
@@ -345,6 +346,6 @@
   new ResizeObserver(() => {
     if (find("map-box").clientWidth === frame.width) return;
     drawMap();
-    update({});
+    show();
   }).observe(find("map-box"));
 })();

@@ -69,6 +69,8 @@ def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
     environment = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
+    # JSON has no infinity; modes keep the order of the paper.
+    environment.policies["json.dumps_kwargs"] = {"allow_nan": False}
     return environment.get_template("page.html").render(
         data=_data(results),
         source=source,

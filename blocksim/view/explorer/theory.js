@@ -235,6 +235,6 @@ const theory = (() => {
 
   return {
     leastThickness, atPoint, leastFriction, equilibrium,
-    levelOf, normalForce, thrustLine, frictionLine,
+    levelOf, normalForce, sectionMoment, thrustLine, frictionLine,
   };
 })();
