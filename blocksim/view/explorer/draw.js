@@ -51,7 +51,8 @@ const draw = (() => {
     const stripLeft = left + across + gap;
     return {
       width, height, left, top, across, up, strip, stripLeft, narrow,
-      x: (mu) => (mu === Infinity ? stripLeft + strip / 2 : left + (across * mu) / largestMu),
+      x: (mu) =>
+        mu === Infinity ? stripLeft + strip / 2 : left + (across * Math.min(mu, largestMu)) / largestMu,
       y: (eta) => top + up * (1 - eta / 2),
       mu: (x) => (x > left + across + gap / 2 ? Infinity : ((x - left) / across) * largestMu),
       eta: (y) => 2 * (1 - (y - top) / up),
@@ -169,7 +170,7 @@ const draw = (() => {
     const { halfAngle, eta, mu, weight } = state;
     const [inner, outer] = [1 - eta / 2, 1 + eta / 2];
     svg.replaceChildren();
-    fit(svg, halfAngle, inner, outer, reach);
+    const pixel = fit(svg, halfAngle, inner, outer, reach);
     const below = Math.min(SPRINGING, (Math.PI - halfAngle) * 0.7);
     const halves = [1, -1].map((side) => add(svg, "g", { transform: `scale(${side} 1)` }));
     for (const half of halves) {
@@ -188,7 +189,7 @@ const draw = (() => {
       joints.forEach((joint, i) => {
         for (const side of [0, 1]) {
           if (side && joint.angle === 0) continue;
-          mark(i === 0 ? still[side] : marks[side][i - 1], joint, inner, outer);
+          mark(i === 0 ? still[side] : marks[side][i - 1], joint, inner, outer, pixel);
         }
       });
     }
@@ -207,12 +208,15 @@ const draw = (() => {
     };
   }
 
+  /** Fit the picture to the arch and its motion. Returns the size of a pixel. */
   function fit(svg, halfAngle, inner, outer, reach) {
     const wide = halfAngle > Math.PI / 2 ? outer : outer * Math.sin(halfAngle);
     const low = Math.min(inner * Math.cos(halfAngle), outer * Math.cos(halfAngle));
-    const rim = SCALE * (0.1 + reach);
-    const [x, y] = [SCALE * (wide + 0.06) + rim, SCALE * outer + rim * 0.6];
-    svg.setAttribute("viewBox", `${-x} ${-y} ${2 * x} ${y - SCALE * low + rim}`);
+    const rim = SCALE * (0.06 + reach);
+    const [x, y] = [SCALE * (wide + 0.04) + rim, SCALE * outer + rim * 0.6];
+    const [width, height] = [2 * x, y - SCALE * low + rim];
+    svg.setAttribute("viewBox", `${-x} ${-y} ${width} ${height}`);
+    return Math.max(width / svg.clientWidth, height / svg.clientHeight);
   }
 
   /** Voussoirs for the eye: the theory has a joint at every angle. */
@@ -227,14 +231,14 @@ const draw = (() => {
   }
 
   /** Hinges as dots at the edge that stays closed, sliding joints as bars across. */
-  function mark(group, { angle, kind }, inner, outer) {
+  function mark(group, { angle, kind }, inner, outer, pixel) {
     if (kind === "out" || kind === "in") {
       const d = pathOf([at(angle, inner), at(angle, outer)]);
       add(group, "path", { d, class: "slide" });
       add(group, "path", { d, class: "slide-core" });
     } else if (kind !== "parts") {
       const [cx, cy] = at(angle, kind === "extrados" ? outer : inner);
-      add(group, "circle", { cx, cy, r: 4, class: "hinge" });
+      add(group, "circle", { cx, cy, r: 5 * pixel, class: "hinge" });
     }
   }
 

@@ -9,7 +9,8 @@
   const FALLING = 2200, RESTING = 700, RETURNING = 500; // the motion shown, again and again [ms]
   const LINE_POINTS = 120;
   const NEAR = 12; // pixels within which a result is meant
-  const RANGES = { alpha: [10, 170], mu: [0.01, data.largestMu], eta: [0.002, 2] };
+  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2] }; // of arches
+  const ON_MAP = { mu: [0.01, data.largestMu], eta: [0.002, 2] };
 
   const find = (id) => document.getElementById(id);
   const state = { halfAngle: 120 * DEGREE, mu: 1.2, eta: 0.3, weight: "centreline" };
@@ -73,12 +74,12 @@
     }
     if (verge) return `The lines touch wherever a joint is about to move: any thinner, it falls in mode ${name}.`;
     if (stands) {
-      return `A line of thrust and a line of friction fit inside it: ${share(balance)} of thickness
-        and friction would do. At its least thickness, η = ${number(critical.eta)}, it falls in mode ${name}.`;
+      return `Lines of thrust and friction fit inside it: ${share(balance)} of its thickness and friction
+        would do. At its least thickness, η = ${number(critical.eta)}, it falls in mode ${name}.`;
     }
     const needs = balance
-      ? `No line of thrust and of friction fit inside it: that takes ${share(balance)} of its thickness
-         and friction.`
+      ? `No lines of thrust and friction fit inside it: that takes ${share(balance)} of its thickness and
+         friction.`
       : "No thrust holds it up: its halves overturn by themselves.";
     const grip = theory.leastFriction(state.halfAngle, Infinity, state.weight);
     const remedy = friction === Infinity ? " At this thickness no friction would do."
@@ -123,8 +124,9 @@
     showFigures();
     showControls();
     drawMapPoint(verdict);
-    amount = moves ? mechanism.amountFor(seen.joints, state.eta, MOVED) : 0;
-    setPose = draw.arch(find("arch"), { state, ...seen, amount, reach: MOVED });
+    const reach = MOVED * Math.min(1, 1.2 * Math.sin(Math.min(state.halfAngle, Math.PI / 2)));
+    amount = moves ? mechanism.amountFor(seen.joints, state.eta, reach) : 0;
+    setPose = draw.arch(find("arch"), { state, ...seen, amount, reach });
     setPose(moves && !playing ? 1 : 0);
     find("play").disabled = !moves;
     find("arch").setAttribute("aria-label",
@@ -161,7 +163,7 @@
     const values = { alpha: state.halfAngle / DEGREE, mu: state.mu, eta: state.eta };
     for (const [name, value] of Object.entries(values)) {
       const [slider, box] = [find(name), find(`${name}-number`)];
-      const finite = value === Infinity ? RANGES.mu[1] : value;
+      const finite = value === Infinity ? data.largestMu : value;
       slider.value = finite;
       slider.setAttribute("aria-valuetext", value === Infinity ? "unbounded" : number(value));
       slider.disabled = box.disabled = value === Infinity;
@@ -220,7 +222,7 @@
 
   /* Choosing it. */
 
-  const within = (name, value) => Math.min(RANGES[name][1], Math.max(RANGES[name][0], value));
+  const within = ([least, most], value) => Math.min(most, Math.max(least, value));
 
   /** Point of the map under the pointer, or null outside. */
   function pointAt(event) {
@@ -230,8 +232,8 @@
     return {
       x, y,
       inside: x >= frame.left && x <= frame.stripLeft + frame.strip && y >= frame.top && y <= frame.top + frame.up,
-      mu: mu === Infinity ? mu : within("mu", mu),
-      eta: within("eta", frame.eta(y)),
+      mu: mu === Infinity ? mu : within(ON_MAP.mu, mu),
+      eta: within(ON_MAP.eta, frame.eta(y)),
     };
   }
 
@@ -301,10 +303,10 @@
       if (!right && !up) return;
       event.preventDefault();
       const stride = event.shiftKey ? 10 : 1;
-      const eta = within("eta", state.eta + 0.01 * stride * up);
+      const eta = within(ON_MAP.eta, state.eta + 0.01 * stride * up);
       if (state.mu === Infinity) return choose(right < 0 ? data.largestMu : Infinity, eta);
       const mu = state.mu + 0.02 * stride * right;
-      return choose(mu > data.largestMu && right ? Infinity : within("mu", mu), eta);
+      return choose(mu > data.largestMu && right ? Infinity : within(ON_MAP.mu, mu), eta);
     });
   }
 
@@ -313,12 +315,15 @@
       alpha: (value) => ({ halfAngle: value * DEGREE }), mu: (mu) => ({ mu }), eta: (eta) => ({ eta }),
     };
     for (const name of Object.keys(set)) {
-      find(name).addEventListener("input", (event) => update(set[name](within(name, +event.target.value))));
-      find(`${name}-number`).addEventListener("input", (event) => {
+      find(name).addEventListener("input", (event) => update(set[name](+event.target.value)));
+      const box = find(`${name}-number`);
+      [box.min, box.max] = RANGES[name];
+      box.title = `from ${box.min} to ${box.max}`;
+      box.addEventListener("input", (event) => {
         const value = event.target.valueAsNumber;
-        if (value >= RANGES[name][0] && value <= RANGES[name][1]) update(set[name](value));
+        if (within(RANGES[name], value) === value) update(set[name](value));
       });
-      find(`${name}-number`).addEventListener("blur", () => update({}));
+      box.addEventListener("blur", () => update({}));
     }
     find("unbounded").addEventListener("change", (event) =>
       update({ mu: event.target.checked ? Infinity : data.largestMu }));
