@@ -440,6 +440,26 @@ def test_the_map_by_keyboard(page: playwright.Page) -> None:
     assert page.is_checked("#unbounded")
 
 
+@pytest.mark.parametrize(("view", "mu", "eta"), [("middle", 1.9, 0.967), ("thin", 0.5, 0.02)])
+def test_parts_of_the_map_seen_closer(
+    page: playwright.Page, view: str, mu: float, eta: float
+) -> None:
+    page.select_option("#view", view)
+    box = page.locator("#map .frame").first.bounding_box()
+    (least, most), (low, high) = {
+        "middle": ((1.2, 2.4), (0.6, 1.2)),
+        "thin": ((0, 1), (0, 0.25)),
+    }[view]
+    page.mouse.click(
+        box["x"] + box["width"] * (mu - least) / (most - least),
+        box["y"] + box["height"] * (high - eta) / (high - low),
+    )
+    page.wait_for_timeout(60)
+    assert float(page.input_value("#mu-number")) == pytest.approx(mu, abs=0.005)
+    assert float(page.input_value("#eta-number")) == pytest.approx(eta, abs=0.002)
+    assert text(page, "#figure-mode").split()[0] == {"middle": "rsr", "thin": "rrr"}[view]
+
+
 def test_results_are_shown_and_chosen(page: playwright.Page) -> None:
     drawn = page.locator("#map .marker")
     assert drawn.count() == 2

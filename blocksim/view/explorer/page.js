@@ -3,14 +3,17 @@
 
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
+  const words = wordsWith(data.modes);
+  const { number, degrees } = words;
   const DEGREE = Math.PI / 180;
   const ON_THE_VERGE = 1e-7; // share of strength needed, this near to all of it
   const MOVED = 0.16; // largest displacement drawn, over r
   const FALLING = 2200, RESTING = 700, RETURNING = 500; // the motion shown, again and again [ms]
   const LINE_POINTS = 120;
+  const STRIDES = 200; // of an arrow key across the map
   const NEAR = 12; // pixels within which a result is meant
   const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2] }; // of arches
-  const ON_MAP = { mu: [0.01, data.largestMu], eta: [0.002, 2] };
+  const ON_MAP = { mu: [0.01, data.largestMu], eta: [1e-4, 2] };
 
   const find = (id) => document.getElementById(id);
   const state = { halfAngle: 120 * DEGREE, mu: 1.2, eta: 0.3, weight: "centreline" };
@@ -34,73 +37,6 @@
     return { critical, balance, verge, stands, slides, mode, joints, friction };
   }
 
-  const decimals = (value, digits) => String(+value.toPrecision(digits));
-  const number = (value, digits = 4) =>
-    value === null ? "–" : value === Infinity ? "∞" : value > 0 && value < 1e-3 ? value.toExponential(2) : decimals(value, digits);
-  const degrees = (angle) => (angle === null ? "–" : `${(angle / DEGREE).toFixed(2)}°`);
-  const percent = (share) => {
-    const value = Math.abs(share) * 100;
-    return `${value < 10 ? value.toPrecision(2) : value.toFixed(0)} %`;
-  };
-
-  const shortly = (mode) => data.modes[mode].description.split(" (")[0];
-  const share = (balance) => {
-    const near = Math.abs(balance.share - 1) < 0.02;
-    return `${(balance.share * 100).toFixed(near ? 2 : 0)} %`;
-  };
-
-  function headline({ critical, verge, stands, slides, mode }) {
-    if (slides) return "Just stands: no friction to spare";
-    if (verge) return "Just stands: this is the least thickness";
-    if (critical.eta === null) {
-      return mode === "ss"
-        ? "Collapses: too little friction for any thickness"
-        : "Collapses: no thickness up to η = 2 will do";
-    }
-    const margin = state.eta / critical.eta - 1;
-    if (stands) {
-      return margin > 1
-        ? `Stands: ${decimals(margin + 1, 2)} times the least thickness`
-        : `Stands: thickness ${percent(margin)} above the least`;
-    }
-    return `Collapses: thickness ${percent(margin)} below the least`;
-  }
-
-  function because({ critical, balance, verge, stands, slides, mode, friction }) {
-    const name = `${mode}, ${shortly(mode)}`;
-    if (slides) {
-      return `Springings and inner joints are about to slide, mode ${name}. With less friction, or
-        opened wider, it falls, however thick.`;
-    }
-    if (verge) return `The lines touch wherever a joint is about to move: any thinner, it falls in mode ${name}.`;
-    if (stands) {
-      return `Lines of thrust and friction fit inside it: ${share(balance)} of its thickness and friction
-        would do. At its least thickness, η = ${number(critical.eta)}, it falls in mode ${name}.`;
-    }
-    const needs = balance
-      ? `No lines of thrust and friction fit inside it: that takes ${share(balance)} of its thickness and
-         friction.`
-      : "No thrust holds it up: its halves overturn by themselves.";
-    const grip = theory.leastFriction(state.halfAngle, Infinity, state.weight);
-    const remedy = friction === Infinity ? " At this thickness no friction would do."
-      : friction > state.mu ? ` At this thickness it stands from μ = ${number(friction)} on.` : "";
-    const bare = grip > state.mu ? ` Opened so wide, nothing stands below μ = ${number(grip)}.` : "";
-    return `${needs} It falls in mode ${name}.${bare}${remedy}`;
-  }
-
-  const KINDS = {
-    extrados: "turns about its extrados", intrados: "turns about its intrados",
-    out: "slides outwards", in: "slides inwards", parts: "parts",
-  };
-
-  function jointsInWords({ joints }) {
-    return joints.map(({ angle, kind }) => {
-      const where = angle === 0 ? "the crown" : angle === state.halfAngle
-        ? "each springing" : `the joint at ${(angle / DEGREE).toFixed(1)}°`;
-      return `${where} ${KINDS[kind]}`;
-    }).join(", ");
-  }
-
   /* Showing it. */
 
   function update(change) {
@@ -117,21 +53,21 @@
     seen = assess(state);
     const verdict = seen.stands ? "stands" : "collapses";
     const moves = !seen.stands || seen.verge;
-    put("verdict", headline(seen));
+    put("verdict", words.headline(state, seen));
     find("verdict").className = `verdict ${verdict}`;
-    put("because", because(seen));
-    put("joints", `${moves ? "As it falls" : "As it would fall at its least thickness"}: ${jointsInWords(seen)}.`);
+    put("because", words.because(state, seen));
+    put("joints", `${moves ? "As it falls" : "As it would fall at its least thickness"}: ${words.ofJoints(state, seen)}.`);
     showFigures();
     showControls();
     drawMapPoint(verdict);
     const reach = MOVED * Math.min(1, 1.2 * Math.sin(Math.min(state.halfAngle, Math.PI / 2)));
     amount = moves ? mechanism.amountFor(seen.joints, state.eta, reach) : 0;
-    setPose = draw.arch(find("arch"), { state, ...seen, amount, reach });
+    setPose = archPicture.draw(find("arch"), { state, ...seen, amount, reach });
     setPose(moves && !playing ? 1 : 0);
     find("play").disabled = !moves;
     find("arch").setAttribute("aria-label",
       `Arch of half-angle ${degrees(state.halfAngle)}, friction ${number(state.mu)}, ` +
-      `thickness ${number(state.eta)}. ${headline(seen)}. ${jointsInWords(seen)}.`);
+      `thickness ${number(state.eta)}. ${words.headline(state, seen)}. ${words.ofJoints(state, seen)}.`);
   }
 
   function put(id, text) {
@@ -187,13 +123,15 @@
       if (i === 0) iso.push([mu, 2]); // sliding both ways, any thickness beyond is critical
       iso.push([mu, Math.min(needed, 3)]);
     }
-    draw.mapPoint(layer, frame, { state, verdict, iso, data, critical: seen.critical, results: results() });
+    const { modes, unnamed } = data;
+    const looks = { modes, unnamed, state, verdict, iso, critical: seen.critical, results: results() };
+    mapPicture.drawPoint(layer, frame, looks);
   }
 
   function drawMap() {
     const box = find("map-box");
-    frame = draw.mapFrame(box.clientWidth, data.largestMu);
-    layer = draw.mapBase(find("map"), frame, data.maps[state.weight], data);
+    frame = mapPicture.frameOf(box.clientWidth, find("view").value);
+    layer = mapPicture.drawBase(find("map"), frame, data.maps[state.weight], data.modes, results());
   }
 
   /* Moving it. */
@@ -228,12 +166,12 @@
   function pointAt(event) {
     const box = find("map").getBoundingClientRect();
     const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-    const mu = frame.mu(x);
+    const mu = frame.muAt(x);
     return {
       x, y,
       inside: x >= frame.left && x <= frame.stripLeft + frame.strip && y >= frame.top && y <= frame.top + frame.up,
       mu: mu === Infinity ? mu : within(ON_MAP.mu, mu),
-      eta: within(ON_MAP.eta, frame.eta(y)),
+      eta: within(ON_MAP.eta, frame.etaAt(y)),
     };
   }
 
@@ -243,7 +181,7 @@
   }
 
   const resultNear = ({ x, y }) =>
-    results().find((row) => Math.hypot(frame.x(row.place) - x, frame.y(row.eta) - y) < NEAR);
+    results().find((row) => frame.shows(row.place, row.eta) && Math.hypot(frame.x(row.place) - x, frame.y(row.eta) - y) < NEAR);
 
   const chooseResult = (row) =>
     update({ mu: row.mu ?? Infinity, eta: row.eta, halfAngle: row.alpha * DEGREE, weight: row.weight });
@@ -261,7 +199,7 @@
       tip.replaceChildren(
         `η ${number(point.eta, 3)}  μ ${number(point.mu, 3)}`, document.createElement("br"),
         `α ${degrees(halfAngle)}  h ${number(critical.thrust, 3)}`, document.createElement("br"),
-        ...names, ` ${shortly(modes[0])}`);
+        ...names, ` ${words.shortly(modes[0])}`);
     }
     const [width, height] = [tip.offsetWidth, tip.offsetHeight];
     const left = point.x + 16 + width > frame.width ? point.x - 16 - width : point.x + 16;
@@ -302,10 +240,10 @@
       const [right, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
       if (!right && !up) return;
       event.preventDefault();
-      const stride = event.shiftKey ? 10 : 1;
-      const eta = within(ON_MAP.eta, state.eta + 0.01 * stride * up);
+      const stride = (event.shiftKey ? 10 : 1) / STRIDES;
+      const eta = within(ON_MAP.eta, state.eta + (frame.eta[1] - frame.eta[0]) * stride * up);
       if (state.mu === Infinity) return choose(right < 0 ? data.largestMu : Infinity, eta);
-      const mu = state.mu + 0.02 * stride * right;
+      const mu = state.mu + (frame.mu[1] - frame.mu[0]) * stride * right;
       return choose(mu > data.largestMu && right ? Infinity : within(ON_MAP.mu, mu), eta);
     });
   }
@@ -333,6 +271,10 @@
       drawMap();
       update({});
     });
+    find("view").addEventListener("change", () => {
+      drawMap();
+      update({});
+    });
     find("play").addEventListener("click", () => setPlaying(!playing));
     still.addEventListener("change", () => setPlaying(!still.matches));
     for (const button of document.querySelectorAll("[data-row]")) {
@@ -340,7 +282,7 @@
     }
   }
 
-  for (const [mode, style] of Object.entries(data.modes)) draw.marker(find(`legend-${mode}`), style, 0, 0, 6);
+  for (const [mode, style] of Object.entries(data.modes)) svg.marker(find(`legend-${mode}`), style, 0, 0, 6);
   for (const row of data.results) row.place = row.mu === null ? Infinity : Math.min(row.mu, data.largestMu);
   drawMap();
   state.halfAngle = theory.atPoint(state.eta, state.mu, state.weight).halfAngle;

@@ -22,30 +22,9 @@ from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line, map_shape
 from blocksim.view.style import FRICTION, MISS, MODES, THRUST, UNNAMED, VERDICTS
 
 HERE = Path(__file__).parent
-SCRIPTS = ("theory.js", "mechanism.js", "draw.js", "page.js")
-Label = tuple[Mode, float | None, float, tuple[float, float] | None]
-LABELS: dict[Weight, tuple[Label, ...]] = {
-    "centreline": (
-        (Mode.RRR, 2.3, 0.35, None),
-        (Mode.SS, 0.75, 1.35, None),
-        (Mode.SRR, 0.72, 0.33, None),
-        (Mode.RRS, 2.6, 0.88, None),
-        (Mode.RSR, 3.35, 1.17, (3.35, 0.987)),
-        (Mode.RS, 3.1, 1.5, None),
-        (Mode.R, None, 1.5, None),
-    ),
-    "sector": (
-        (Mode.RRR, 2.3, 0.35, None),
-        (Mode.SS, 0.75, 1.35, None),
-        (Mode.SRR, 0.72, 0.33, None),
-        (Mode.RRS, 2.5, 0.81, None),
-        (Mode.RSR, 3.35, 1.1, (3.35, 0.92)),
-        (Mode.RS, 2.9, 1.45, None),
-        (Mode.R, None, 1.45, None),
-    ),
-}
-"""Where each mode's name stands: friction (None is unbounded), thickness, and for a region
-too thin for it the point its line leads to."""
+SCRIPTS = (
+    "theory.js", "mechanism.js", "svg.js", "map.js", "arch.js", "words.js", "page.js",
+)  # fmt: skip
 LETTERS = {"T": (-10, -2), "S": (-11, -9), "J": (-7, 9), "B": (11, -11)}
 """Where the letter of each landmark stands, in pixels from it, up and to the right."""
 
@@ -95,7 +74,7 @@ def _data(results: Sequence[Result]) -> dict[str, Any]:
             **{verdict.value: colour for verdict, colour in VERDICTS.items()},
         },
         "largestMu": LARGEST_MU,
-        "maps": {weight: _map(weight) for weight in LABELS},
+        "maps": {"centreline": _map("centreline"), "sector": _map("sector")},
         "results": [asdict(result) for result in results],
     }
 
@@ -112,10 +91,9 @@ def _map(weight: Weight) -> dict[str, Any]:
         "regions": [
             {
                 "mode": part.mode.value,
-                "points": [
-                    *_points(part.mu, part.bottom),
-                    *_points(part.mu[::-1], part.top[::-1]),
-                ],
+                "mu": part.mu.round(5).tolist(),
+                "bottom": part.bottom.round(5).tolist(),
+                "top": part.top.round(5).tolist(),
             }
             for part in shapes.regions
         ],
@@ -124,10 +102,6 @@ def _map(weight: Weight) -> dict[str, Any]:
         ],
         "iso": _iso_lines(weight),
         "overturning": CROWN_ETA[weight],
-        "labels": [
-            {"mode": mode.value, "mu": mu, "eta": eta, "target": target}
-            for mode, mu, eta, target in LABELS[weight]
-        ],
         "landmarks": [
             {"name": mark.name, "mu": mark.mu, "eta": mark.eta, "shift": LETTERS[mark.name]}
             for mark in shapes.landmarks.values()
