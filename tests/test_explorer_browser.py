@@ -440,6 +440,55 @@ def test_the_map_by_keyboard(page: playwright.Page) -> None:
     assert page.is_checked("#unbounded")
 
 
+def test_never_says_nonsense(page: playwright.Page) -> None:
+    """Anywhere in the ranges, both weights: no error, no NaN, and the verdict of theory."""
+    random = np.random.default_rng(7)
+    weight, mu = "centreline", 1.2
+    for index in range(80):
+        if index == 40:
+            weight = "sector"
+            page.select_option("#weight", weight)
+        if index % 40 == 35:
+            page.check("#unbounded")
+            mu = math.inf
+        elif index == 40:
+            page.uncheck("#unbounded")
+        if index % 40 < 35:
+            mu = float(f"{10 ** random.uniform(-3, 3):.4g}")
+            page.fill("#mu-number", str(mu))
+        alpha = float(f"{random.uniform(1, 178):.4g}")
+        eta = float(f"{10 ** random.uniform(-6, 0.3):.4g}")
+        page.fill("#alpha-number", str(alpha))
+        page.fill("#eta-number", str(eta))
+        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => done()))")
+        everything = page.inner_text(".arch-pane") + page.inner_html("#arch")
+        assert not re.search(r"NaN|undefined|Infinity|null", everything), (alpha, mu, eta)
+        least = theory.least_thickness(math.radians(alpha), mu, weight).eta
+        stands = least is not None and eta >= least
+        assert text(page, "#verdict").startswith("Stands" if stands else "Collapses")
+
+
+def test_a_finger_takes_hold_of_the_point_or_scrolls(open_page: Open) -> None:
+    page = open_page(375, 812, has_touch=True, is_mobile=True)
+    fingers = page.context.new_cdp_session(page)
+
+    def swipe(start: tuple[float, float], end: tuple[float, float]) -> None:
+        for kind, share in (("touchStart", 0), ("touchMove", 0.4), ("touchMove", 1)):
+            x, y = (a + share * (b - a) for a, b in zip(start, end, strict=True))
+            touch = {"type": kind, "touchPoints": [{"x": x, "y": y}]}
+            fingers.send("Input.dispatchTouchEvent", touch)
+        fingers.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        page.wait_for_timeout(100)
+
+    before = page.input_value("#eta-number")
+    swipe(place(page, 2.5, 0.5), place(page, 2.5, 1.5))
+    assert page.input_value("#eta-number") == before
+    page.evaluate("scrollTo(0, 0)")
+    swipe(place(page, 1.2, 0.3), place(page, 2.5, 0.7))
+    assert float(page.input_value("#eta-number")) == pytest.approx(0.7, abs=0.02)
+    assert float(page.input_value("#mu-number")) == pytest.approx(2.5, abs=0.05)
+
+
 @pytest.mark.parametrize(("view", "mu", "eta"), [("middle", 1.9, 0.967), ("thin", 0.5, 0.02)])
 def test_parts_of_the_map_seen_closer(
     page: playwright.Page, view: str, mu: float, eta: float

@@ -12,7 +12,7 @@ const svg = (() => {
     return element;
   }
 
-  const pathOf = (points) => "M" + points.map((p) => p.map((v) => +v.toFixed(2)).join(" ")).join("L");
+  const pathOf = (points) => (points.length ? "M" : "") + points.map((p) => p.map((v) => +v.toFixed(2)).join(" ")).join("L");
 
   /* Shapes of points, so that colour never stands alone; of radius 1. */
   const regular = (corners, radius, turn) =>
