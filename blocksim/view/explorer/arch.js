@@ -26,10 +26,10 @@ const archPicture = (() => {
     const [inner, outer] = [1 - eta / 2, 1 + eta / 2];
     picture.replaceChildren();
     const pixel = fit(picture, halfAngle, inner, outer, reach);
-    const below = Math.min(SPRINGING, (Math.PI - halfAngle) * 0.7);
+    const below = Math.min(SPRINGING * Math.min(halfAngle, 1), (Math.PI - halfAngle) * 0.7);
     const halves = [1, -1].map((side) => add(picture, "g", { transform: `scale(${side} 1)` }));
     for (const half of halves) {
-      const abutment = ring(halfAngle + below, halfAngle, Math.max(inner - 0.03, 0), outer + 0.03);
+      const abutment = ring(halfAngle + below, halfAngle, Math.max(inner - below / 3, 0), outer + below / 3);
       add(half, "path", { d: abutment, class: "abutment" });
     }
     if (amount) add(picture, "path", { d: ring(halfAngle, -halfAngle, inner, outer), class: "ghost" });

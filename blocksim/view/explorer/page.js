@@ -31,10 +31,10 @@
     // Thick enough and yet on the verge: it is friction that has nothing to spare.
     const slides = verge && critical.eta !== null && eta > critical.eta * (1 + 1e-6);
     const mode = slides ? "ss" : critical.mode;
-    const betaS = critical.betaS ?? null;
+    const betaS = slides ? theory.innerSliding(mu).betaS : critical.betaS;
     const joints = mechanism.activeJoints(mode, halfAngle, critical.betaR ?? 0, betaS ?? 0);
     const friction = theory.leastFriction(halfAngle, eta, weight);
-    return { critical, balance, verge, stands, slides, mode, joints, friction };
+    return { critical, balance, verge, stands, slides, mode, betaS, joints, friction };
   }
 
   /* Showing it. */
@@ -83,7 +83,7 @@
     put("figure-mu", number(friction === Infinity ? null : friction, 6));
     put("figure-h", number(critical.thrust, 6));
     put("figure-r", degrees(uses(["intrados"]) ? critical.betaR : null));
-    put("figure-s", degrees(uses(["in"]) ? critical.betaS : null));
+    put("figure-s", degrees(uses(["in"]) ? seen.betaS : null));
     find("figure-mode").replaceChildren(modeName(mode), ` ${data.modes[mode].description}`);
   }
 

@@ -234,7 +234,7 @@ const theory = (() => {
   }
 
   return {
-    leastThickness, atPoint, leastFriction, equilibrium,
+    leastThickness, atPoint, leastFriction, equilibrium, innerSliding,
     levelOf, normalForce, sectionMoment, thrustLine, frictionLine,
   };
 })();

@@ -51,11 +51,13 @@ const wordsWith = (modes) => {
       ? `No lines of thrust and friction fit inside it: that takes ${share(balance)} of its thickness and
          friction.`
       : "No thrust holds it up: its halves overturn by themselves.";
-    const grip = theory.leastFriction(state.halfAngle, Infinity, state.weight);
-    const remedy = friction === Infinity ? " At this thickness no friction would do."
-      : friction > state.mu ? ` At this thickness it stands from μ = ${number(friction)} on.` : "";
-    const bare = grip > state.mu ? ` Opened so wide, nothing stands below μ = ${number(grip)}.` : "";
-    return `${needs} It falls in mode ${name}.${bare}${remedy}`;
+    let remedy = "";
+    if (friction === Infinity) {
+      const grip = theory.leastFriction(state.halfAngle, Infinity, state.weight);
+      remedy = grip > state.mu ? ` Opened so wide, nothing stands below μ = ${number(grip)}.` : "";
+      remedy += " At this thickness no friction would do.";
+    } else if (friction > state.mu) remedy = ` At this thickness it stands from μ = ${number(friction)} on.`;
+    return `${needs} It falls in mode ${name}.${remedy}`;
   }
 
   const KINDS = {
