@@ -291,7 +291,8 @@
   listenToControls();
   setPlaying(playing);
   new ResizeObserver(() => {
-    if (find("map-box").clientWidth === frame.width) return;
+    const width = find("map-box").clientWidth;
+    if (width === frame.width || width === 0) return; // 0 while the window closes
     drawMap();
     show();
   }).observe(find("map-box"));
