@@ -528,9 +528,13 @@ def test_results_are_shown_and_chosen(page: playwright.Page) -> None:
     settle(page)
     assert page.input_value("#alpha-number") == "90"
     assert text(page, "#verdict") == "Collapses: thickness 0.86 % below the least"
+    borders = """() => [...document.querySelectorAll("#map .landmark")]
+      .map((landmark) => landmark.getAttribute("cx"))"""
+    centreline = page.evaluate(borders)
     page.get_by_role("button", name="sector").click()
     settle(page)
     assert page.input_value("#weight") == "sector"
+    assert page.evaluate(borders) != centreline
     assert drawn.count() == 1
     assert page.input_value("#alpha-number") == "120"
 

@@ -50,7 +50,7 @@ const archPicture = (() => {
     }
     return (share) => {
       // The lines belong to the arch at rest.
-      lines.setAttribute("opacity", 1 - 0.6 * share);
+      lines.setAttribute("opacity", amount ? 1 - 0.6 * share : 1);
       const { motions } = mechanism.pose(joints, eta, share * amount);
       motions.forEach((motion, i) => {
         const [c, s] = [Math.cos(motion.turn), Math.sin(motion.turn)];

@@ -17,9 +17,11 @@
 
   const find = (id) => document.getElementById(id);
   const state = { halfAngle: 120 * DEGREE, mu: 1.2, eta: 0.3, weight: "centreline" };
-  let frame, layer, seen, setPose, amount = 0, drawing = false;
+  let frame, layer, drawnWeight, seen, setPose;
+  let [amount, drawing] = [0, false];
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   let playing = !still.matches;
+  let moved = playing ? 0 : 1; // share of the motion shown
 
   /* What is known of the arch looked at. */
 
@@ -59,11 +61,12 @@
     put("joints", `${moves ? "As it falls" : "As it would fall at its least thickness"}: ${words.ofJoints(state, seen)}.`);
     showFigures();
     showControls();
+    if (drawnWeight !== state.weight) drawMap();
     drawMapPoint(verdict);
     const reach = MOVED * Math.min(1, 1.2 * Math.sin(Math.min(state.halfAngle, Math.PI / 2)));
     amount = moves ? mechanism.amountFor(seen.joints, state.eta, reach) : 0;
     setPose = archPicture.draw(find("arch"), { state, ...seen, amount, reach });
-    setPose(moves && !playing ? 1 : 0);
+    setPose(moved);
     find("play").disabled = !moves;
     find("arch").setAttribute("aria-label",
       `Arch of half-angle ${degrees(state.halfAngle)}, friction ${number(state.mu)}, ` +
@@ -71,9 +74,9 @@
   }
 
   function put(id, text) {
-    const words = text.replace(/\s+/g, " ");
+    const line = text.replace(/\s+/g, " ");
     // Untouched where nothing changed, so that screen readers stay silent.
-    if (find(id).textContent !== words) find(id).textContent = words;
+    if (find(id).textContent !== line) find(id).textContent = line;
   }
 
   function showFigures() {
@@ -131,6 +134,7 @@
   function drawMap() {
     const box = find("map-box");
     frame = mapPicture.frameOf(box.clientWidth, find("view").value);
+    drawnWeight = state.weight;
     layer = mapPicture.drawBase(find("map"), frame, data.maps[state.weight], data.modes, results());
   }
 
@@ -139,12 +143,12 @@
   let started = null;
 
   function step(now) {
-    if (playing && setPose && amount > 0) {
+    if (playing && amount > 0) {
       started ??= now;
       const time = (now - started) % (FALLING + RESTING + RETURNING);
       const back = Math.max(0, time - FALLING - RESTING) / RETURNING;
-      const share = back > 0 ? (1 - back) ** 2 : Math.min(1, time / FALLING) ** 2;
-      setPose(share);
+      moved = back > 0 ? (1 - back) ** 2 : Math.min(1, time / FALLING) ** 2;
+      setPose(moved);
     }
     if (playing) requestAnimationFrame(step);
   }
@@ -153,16 +157,14 @@
     playing = value;
     started = null;
     find("play").textContent = playing ? "Pause" : "Play";
-    find("play").setAttribute("aria-pressed", String(!playing));
     if (playing) requestAnimationFrame(step);
-    else setPose(amount > 0 ? 1 : 0);
   }
 
   /* Choosing it. */
 
   const within = ([least, most], value) => Math.min(most, Math.max(least, value));
 
-  /** Point of the map under the pointer, or null outside. */
+  /** Point of the map under the pointer. */
   function pointAt(event) {
     const box = find("map").getBoundingClientRect();
     const [x, y] = [event.clientX - box.left, event.clientY - box.top];
@@ -266,17 +268,17 @@
     find("unbounded").addEventListener("change", (event) =>
       update({ mu: event.target.checked ? Infinity : data.largestMu }));
     find("least").addEventListener("click", () => update({ eta: seen.critical.eta }));
-    find("weight").addEventListener("change", (event) => {
-      state.weight = event.target.value;
-      drawMap();
-      update({});
-    });
+    find("weight").addEventListener("change", (event) => update({ weight: event.target.value }));
     find("view").addEventListener("change", () => {
       drawMap();
       update({});
     });
     find("play").addEventListener("click", () => setPlaying(!playing));
-    still.addEventListener("change", () => setPlaying(!still.matches));
+    still.addEventListener("change", () => {
+      moved = 1;
+      setPlaying(!still.matches);
+      update({});
+    });
     for (const button of document.querySelectorAll("[data-row]")) {
       button.addEventListener("click", () => chooseResult(data.results[+button.dataset.row]));
     }
