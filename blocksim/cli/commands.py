@@ -40,7 +40,6 @@ from blocksim.cli.options import (
     Json,
     MethodOption,
     Mu,
-    Picture,
     PlaneLock,
     Scene,
     Tilt,
@@ -53,7 +52,7 @@ from blocksim.cli.options import (
 from blocksim.doctor import examine
 from blocksim.engines import ENGINES
 from blocksim.errors import MISSING, BlocksimError, InputError
-from blocksim.files import make_folder
+from blocksim.files import make_folder, write_whole
 from blocksim.report.answers import (
     bracket_lines,
     bracket_record,
@@ -241,23 +240,43 @@ def validate(
 
 @app.command(name="map")
 def draw_map(
-    out: Picture,
+    out: Annotated[Path, typer.Option(help="Picture, .svg or .png, or a page, .html.")],
     lines: Annotated[
         bool, typer.Option("--lines", help="Dividing lines and lines of equal alpha instead.")
     ] = False,
     zoom: Annotated[
         str, typer.Option(help="whole, central; with --lines: whole, lower, upper.")
     ] = "whole",
+    results: Annotated[
+        Path | None, typer.Option(help="validate.json of a `validate` run, shown on the page.")
+    ] = None,
 ) -> None:
-    """Draw the analytical map of least thickness and collapse modes."""
+    """Draw the analytical map of least thickness and collapse modes.
+
+    As a page (.html) it can be explored: any point's arch, its lines of thrust and
+    friction, and its collapse.
+    """
+    page = out.suffix == ".html"
+    ok = page or out.suffix in {".svg", ".png"}
+    require(ok, "--out", str(out), "a file name ending in .svg, .png or .html")
+    if page:
+        from blocksim.view.explorer import explorer_page, read_results
+
+        require(not lines, "--lines", lines, "left out where --out is a page")
+        require(zoom == "whole", "--zoom", zoom, "left out where --out is a page")
+        rows = [] if results is None else read_results(results)
+        html = explorer_page(rows, str(results or ""))
+        write_whole(out, lambda file: file.write(html.encode()))
+        say(f"wrote {out}")
+        return
+    require(results is None, "--results", str(results), "left out unless --out ends in .html")
     from blocksim.view.linemap import line_map_figure
     from blocksim.view.mapfigure import map_figure
 
     zooms = LINE_ZOOMS if lines else {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
     require(zoom in zooms, "--zoom", zoom, f"one of {', '.join(zooms)}")
-    kind = picture_kind(out)
     figure = line_map_figure(zooms[zoom]) if lines else map_figure(central=zoom == "central")
-    save_picture(figure, out, kind)
+    save_picture(figure, out, out.suffix[1:])
 
 
 LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}

@@ -14,12 +14,10 @@ from matplotlib.figure import Figure
 
 from blocksim.theory import equations, landmarks, least_thicknesses, regions
 from blocksim.theory.critical import rotational_thrust
-from blocksim.theory.map import divide_friction, iso_half_angle
-from blocksim.view.mapfigure import LARGEST_MU
+from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line
 from blocksim.view.style import FONT, INK, ISO, QUIET
 
 DASHED = (0, (5, 2))
-ISO_DEGREES = (60, 90, 110, 125, 135, 142.5, 145, 149.2, 155, 159)
 LABELS = {"S": (6, -12), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
 
 
@@ -44,16 +42,11 @@ def _line_map(span: tuple[float, float]) -> Figure:
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     marks = landmarks()
-    mu = np.linspace(0.02, LARGEST_MU, 1200)
     for degrees in ISO_DEGREES:
-        alpha = math.radians(degrees)
-        line = iso_half_angle(alpha, mu)
+        line = iso_line(math.radians(degrees))
         if not line.mu.size:
             continue
-        # Sliding both ways, any thickness beyond is critical: the line goes on upwards.
-        divide = divide_friction(alpha)
-        foot, _ = regions.at_inner_sliding(divide, alpha, "centreline")
-        axes.plot([divide, divide, *line.mu], [2.0, foot, *line.eta], color=ISO, lw=0.8)
+            axes.plot(line.mu, line.eta, color=ISO, lw=0.8)
         if span[0] < line.eta[-1] < span[1]:
             axes.annotate(f"{degrees:g}°", (LARGEST_MU, line.eta[-1]), xytext=(3, 0),
                           va="center", textcoords="offset points", color=ISO,

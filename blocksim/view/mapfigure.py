@@ -14,17 +14,12 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 from blocksim import theory
-from blocksim.assembly import Array
 from blocksim.modes import Mode
-from blocksim.theory import regions
+from blocksim.view.mapshapes import LARGEST_MU, map_shapes
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
-SMALLEST_MU, LARGEST_MU = 0.002, 4.0
-LAST_ANGLE = 2.635
-"""Half-angle at which the line of first sliding has left the picture [rad]."""
 CENTRAL = ((1.2, 2.4), (0.6, 1.2))
 """Friction and thickness shown by the central zoom (Fig. 11)."""
 NAMES = {
@@ -45,8 +40,6 @@ LETTERS = {"T": (-11, 3), "S": (-11, -9), "J": (-11, 3), "B": (6, -12)}
 """Where the letter of each landmark begins, in points from it."""
 POINT = (0.009, 0.0052)
 """Friction and thickness that a typographic point covers on the whole map, about."""
-POINTS = 160
-"""Points on each line."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,37 +103,20 @@ def map_figure(
 
 def draw_regions(axes: Axes, *, central: bool = False) -> None:
     """Fill the regions of the six modes at finite friction, and name them (Figs 9-11)."""
-    marks = theory.landmarks()
-    corners = [marks[name].mu for name in "TSJ"]
-    mu = np.sort([*np.linspace(SMALLEST_MU, LARGEST_MU, 4 * POINTS), *corners])
-    divide = regions.divide(
-        np.sort([*np.linspace(SMALLEST_MU, marks["B"].mu, POINTS), *corners])
+    shapes = map_shapes()
+    for part in shapes.regions:
+        tint = MODES[part.mode].tint
+        axes.fill_between(part.mu, part.bottom, part.top, color=tint, lw=0)
+    lines = (
+        (shapes.divide, "-"),
+        (shapes.first, "-"),
+        (shapes.equal, ":"),
+        (shapes.crown, "--"),
     )
-    # Denser towards the wide arches, where friction runs off to infinity.
-    angles = LAST_ANGLE * (1 - np.linspace(0.95, 0.0, POINTS) ** 2)
-    first = regions.first_sliding(np.sort([*angles, marks["T"].half_angle]))
-    equal = regions.equal_angles(np.linspace(marks["S"].mu + 1e-6, LARGEST_MU, POINTS // 2))
-    crown = regions.crown_hinge(np.linspace(marks["J"].mu + 1e-6, LARGEST_MU, POINTS // 2))
-
-    top = np.where(mu <= marks["B"].mu, np.interp(mu, divide.mu, divide.eta), 2.0)
-    low = np.minimum(np.interp(mu, first.mu, first.eta), top)
-    between = np.where(mu < marks["S"].mu, top, np.interp(mu, equal.mu, equal.eta))
-    over = np.where(mu < marks["J"].mu, top, np.interp(mu, crown.mu, crown.eta))
-    left = mu <= marks["T"].mu
-    parts: list[tuple[Mode, Array, Array, NDArray[np.bool_]]] = [
-        (Mode.RRR, np.zeros_like(mu), low, mu > 0),
-        (Mode.SRR, low, top, left),
-        (Mode.RRS, low, between, ~left),
-        (Mode.RSR, between, over, ~left),
-        (Mode.RS, over, top, ~left),
-        (Mode.SS, top, np.full_like(mu, 2.0), mu > 0),
-    ]
-    for mode, bottom, ceiling, where in parts:
-        axes.fill_between(mu, bottom, ceiling, where=where, color=MODES[mode].tint, lw=0)
-    for curve, style in ((divide, "-"), (first, "-"), (equal, ":"), (crown, "--")):
+    for curve, style in lines:
         axes.plot(curve.mu, curve.eta, style, color=INK, lw=1.1)
     _name_regions(axes, central=central)
-    for mark in marks.values():
+    for mark in shapes.landmarks.values():
         if central and mark.name == "B":
             continue
         axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4)

@@ -1,0 +1,120 @@
+"use strict";
+/* Picture of an arch, its lines and its mechanism. Angles from the crown to the right; the picture's
+   y points down. */
+
+const archPicture = (() => {
+  const { add, pathOf } = svg;
+  const SCALE = 100; // units of the picture in a mean radius
+  const SPACING = 0.13; // of the joints drawn for the eye [rad]
+  const SPRINGING = 0.1; // of the abutments drawn [rad]
+  const OUTSIDE = 2.4; // how far out of the arch, in half thicknesses, lines are drawn
+  const FORCELESS = 1e-9;
+  const SAMPLES = 240;
+
+  const at = (angle, radius) => [SCALE * radius * Math.sin(angle), -SCALE * radius * Math.cos(angle)];
+
+  function ring(from, to, inner, outer) {
+    const steps = Math.max(2, Math.ceil((from - to) / 0.02));
+    const angles = Array.from({ length: steps + 1 }, (_, i) => to + ((from - to) * i) / steps);
+    return pathOf([...angles.map((a) => at(a, outer)), ...angles.reverse().map((a) => at(a, inner))]) + "Z";
+  }
+
+  /** Draw an arch. Returns a function that moves its pieces, by a share of `amount` at the
+      springing, 0 for one that stands. */
+  function draw(picture, { state, balance, joints, amount, reach }) {
+    const { halfAngle, eta, mu, weight } = state;
+    const [inner, outer] = [1 - eta / 2, 1 + eta / 2];
+    picture.replaceChildren();
+    const pixel = fit(picture, halfAngle, inner, outer, reach);
+    const below = Math.min(SPRINGING * Math.min(halfAngle, 1), (Math.PI - halfAngle) * 0.7);
+    const halves = [1, -1].map((side) => add(picture, "g", { transform: `scale(${side} 1)` }));
+    for (const half of halves) {
+      const abutment = ring(halfAngle + below, halfAngle, Math.max(inner - below / 3, 0), outer + below / 3);
+      add(half, "path", { d: abutment, class: "abutment" });
+    }
+    if (amount) add(picture, "path", { d: ring(halfAngle, -halfAngle, inner, outer), class: "ghost" });
+    const groups = halves.map((half) =>
+      mechanism.pieces(joints).map((faces) => stones(add(half, "g"), faces, halfAngle, inner, outer)));
+    const lines = add(picture, "g");
+    forces(lines, { halfAngle, eta, mu, weight, balance });
+    const marks = halves.map((_, side) =>
+      mechanism.pieces(joints).map(() => add(picture, "g", { class: "marks", "data-side": side })));
+    const still = halves.map((_, side) => add(picture, "g", { transform: `scale(${side ? -1 : 1} 1)` }));
+    if (amount) {
+      joints.forEach((joint, i) => {
+        for (const side of [0, 1]) {
+          if (side && joint.angle === 0) continue;
+          mark(i === 0 ? still[side] : marks[side][i - 1], joint, inner, outer, pixel);
+        }
+      });
+    }
+    return (share) => {
+      // The lines belong to the arch at rest.
+      lines.setAttribute("opacity", amount ? 1 - 0.6 * share : 1);
+      const { motions } = mechanism.pose(joints, eta, share * amount);
+      motions.forEach((motion, i) => {
+        const [c, s] = [Math.cos(motion.turn), Math.sin(motion.turn)];
+        const matrix = `matrix(${c} ${s} ${-s} ${c} ${SCALE * motion.x} ${-SCALE * motion.y})`;
+        groups.forEach((half, side) => {
+          half[i].setAttribute("transform", matrix);
+          marks[side][i].setAttribute("transform", (side ? "scale(-1 1) " : "") + matrix);
+        });
+      });
+    };
+  }
+
+  /** Fit the picture to the arch and its motion. Returns the size of a pixel. */
+  function fit(picture, halfAngle, inner, outer, reach) {
+    const wide = halfAngle > Math.PI / 2 ? outer : outer * Math.sin(halfAngle);
+    const low = Math.min(inner * Math.cos(halfAngle), outer * Math.cos(halfAngle));
+    const rim = SCALE * (0.06 + reach);
+    const [x, y] = [SCALE * (wide + 0.04) + rim, SCALE * outer + rim * 0.6];
+    const [width, height] = [2 * x, y - SCALE * low + rim];
+    picture.setAttribute("viewBox", `${-x} ${-y} ${width} ${height}`);
+    return Math.max(width / picture.clientWidth, height / picture.clientHeight);
+  }
+
+  /** Voussoirs for the eye: the theory has a joint at every angle. */
+  function stones(group, [lower, upper], halfAngle, inner, outer) {
+    const count = Math.max(1, Math.round((lower - upper) / SPACING));
+    for (let i = 0; i < count; i++) {
+      const [from, to] = [lower - ((lower - upper) * i) / count, lower - ((lower - upper) * (i + 1)) / count];
+      const shade = Math.round((from / halfAngle) * 37) % 3;
+      add(group, "path", { d: ring(from, to, inner, outer), class: `stone shade-${shade}` });
+    }
+    return group;
+  }
+
+  /** Hinges as dots at the edge that stays closed, sliding joints as bars across. */
+  function mark(group, { angle, kind }, inner, outer, pixel) {
+    if (kind === "out" || kind === "in") {
+      const d = pathOf([at(angle, inner), at(angle, outer)]);
+      add(group, "path", { d, class: "slide" });
+      add(group, "path", { d, class: "slide-core" });
+    } else if (kind !== "parts") {
+      const [cx, cy] = at(angle, kind === "extrados" ? outer : inner);
+      add(group, "circle", { cx, cy, r: 5 * pixel, class: "hinge" });
+    }
+  }
+
+  function forces(lines, { halfAngle, eta, mu, weight, balance }) {
+    if (!balance) return;
+    const { thrust, crownMoment } = balance;
+    const level = theory.levelOf(eta, weight);
+    const shown = (line) => {
+      const points = [];
+      for (let i = -SAMPLES; i <= SAMPLES; i++) {
+        const angle = (halfAngle * i) / SAMPLES;
+        // An overturning arch has no thrust: at its crown the lines have no place.
+        if (theory.normalForce(Math.abs(angle), thrust) < FORCELESS) continue;
+        const place = Math.min(OUTSIDE, Math.max(-OUTSIDE, line(Math.abs(angle))));
+        points.push(at(angle, 1 - (place * eta) / 2));
+      }
+      return pathOf(points);
+    };
+    add(lines, "path", { d: shown((a) => theory.frictionLine(a, thrust, mu)), class: "friction" });
+    add(lines, "path", { d: shown((a) => theory.thrustLine(a, thrust, crownMoment, eta, level)), class: "thrust" });
+  }
+
+  return { draw };
+})();

@@ -1,0 +1,120 @@
+"""Rows of a `validate` run, read from its validate.json."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from blocksim.arch import WEIGHTS, is_number
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+
+LARGEST_FILE = 20_000_000
+"""Bytes: some 20,000 rows."""
+WRITTEN = "validate.json as `blocksim validate` writes it"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """A simulated arch on the map, as the page takes it.
+
+    Parameters
+    ----------
+    scenario, engine : str
+    weight : str
+    alpha : float
+        Half-angle [deg].
+    mu : float or None
+        None where friction is unbounded.
+    voussoirs : int
+    eta : float
+        Centre of the bracket; 2 where nothing stands.
+    nothing_stands : bool
+        No thickness up to 2 does.
+    mode : str or None
+        As observed.
+    miss : str
+        What disagrees with limit analysis.
+    said : str
+        All of it in a few words.
+    """
+
+    scenario: str
+    engine: str
+    weight: str
+    alpha: float
+    mu: float | None
+    voussoirs: int
+    eta: float
+    nothing_stands: bool
+    mode: str | None
+    miss: str
+    said: str
+
+
+def read_results(path: Path) -> list[Result]:
+    """Read the results of a `validate` run.
+
+    Parameters
+    ----------
+    path : Path
+        A validate.json.
+
+    Returns
+    -------
+    list of Result
+        Of the rows that have a bracket.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, or no such results.
+    """
+    where = str(path)
+    if not path.is_file():
+        raise InputError("--results", where, f"an existing {WRITTEN}")
+    if path.stat().st_size > LARGEST_FILE:
+        raise InputError("--results", where, f"at most {LARGEST_FILE} bytes")
+    try:
+        rows = json.loads(path.read_bytes())["rows"]
+        found = [_result(row) for row in rows]
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError):
+        raise InputError("--results", where, WRITTEN) from None
+    return [result for result in found if result is not None]
+
+
+def _result(row: dict[str, Any]) -> Result | None:
+    """Check one row; None where it has no bracket."""
+    low, high = row["eta_low"], row["eta_high"]
+    if low is None:
+        return None
+    # Where nothing stands, the bracket ends at the thickest arch there is.
+    eta = low if high is None else (low + high) / 2
+    mu, alpha = float(row["mu"]), row["half_angle_deg"]
+    mode = None if row["mode_observed"] is None else Mode(row["mode_observed"]).value
+    sound = (
+        is_number(eta, 0, 2)
+        and is_number(alpha, 0, math.nextafter(180, 0))
+        and is_number(mu, 0, math.inf)
+        and is_number(row["voussoirs"], 2, 1000)
+        and row["weight"] in WEIGHTS
+    )
+    if not sound:
+        raise ValueError
+    shown = "none stands" if high is None else f"η {eta:.4g}"
+    return Result(
+        scenario=str(row["scenario"]),
+        engine=str(row["engine"]),
+        weight=row["weight"],
+        alpha=alpha,
+        mu=None if math.isinf(mu) else mu,
+        voussoirs=row["voussoirs"],
+        eta=eta,
+        nothing_stands=high is None,
+        mode=mode,
+        miss=str(row["miss"]),
+        said=f"{row['engine']}: {shown}, mode {mode or 'unnamed'}, n = {row['voussoirs']}",
+    )

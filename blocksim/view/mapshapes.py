@@ -1,0 +1,143 @@
+"""The mode map as shapes to draw: regions and the lines between them (Fig. 9)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from blocksim import theory
+from blocksim.arch import Weight
+from blocksim.assembly import Array
+from blocksim.modes import Mode
+from blocksim.theory import Curve, Landmark, regions
+from blocksim.theory.critical import ETA_MAX, rotational_thrust
+from blocksim.theory.equations import inner_friction
+from blocksim.theory.map import divide_friction, iso_half_angle, special_angles
+
+SMALLEST_MU, LARGEST_MU = 0.002, 4.0
+POINTS = 160
+"""Points on each line."""
+ISO_DEGREES = (60, 90, 110, 125, 135, 142.5, 145, 149.2, 155, 159)
+"""Half-angles of which lines are drawn: those of the paper."""
+ISO_POINTS = 1200
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Region:
+    """What one mode rules, between two thickness ratios at every friction.
+
+    Parameters
+    ----------
+    mode : Mode
+    mu, bottom, top : (k,) float
+    """
+
+    mode: Mode
+    mu: Array
+    bottom: Array
+    top: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MapShapes:
+    """The map up to `LARGEST_MU` and eta = 2.
+
+    Parameters
+    ----------
+    regions : tuple of Region
+        Of the six modes at finite friction.
+    divide, first, equal, crown : Curve
+        The lines between them, as `regions` of the theory names them.
+    landmarks : dict of str to Landmark
+    """
+
+    regions: tuple[Region, ...]
+    divide: Curve
+    first: Curve
+    equal: Curve
+    crown: Curve
+    landmarks: dict[str, Landmark]
+
+
+def map_shapes(weight: Weight = "centreline") -> MapShapes:
+    """Sample the map's regions and lines from their equations."""
+    marks = theory.landmarks(weight)
+    corners = [marks[name].mu for name in "TSJ"]
+    mu = np.sort([*np.linspace(SMALLEST_MU, LARGEST_MU, 4 * POINTS), *corners])
+    before_border = np.linspace(SMALLEST_MU, marks["B"].mu, POINTS)
+    divide = regions.divide(np.sort([*before_border, *corners]), weight)
+    # Denser towards the wide arches, where friction runs off to infinity.
+    angles = _last_angle(weight) * (1 - np.linspace(0.95, 0.0, POINTS) ** 2)
+    first = regions.first_sliding(np.sort([*angles, marks["T"].half_angle]), weight)
+    right_of = {
+        name: np.linspace(marks[name].mu + 1e-6, LARGEST_MU, POINTS // 2) for name in "SJ"
+    }
+    equal = regions.equal_angles(right_of["S"], weight)
+    crown = regions.crown_hinge(right_of["J"], weight)
+
+    top = np.where(mu <= marks["B"].mu, np.interp(mu, divide.mu, divide.eta), 2.0)
+    low = np.minimum(np.interp(mu, first.mu, first.eta), top)
+    over = np.where(mu < marks["J"].mu, top, np.interp(mu, crown.mu, crown.eta))
+    over = np.minimum(over, top)
+    between = np.where(mu < marks["S"].mu, top, np.interp(mu, equal.mu, equal.eta))
+    between = np.minimum(between, over)
+    left, right = mu <= marks["T"].mu, mu >= marks["T"].mu
+    parts = (
+        (Mode.RRR, np.zeros_like(mu), low, mu > 0),
+        (Mode.SRR, low, top, left),
+        (Mode.RRS, low, between, right),
+        (Mode.RSR, between, over, right),
+        (Mode.RS, over, top, right),
+        (Mode.SS, top, np.full_like(mu, 2.0), mu > 0),
+    )
+    return MapShapes(
+        regions=tuple(
+            Region(mode=mode, mu=mu[where], bottom=bottom[where], top=ceiling[where])
+            for mode, bottom, ceiling, where in parts
+        ),
+        divide=divide,
+        first=first,
+        equal=equal,
+        crown=crown,
+        landmarks=marks,
+    )
+
+
+def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
+    """Line of equal half-angle, with its upright part on the divide.
+
+    Parameters
+    ----------
+    half_angle : float
+        From 0.01 to 3 [rad].
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    Curve
+        Empty where the half-angle stands at no friction on the map.
+    """
+    line = iso_half_angle(half_angle, np.linspace(0.02, LARGEST_MU, ISO_POINTS), weight)
+    if not line.mu.size:
+        return line
+    divide = divide_friction(half_angle)
+    foot, _ = regions.at_inner_sliding(divide, half_angle, weight)
+    if foot > ETA_MAX:
+        return line
+    # Sliding both ways, any thickness beyond is critical: the line goes on upwards.
+    return Curve(
+        mu=np.concatenate([[divide, divide], line.mu]),
+        eta=np.concatenate([[ETA_MAX, foot], line.eta]),
+    )
+
+
+def _last_angle(weight: Weight) -> float:
+    """Half-angle at which the line of first sliding leaves the map on the right [rad]."""
+
+    def beyond(half_angle: float) -> float:
+        return float(inner_friction(rotational_thrust(half_angle, weight))) - LARGEST_MU
+
+    widest = special_angles(weight).zero_thrust
+    return float(brentq(beyond, widest - 0.2, widest - 1e-4))

@@ -1,0 +1,191 @@
+"""The map explorer as a file: complete in itself, its data as computed, results as written."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+from blocksim.theory import least_thicknesses
+from blocksim.theory.map import at_points
+from blocksim.view.explorer import explorer_page, read_results
+from blocksim.view.mapshapes import LARGEST_MU, iso_line, map_shapes
+from blocksim.view.style import MODES
+
+ROW = {
+    "scenario": "semicircle",
+    "half_angle_deg": 90.0,
+    "engine": "pymunk",
+    "mu": 0.7,
+    "voussoirs": 27,
+    "weight": "centreline",
+    "eta_low": 0.1066,
+    "eta_high": 0.1068,
+    "mode_observed": "rrr",
+    "miss": "",
+}
+
+
+def embedded(page: str) -> dict:
+    script = r'<script type="application/json" id="data">(.*?)</script>'
+    found = re.search(script, page, re.DOTALL)
+    assert found
+    return json.loads(found[1])
+
+
+def written(folder: Path, *rows: dict) -> Path:
+    path = folder / "validate.json"
+    path.write_text(json.dumps({"rows": [{**ROW, **row} for row in rows]}), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    return explorer_page()
+
+
+def test_the_page_is_complete_in_itself(page: str) -> None:
+    assert not re.search(r'(src|href)="(?!data:)', page)
+    assert not re.search(r"@import|url\((?!#)|fetch\(|XMLHttpRequest|import\(", page)
+    # The one address is the name of SVG's elements, which nothing asks for.
+    assert set(re.findall(r"https?://[^\"'\s]*", page)) == {"http://www.w3.org/2000/svg"}
+    assert "default-src 'none'" in page
+    assert "{{" not in page
+    assert explorer_page() == page
+
+
+def test_modes_have_the_colours_of_every_figure(page: str) -> None:
+    modes = embedded(page)["modes"]
+    assert list(modes) == [mode.value for mode in Mode]
+    assert all(modes[mode]["colour"] == style.colour for mode, style in MODES.items())
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+def test_shapes_are_the_regions_of_theory(weight: str) -> None:
+    """In the middle of each region, between its sampled edges, theory names its mode."""
+    for part in map_shapes(weight).regions:
+        places = np.flatnonzero(part.top - part.bottom > 2e-3)[::20]
+        middle = (part.bottom[places] + part.top[places]) / 2
+        found = at_points(middle, part.mu[places], weight).regions
+        assert set(found) == {(part.mode,)}
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+def test_regions_cover_the_map_without_overlap(weight: str) -> None:
+    def area(part: object) -> float:
+        return float(np.trapezoid(part.top - part.bottom, part.mu))
+
+    shapes = map_shapes(weight)
+    assert all((part.top >= part.bottom).all() for part in shapes.regions)
+    assert sum(map(area, shapes.regions)) == pytest.approx(2 * LARGEST_MU, rel=2e-3)
+    # The line of first sliding leaves the map at its right edge.
+    assert shapes.first.mu[-1] == pytest.approx(LARGEST_MU, rel=1e-9)
+
+
+def test_iso_lines_are_critical_and_upright_on_the_divide() -> None:
+    line = iso_line(math.radians(125))
+    assert line.mu[0] == line.mu[1]
+    assert line.eta[0] == 2
+    exact = least_thicknesses(math.radians(125), line.mu[2:]).eta
+    np.testing.assert_allclose(line.eta[2:], exact, rtol=1e-12)
+    assert line.eta[1] > exact[0]
+    assert iso_line(math.radians(165)).mu.size == 0
+    # From where eta = 2 will do.
+    assert iso_line(math.radians(159)).eta[0] == pytest.approx(2, abs=5e-3)
+
+
+def test_results_as_validate_writes_them(tmp_path: Path) -> None:
+    rows = read_results(
+        written(
+            tmp_path,
+            {},
+            {"mu": "inf", "mode_observed": None, "miss": "mode unnamed"},
+            {"eta_low": 2.0, "eta_high": None},
+            {"eta_low": None},
+        )
+    )
+    assert [row.eta for row in rows] == [pytest.approx(0.1067), pytest.approx(0.1067), 2.0]
+    assert [row.mu for row in rows] == [0.7, None, 0.7]
+    assert [row.mode for row in rows] == ["rrr", None, "rrr"]
+    assert [row.nothing_stands for row in rows] == [False, False, True]
+    data = embedded(explorer_page(rows, "validate.json"))
+    assert len(data["results"]) == 3
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        {"eta_low": "thin"},
+        {"eta_low": 3.0, "eta_high": 3.0},
+        {"half_angle_deg": 190.0},
+        {"mu": -1.0},
+        {"mu": "nan"},
+        {"weight": "heavy"},
+        {"voussoirs": 2},
+        {"mode_observed": "sss"},
+    ],
+)
+def test_results_that_are_none_are_refused(row: dict, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="--results"):
+        read_results(written(tmp_path, row))
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"rows": [1]}', '{"rows": 1}', "[" * 5000])
+def test_files_that_are_no_results_are_refused(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "validate.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="--results"):
+        read_results(path)
+
+
+def test_names_from_elsewhere_are_text_never_markup(tmp_path: Path) -> None:
+    evil = "</script><script>alert(1)</script>"
+    page = explorer_page(read_results(written(tmp_path, {"scenario": evil})), evil)
+    assert evil not in page
+    assert embedded(page)["results"][0]["scenario"] == evil
+
+
+def blocksim(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "blocksim", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_the_command_writes_the_page_whole(tmp_path: Path) -> None:
+    out = tmp_path / "map.html"
+    results = written(tmp_path, {})
+    assert blocksim("map", "--out", str(out), "--results", str(results)).returncode == 0
+    assert out.read_text(encoding="utf-8") == explorer_page(read_results(results), str(results))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.html", "validate.json"]
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (("--out", "map.html", "--lines"), "--lines"),
+        (("--out", "map.html", "--zoom", "central"), "--zoom"),
+        (("--out", "map.html", "--results", "none.json"), "--results"),
+        (("--out", "map.png", "--results", "none.json"), "--results"),
+        (("--out", "map.htm"), "--out"),
+        (("--out", "none/map.html"), "--out"),
+    ],
+)
+def test_wrong_options_are_one_line(
+    options: tuple[str, ...], named: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = blocksim("map", *options)
+    assert done.returncode == 2
+    assert re.fullmatch(rf"blocksim: {named} [^\n]+\n", done.stderr)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,622 @@
+"""The map explorer in a real browser: its numbers, its mechanisms, what it does when used."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from blocksim import theory
+from blocksim.arch import centroid_factor
+from blocksim.limit.mechanism import least_thickness_by_program
+from blocksim.modes import Mode
+from blocksim.theory.lines import critical_moment, friction_line, thrust_line
+from blocksim.theory.map import at_points, divide_friction
+from blocksim.view.explorer import explorer_page, read_results
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+CHROMIUM = next((path for path in map(shutil.which, NAMES) if path), None)
+pytestmark = pytest.mark.skipif(
+    CHROMIUM is None, reason="no Chromium here (apt-get install chromium)"
+)
+
+WEIGHTS = ("centreline", "sector")
+COUNT = 1000
+TOLERANCE = 1e-9
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[playwright.Browser]:
+    with playwright.sync_playwright() as engine:
+        # Chromium's sandbox refuses to work for root.
+        arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
+        found = engine.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield found
+        found.close()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp("explorer")
+    row = {
+        "engine": "pymunk", "weight": "centreline", "voussoirs": 27, "mode_observed": "rrr",
+        "miss": "", "eta_low": 0.106, "eta_high": 0.107, "half_angle_deg": 90.0, "mu": 0.7,
+    }  # fmt: skip
+    rows = [
+        {**row, "scenario": "semicircle"},
+        {**row, "scenario": "unbounded", "mu": "inf", "mode_observed": None, "miss": "mode"},
+        {**row, "scenario": "sector", "weight": "sector", "half_angle_deg": 120.0,
+         "eta_low": 0.3, "eta_high": 0.31, "mu": 1.5},
+    ]  # fmt: skip
+    results = folder / "validate.json"
+    results.write_text(json.dumps({"rows": rows}), encoding="utf-8")
+    page = folder / "map.html"
+    page.write_text(explorer_page(read_results(results), "validate.json"), encoding="utf-8")
+    return page.as_uri()
+
+
+Open = Callable[..., playwright.Page]
+
+
+@pytest.fixture
+def open_page(browser: playwright.Browser, address: str) -> Iterator[Open]:
+    """Open the page in a window of its own; whatever it complains about fails the test."""
+    contexts, complaints = [], []
+
+    def open_it(width: int = 1280, height: int = 800, **options: object) -> playwright.Page:
+        context = browser.new_context(viewport={"width": width, "height": height}, **options)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: complaints.append(request.url))
+        page.goto(address)
+        return page
+
+    yield open_it
+    for context in contexts:
+        context.close()
+    assert [line for line in complaints if line not in {address, "data:,"}] == []
+
+
+@pytest.fixture
+def page(open_page: Open) -> playwright.Page:
+    return open_page()
+
+
+# --- the closed form ---------------------------------------------------------------------
+
+
+def sample(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Half-angle, friction (a tenth of it unbounded) and thickness of random arches."""
+    random = np.random.default_rng(seed)
+    alpha = random.uniform(0.02, 2.78, COUNT)
+    mu = np.tan(random.uniform(0.02, 1.45, COUNT))
+    mu[::10] = math.inf
+    return alpha, mu, random.uniform(0.001, 2.0, COUNT)
+
+
+CALL = """([rows, weight]) => rows.map(
+  (row) => {{ const [a, m, e] = row.map(Number); return {expression}; }})"""
+
+
+def evaluate(
+    page: playwright.Page, expression: str, rows: np.ndarray, weight: str
+) -> list[dict]:
+    """Evaluate an expression in a, m, e (and weight) for every row, in the page."""
+    texts = [["Infinity" if math.isinf(v) else repr(float(v)) for v in row] for row in rows]
+    return page.evaluate(CALL.format(expression=expression), [texts, weight])
+
+
+def column(found: list[dict], key: str) -> np.ndarray:
+    return np.array([math.nan if row[key] is None else row[key] for row in found], dtype=float)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_least_thickness_at_1000_points(page: playwright.Page, weight: str) -> None:
+    alpha, mu, eta = sample(1)
+    expected = theory.least_thicknesses(alpha, mu, weight)
+    rows = np.column_stack([alpha, mu, eta])
+    found = evaluate(page, "theory.leastThickness(a, m, weight)", rows, weight)
+    assert [row["mode"] for row in found] == expected.mode.tolist()
+    np.testing.assert_allclose(column(found, "eta"), expected.eta, rtol=TOLERANCE)
+    for key in ("thrust", "beta_r", "beta_s"):
+        script = key.replace("_r", "R").replace("_s", "S")
+        exact = getattr(expected, key)
+        np.testing.assert_allclose(column(found, script), exact, rtol=TOLERANCE, atol=TOLERANCE)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_points_of_the_map_at_1000_points(page: playwright.Page, weight: str) -> None:
+    _, mu, eta = sample(2)
+    expected = at_points(eta, mu, weight)
+    rows = np.column_stack([eta, mu, eta])
+    found = evaluate(page, "theory.atPoint(e, m, weight)", rows, weight)
+    modes = [[Mode(mode) for mode in row["modes"]] for row in found]
+    assert modes == [list(names) for names in expected.regions]
+    np.testing.assert_allclose(column(found, "halfAngle"), expected.half_angle, rtol=TOLERANCE)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_lines_of_thrust_and_friction(page: playwright.Page, weight: str) -> None:
+    """At a random joint of each arch at its least thickness."""
+    alpha, mu, share = sample(3)
+    rows = np.column_stack([alpha, mu, share / 2])
+    expression = """(() => {
+      const { eta, thrust, betaR } = theory.leastThickness(a, m, weight);
+      if (eta === null) return null;
+      // The line of thrust touches the intrados at the inner hinge.
+      const unforced = theory.sectionMoment(betaR, thrust, 0, eta, weight);
+      const moment = -theory.normalForce(betaR, thrust) * eta / 2 - unforced;
+      return [theory.thrustLine(a * e, thrust, moment, eta, weight),
+              theory.frictionLine(a * e, thrust, m)];
+    })()"""
+    found = evaluate(page, expression, rows, weight)
+    compared = 0
+    for (half_angle, friction, place), lines in zip(rows.tolist(), found, strict=True):
+        critical = theory.least_thickness(half_angle, friction, weight)
+        assert (lines is None) == (critical.eta is None)
+        # Flatter, the thickness drowns in the round-off of the lever arms.
+        if lines is None or half_angle < 0.3:
+            continue
+        moment = critical_moment(half_angle, critical, weight)
+        angle, thrust = half_angle * place, critical.thrust
+        expected = [
+            thrust_line(angle, thrust, moment, critical.eta, weight),
+            friction_line(angle, thrust, friction),
+        ]
+        assert lines == pytest.approx(expected, rel=1e-7, abs=1e-7)
+        compared += 1
+    assert compared > COUNT / 2
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_least_friction_is_the_divide(page: playwright.Page, weight: str) -> None:
+    alpha = np.linspace(0.4, 2.9, 40)
+    rows = np.column_stack([alpha, alpha, alpha])
+    found = evaluate(page, "theory.leastFriction(a, Infinity, weight)", rows, weight)
+    expected = [divide_friction(angle) for angle in alpha.tolist()]
+    np.testing.assert_allclose(found, expected, rtol=TOLERANCE)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_equilibrium_needs_the_share_it_says(page: playwright.Page, weight: str) -> None:
+    """The lines shown reach just that share of the faces; it is 1 where theory says so."""
+    alpha, mu, eta = sample(4)
+    alpha = 0.3 + alpha * 0.85
+    rows = np.column_stack([alpha, mu, eta])
+    found = evaluate(page, "theory.equilibrium(a, m, e, weight)", rows, weight)
+    least = theory.least_thicknesses(alpha, mu, weight).eta
+    for (half_angle, friction, ratio), critical, balance in zip(
+        rows.tolist(), least.tolist(), found, strict=True
+    ):
+        stands = ratio >= critical  # False for nan
+        assert stands == (balance is not None and balance["share"] <= 1)
+        if balance is None:
+            continue
+        angles = np.linspace(0, half_angle, 2001)
+        thrust, moment = balance["thrust"], balance["crownMoment"]
+        if thrust < 1e-6:  # without thrust the crown bears no force
+            angles = angles[1:]
+        pressure = thrust_line(angles, thrust, moment, ratio, weight)
+        shear = friction_line(angles, thrust, friction)
+        reached = max(np.abs(pressure).max(), np.abs(shear).max())
+        assert reached == pytest.approx(balance["share"], rel=2e-3)
+
+
+def test_share_against_limit_analysis(page: playwright.Page) -> None:
+    """Both scaled by 1 % less than the share, many voussoirs fall; by 1 % more they stand."""
+    alpha = np.array([1.0, 1.6, 2.2, 2.45, 2.55])
+    mu = np.array([0.6, 0.5, 0.95, 1.5, 2.2])
+    eta = np.array([0.2, 0.09, 0.9, 0.5, 1.2])
+    rows = np.column_stack([alpha, mu, eta])
+    found = evaluate(page, "theory.equilibrium(a, m, e, weight)", rows, "centreline")
+    for (half_angle, friction, ratio), balance in zip(rows.tolist(), found, strict=True):
+        for change, stands in ((0.99, False), (1.01, True)):
+            share = change * balance["share"]
+            built = least_thickness_by_program(half_angle, share * friction, 300)
+            assert (built is not None and built <= share * ratio) == stands
+
+
+# --- mechanisms ----------------------------------------------------------------------------
+
+MOVE = """(() => {
+  const point = theory.atPoint(e, m, weight);
+  const halfAngle = point.halfAngle * (1 - 1e-9);
+  const critical = theory.leastThickness(halfAngle, m, weight);
+  const { mode, eta, betaR, betaS } = critical;
+  const joints = mechanism.activeJoints(mode, halfAngle, betaR, betaS);
+  const far = mechanism.amountFor(joints, eta, 0.16);
+  return { halfAngle, ...critical, joints, pieces: mechanism.pieces(joints),
+    small: mechanism.pose(joints, eta, 1e-6), large: mechanism.pose(joints, eta, far) };
+})()"""
+
+
+def moved(motion: dict, points: np.ndarray) -> np.ndarray:
+    sine, cosine = math.sin(motion["turn"]), math.cos(motion["turn"])
+    turned = points @ np.array([[cosine, -sine], [sine, cosine]])
+    return turned + np.array([motion["x"], motion["y"]])
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_mechanisms_balance_weight_and_friction(page: playwright.Page, weight: str) -> None:
+    """Virtual power at the onset: what the weight does is what friction takes."""
+    _, mu, eta = sample(5)
+    rows = np.column_stack([eta, mu, eta])[:400]
+    rows[:40, 1], rows[:40, 2] = math.inf, np.linspace(1.02, 1.9, 40)  # overturning
+    rows[40:80, 1], rows[40:80, 2] = 1.8, np.linspace(0.9, 1.0, 40)  # rrs, rsr and rs
+    seen = set()
+    for row, friction in zip(evaluate(page, MOVE, rows, weight), rows[:, 1], strict=True):
+        seen.add(row["mode"])
+        assert min(row["small"]["amounts"]) >= 0
+        assert min(row["large"]["amounts"]) >= 0
+        assert row["large"]["closed"]
+        lever, power, drop = centroid_factor(row["eta"], weight), 0.0, 0.0
+        for (lower, upper), motion in zip(row["pieces"], row["small"]["motions"], strict=True):
+            nodes, weights = np.polynomial.legendre.leggauss(20)
+            angles = (lower + upper) / 2 + (lower - upper) / 2 * nodes
+            points = lever * np.column_stack([np.sin(angles), np.cos(angles)])
+            fall = points[:, 1] - moved(motion, points)[:, 1]
+            power += (lower - upper) / 2 * weights @ fall
+            drop = max(drop, float(np.abs(fall).max()))
+        active = [joint for joint in row["joints"] if joint["angle"] > 0]
+        for joint, amount in zip(active, row["small"]["amounts"], strict=True):
+            if joint["kind"] in {"in", "out"}:
+                angle, thrust = joint["angle"], row["thrust"]
+                force = thrust * math.cos(angle) + angle * math.sin(angle)
+                power -= friction * force * amount
+        assert abs(power) < 2e-5 * drop
+    assert seen >= {"rrr", "srr", "rrs", "rs", "r"}
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_large_motions_keep_the_pieces_together(page: playwright.Page, weight: str) -> None:
+    """Hinges stay at their edges, faces that slide stay in line, the halves meet."""
+    _, mu, eta = sample(6)
+    rows = np.column_stack([eta, mu, eta])[:200]
+    for row in evaluate(page, MOVE, rows, weight):
+        motions = [{"turn": 0, "x": 0, "y": 0}, *row["large"]["motions"]]
+        active = [joint for joint in row["joints"] if joint["angle"] > 0]
+        for joint, below, above in zip(active, motions, motions[1:], strict=False):
+            ray = np.array([math.sin(joint["angle"]), math.cos(joint["angle"])])
+            if joint["kind"] in {"extrados", "intrados"}:
+                side = 1 if joint["kind"] == "extrados" else -1
+                edge = (1 + side * row["eta"] / 2) * ray[None]
+                np.testing.assert_allclose(moved(below, edge), moved(above, edge), atol=1e-12)
+            else:
+                face = np.array([0.8, 1.2])[:, None] * ray
+                along, slid = moved(below, face), moved(above, face)
+                across = np.array([along[1, 1] - along[0, 1], along[0, 0] - along[1, 0]])
+                assert np.abs((slid - along[0]) @ across).max() < 1e-12
+        if row["mode"] != "r":
+            radius = 1 - row["eta"] / 2 if row["mode"] == "rs" else 1 + row["eta"] / 2
+            crown = moved(motions[-1], np.array([[0.0, radius]]))
+            assert abs(crown[0, 0]) < 1e-11
+
+
+# --- the page in use ------------------------------------------------------------------------
+
+
+def text(page: playwright.Page, name: str) -> str:
+    return page.locator(name).inner_text()
+
+
+def settle(page: playwright.Page) -> None:
+    """Wait until what was done is drawn."""
+    page.evaluate(
+        "() => new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))"
+    )
+
+
+def set_arch(page: playwright.Page, **values: float) -> None:
+    for name, value in values.items():
+        page.fill(f"#{name}-number", str(value))
+    settle(page)
+
+
+def place(page: playwright.Page, mu: float, eta: float) -> tuple[float, float]:
+    """Where on the screen a point of the map is, from the positions of its ticks."""
+    ticks = page.evaluate(
+        """() => [...document.querySelectorAll("#map .tick-label")].map((label) => {
+          const box = label.getBoundingClientRect();
+          return [label.textContent, label.classList.contains("end"),
+                  box.x + box.width / 2, box.y + box.height / 2]; })"""
+    )
+    across = {name: x for name, side, x, _ in ticks if not side}
+    up = {name: y for name, side, _, y in ticks if side}
+    x = across["∞"] if math.isinf(mu) else np.interp(mu, [0, 4], [across["0"], across["4"]])
+    return float(x), float(np.interp(eta, [0, 2], [up["0"], up["2"]]))
+
+
+def test_loads_at_once(page: playwright.Page) -> None:
+    """The fastest of three: others may be at work on the machine."""
+    times = []
+    for _ in range(3):
+        page.reload()
+        entry = page.evaluate("performance.getEntriesByType('navigation')[0].toJSON()")
+        times.append(entry["loadEventEnd"])
+    assert 0 < min(times) < 2000
+    assert page.title().startswith("Does the arch stand?")
+    assert text(page, "#verdict") == "Just stands: this is the least thickness"
+
+
+def test_sliders_tell_at_once_whether_it_stands_and_why(page: playwright.Page) -> None:
+    set_arch(page, alpha=90, mu=0.7, eta=0.12)
+    least = theory.least_thickness(math.pi / 2, 0.7)
+    assert text(page, "#verdict") == "Stands: thickness 12 % above the least"
+    assert float(text(page, "#figure-eta")) == pytest.approx(least.eta, rel=1e-5)
+    assert float(text(page, "#figure-h")) == pytest.approx(least.thrust, rel=1e-5)
+    assert text(page, "#figure-r") == f"{math.degrees(least.beta_r):.2f}°"
+    page.locator("#eta").focus()
+    for _ in range(25):
+        page.keyboard.press("ArrowLeft")
+    settle(page)
+    assert text(page, "#verdict") == "Collapses: thickness 12 % below the least"
+    assert "mode rrr, purely rotational" in text(page, "#because")
+    set_arch(page, mu=0.3)
+    assert text(page, "#verdict") == "Collapses: too little friction for any thickness"
+    assert "nothing stands below μ = 0.3092" in text(page, "#because")
+    page.check("#unbounded")
+    page.click("#least")
+    settle(page)
+    assert text(page, "#verdict") == "Just stands: this is the least thickness"
+    set_arch(page, alpha=165, eta=2)
+    assert text(page, "#verdict") == "Collapses: no thickness up to η = 2 will do"
+
+
+@pytest.mark.parametrize(
+    ("mu", "eta", "mode"),
+    [(2.0, 0.3, "rrr"), (0.6, 0.3, "srr"), (2.5, 0.85, "rrs"), (3.0, 1.4, "rs"),
+     (1.0, 1.5, "ss"), (math.inf, 1.4, "r"), (1.79, 0.963, "rsr")],
+)  # fmt: skip
+def test_hovering_and_clicking_the_map(
+    page: playwright.Page, mu: float, eta: float, mode: str
+) -> None:
+    page.mouse.move(*place(page, mu, eta))
+    tip = text(page, "#tip")
+    if mode != "rsr":  # a region of a few pixels
+        assert f"\n{mode} " in tip
+    assert re.match(r"η [\d.]+  μ ([\d.]+|∞)\n. [\d.]+°  h [\d.e-]+\n", tip)
+    page.mouse.click(*place(page, mu, eta))
+    settle(page)
+    assert text(page, "#verdict").startswith("Just stands")
+    chosen = float(page.input_value("#eta-number"))
+    assert chosen == pytest.approx(eta, abs=0.01)
+    if mode != "rsr":
+        assert text(page, "#figure-mode").split()[0] == mode
+    half_angle = float(page.input_value("#alpha-number"))
+    friction = math.inf if math.isinf(mu) else float(page.input_value("#mu-number"))
+    expected = math.degrees(float(at_points(chosen, friction).half_angle))
+    assert half_angle == pytest.approx(expected, abs=0.05)
+
+
+def test_dragging_looks_at_one_arch_after_another(page: playwright.Page) -> None:
+    page.mouse.move(*place(page, 0.6, 0.2))
+    page.mouse.down()
+    seen = set()
+    for eta in (0.4, 0.6, 0.8):
+        page.mouse.move(*place(page, 2.5, eta), steps=4)
+        settle(page)
+        seen.add(page.input_value("#alpha-number"))
+    page.mouse.up()
+    assert len(seen) == 3
+    page.mouse.move(*place(page, 1.0, 1.0))
+    settle(page)
+    assert page.input_value("#alpha-number") in seen
+
+
+def test_the_mechanism_moves_until_paused(page: playwright.Page) -> None:
+    poses = """() => [...document.querySelectorAll("#arch .stone")].map(
+      (stone) => stone.parentNode.getAttribute("transform")).join()"""
+    first = page.evaluate(poses)
+    page.wait_for_function(f"(first) => ({poses})() !== first", arg=first)
+    page.click("#play")
+    assert text(page, "#play") == "Play"
+    paused = page.evaluate(poses)
+    page.wait_for_timeout(200)
+    assert page.evaluate(poses) == paused
+    # An arch that stands does not move.
+    set_arch(page, eta=0.6)
+    assert page.locator("#play").is_disabled()
+
+
+def test_who_prefers_it_still_gets_it_still(open_page: Open) -> None:
+    page = open_page(reduced_motion="reduce")
+    assert text(page, "#play") == "Play"
+    before = page.locator("#arch").inner_html()
+    page.wait_for_timeout(200)
+    assert page.locator("#arch").inner_html() == before
+
+
+def test_the_map_by_keyboard(page: playwright.Page) -> None:
+    page.locator("#map").focus()
+    page.keyboard.press("Shift+ArrowUp")
+    page.keyboard.press("ArrowRight")
+    settle(page)
+    assert float(page.input_value("#eta-number")) == pytest.approx(0.4)
+    assert float(page.input_value("#mu-number")) == pytest.approx(1.22)
+    for _ in range(14):
+        page.keyboard.press("Shift+ArrowRight")
+    settle(page)
+    assert page.is_checked("#unbounded")
+
+
+def test_never_says_nonsense(page: playwright.Page) -> None:
+    """Anywhere in the ranges, both weights: no error, no NaN, and the verdict of theory."""
+    random = np.random.default_rng(7)
+    weight, mu = "centreline", 1.2
+    for index in range(80):
+        if index == 40:
+            weight = "sector"
+            page.select_option("#weight", weight)
+        if index % 40 == 35:
+            page.check("#unbounded")
+            mu = math.inf
+        elif index == 40:
+            page.uncheck("#unbounded")
+        if index % 40 < 35:
+            mu = float(f"{10 ** random.uniform(-3, 3):.4g}")
+            page.fill("#mu-number", str(mu))
+        alpha = float(f"{random.uniform(1, 178):.4g}")
+        eta = float(f"{10 ** random.uniform(-6, 0.3):.4g}")
+        page.fill("#alpha-number", str(alpha))
+        page.fill("#eta-number", str(eta))
+        settle(page)
+        everything = page.inner_text(".arch-pane") + page.inner_html("#arch")
+        assert not re.search(r"NaN|undefined|Infinity|null", everything), (alpha, mu, eta)
+        least = theory.least_thickness(math.radians(alpha), mu, weight).eta
+        stands = least is not None and eta >= least
+        assert text(page, "#verdict").startswith("Stands" if stands else "Collapses")
+
+
+def test_a_finger_takes_hold_of_the_point_or_scrolls(open_page: Open) -> None:
+    page = open_page(375, 812, has_touch=True, is_mobile=True)
+    fingers = page.context.new_cdp_session(page)
+
+    def swipe(start: tuple[float, float], end: tuple[float, float]) -> None:
+        for kind, share in (("touchStart", 0), ("touchMove", 0.4), ("touchMove", 1)):
+            x, y = (a + share * (b - a) for a, b in zip(start, end, strict=True))
+            touch = {"type": kind, "touchPoints": [{"x": x, "y": y}]}
+            fingers.send("Input.dispatchTouchEvent", touch)
+        fingers.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        settle(page)
+
+    swipe(place(page, 1.2, 0.3), place(page, 2.5, 0.7))
+    assert float(page.input_value("#eta-number")) == pytest.approx(0.7, abs=0.02)
+    assert float(page.input_value("#mu-number")) == pytest.approx(2.5, abs=0.05)
+    held = page.input_value("#eta-number")
+    swipe(place(page, 1.0, 0.5), place(page, 1.0, 1.5))
+    assert page.input_value("#eta-number") == held
+
+
+@pytest.mark.parametrize(("view", "mu", "eta"), [("middle", 1.9, 0.967), ("thin", 0.5, 0.02)])
+def test_parts_of_the_map_seen_closer(
+    page: playwright.Page, view: str, mu: float, eta: float
+) -> None:
+    page.select_option("#view", view)
+    box = page.locator("#map .frame").first.bounding_box()
+    (least, most), (low, high) = {
+        "middle": ((1.2, 2.4), (0.6, 1.2)),
+        "thin": ((0, 1), (0, 0.25)),
+    }[view]
+    page.mouse.click(
+        box["x"] + box["width"] * (mu - least) / (most - least),
+        box["y"] + box["height"] * (high - eta) / (high - low),
+    )
+    settle(page)
+    assert float(page.input_value("#mu-number")) == pytest.approx(mu, abs=0.005)
+    assert float(page.input_value("#eta-number")) == pytest.approx(eta, abs=0.002)
+    assert text(page, "#figure-mode").split()[0] == {"middle": "rsr", "thin": "rrr"}[view]
+
+
+def test_results_are_shown_and_chosen(page: playwright.Page) -> None:
+    drawn = page.locator("#map .marker")
+    assert drawn.count() == 2
+    assert page.locator("#map .miss").count() == 1
+    page.mouse.move(*place(page, 0.7, 0.1065))
+    assert "semicircle" in text(page, "#tip")
+    assert "mode rrr, n = 27" in text(page, "#tip")
+    page.mouse.click(*place(page, 0.7, 0.1065))
+    settle(page)
+    assert page.input_value("#alpha-number") == "90"
+    assert text(page, "#verdict") == "Collapses: thickness 0.86 % below the least"
+    borders = """() => [...document.querySelectorAll("#map .landmark")]
+      .map((landmark) => landmark.getAttribute("cx"))"""
+    centreline = page.evaluate(borders)
+    page.get_by_role("button", name="sector").click()
+    settle(page)
+    assert page.input_value("#weight") == "sector"
+    assert page.evaluate(borders) != centreline
+    assert drawn.count() == 1
+    assert page.input_value("#alpha-number") == "120"
+
+
+CONTRASTS = """() => {
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  const rgb = (colour) => {
+    context.clearRect(0, 0, 1, 1);
+    context.fillStyle = colour;
+    context.fillRect(0, 0, 1, 1);
+    return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3);
+  };
+  const linear = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  const light = (colour) => rgb(colour)
+    .reduce((sum, v, i) => sum + linear(v / 255) * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = (element) => {
+    for (let e = element; e; e = e.parentElement) {
+      const colour = getComputedStyle(e).backgroundColor;
+      if (colour !== "rgba(0, 0, 0, 0)") return colour;
+    }
+  };
+  const found = [];
+  for (const element of document.querySelectorAll("body *:not(script)")) {
+    const words = [...element.childNodes].filter((n) => n.nodeType === 3 && n.data.trim());
+    if (!words.length || element.disabled || !element.getClientRects().length) continue;
+    const style = getComputedStyle(element);
+    const drawn = element.namespaceURI.endsWith("svg");
+    // Names of regions have a rim of the region's colour.
+    const rim = drawn && style.paintOrder.startsWith("stroke");
+    const ground = light(rim ? style.stroke : behind(element));
+    const ink = light(drawn ? style.fill : style.color);
+    const ratio = (Math.max(ink, ground) + 0.05) / (Math.min(ink, ground) + 0.05);
+    found.push([ratio, element.textContent.trim().slice(0, 30)]);
+  }
+  return found.sort((a, b) => a[0] - b[0]).slice(0, 3);
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_texts_have_contrast(open_page: Open, scheme: str) -> None:
+    """4.5 to 1 for every text of the page (WCAG AA)."""
+    page = open_page(color_scheme=scheme)
+    set_arch(page, eta=0.28)
+    lowest = page.evaluate(CONTRASTS)
+    assert lowest[0][0] >= 4.5, lowest
+
+
+def test_controls_and_pictures_have_names(page: playwright.Page) -> None:
+    nameless = page.evaluate(
+        """() => [...document.querySelectorAll("input, select, button, svg:not([aria-hidden])")]
+          .filter((e) => !(e.labels?.length || e.ariaLabel || e.textContent.trim()))
+          .map((e) => e.outerHTML)"""
+    )
+    assert nameless == []
+    assert page.get_attribute("html", "lang") == "en"
+    assert "turns about its intrados" in page.get_attribute("#arch", "aria-label")
+
+
+@pytest.mark.parametrize("width", [320, 375, 768, 1280])
+def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None:
+    page = open_page(width, 812, has_touch=width < 800)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    target = place(page, 2.0, 0.5)
+    page.locator("#map").scroll_into_view_if_needed()
+    if width < 800:
+        page.touchscreen.tap(*target)
+    else:
+        page.mouse.click(*target)
+    settle(page)
+    assert float(page.input_value("#eta-number")) == pytest.approx(0.5, abs=0.01)
+    assert text(page, "#verdict").startswith("Just stands")
+    shot = tmp_path / "page.png"
+    page.screenshot(path=shot, full_page=True)
+    assert shot.stat().st_size > 20_000
+
+
+def test_prints_on_paper(page: playwright.Page) -> None:
+    page.emulate_media(media="print", color_scheme="dark")
+    assert (
+        page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    )
+    assert not page.locator("#alpha").is_visible()
+    assert page.locator("#arch .stone").first.is_visible()
+    assert page.pdf(format="A4").startswith(b"%PDF")
