@@ -2,19 +2,27 @@
 
 For x, the mean accelerations over the step, and p, the contact forces,
 
-    M (x - f) = H^T p,    0 <= p_n  _|_  n >= 0,    |p_t| <= mu p_n, against the slip t,
+    M (x - f) = N^T p_n + T^T p_t,    0 <= p_n  _|_  n >= 0,    |p_t| <= mu p_n, against t,
 
 where n = n0 + N x and t = t0 + T x are the normal and tangential velocities at the end of
-the step over its length. Each pass keeps n >= mu (|t| - s) with a given slip s: for s = 0
-the associated problem, whose friction dilates, for s = |t| Coulomb's. A pass is a
-strictly convex quadratic programme. The method of multipliers turns it into a few
-piecewise quadratic minimisations without constraints, and Newton's method with an exact
-line search ends each of them after finitely many steps, from anywhere. Only neighbours
-touch, so all matrices are banded and a step costs as much as the number of blocks.
+the step over its length. Only neighbours touch, so all matrices are banded and a step costs
+as much as the number of blocks.
 
-The slip is part of the unknowns where a contact slides: Newton's method then sees s = |t|
-itself (no longer symmetric, banded all the same). Where that fails to converge, s is
-replaced by the slip of the last pass, again and again.
+The method of multipliers makes the contacts springs of stiffness k with a preload, the
+forces found last: p_n = max(0, q_n - k n) and p_t = q_t - k t, cut to the friction cone.
+What remains is a continuous, piecewise linear system in x, and the springs' forces become
+those of rigid contact within a few rounds, however soft the springs are.
+
+- Newton's method solves it as a rule, and may run in circles: friction makes the system
+  unsymmetric, and no function tells progress from regress.
+- Then the path on which the imbalance shrinks in proportion is followed from piece to piece
+  (Katzenelson; Lemke's method is of this kind). Contact and friction take energy at
+  large velocities, so the system has degree 1: a path cannot escape, and it ends at a
+  solution. It may turn back on the way where a piece reverses orientation, as sliding with
+  much friction does.
+- From nothing, the associated problem, whose friction dilates, is solved first. It is a
+  strictly convex quadratic programme, and Newton's method with an exact line search ends it
+  from anywhere. Where nothing slides, its solution is the one sought.
 """
 
 from __future__ import annotations
@@ -29,13 +37,13 @@ from blocksim.assembly import Array
 from blocksim.contact.banded import Bands, line_search
 
 COLD = 1e8
-"""Weight of the constraints to start with when nothing is known."""
+"""Stiffness to start with when nothing is known."""
 SOFT, STIFF = 1e3, 1e9
-"""Least and largest weight of the constraints."""
+"""Least and largest stiffness."""
 STIFFNESS = 1e4
-"""Weight of the constraints times accelerations, limited by round-off."""
+"""Stiffness times accelerations, limited by round-off."""
 BALANCE = 1e-11
-"""Forces out of balance at which a minimisation ends, in mean weights."""
+"""Forces out of balance at which a system counts as solved, in mean weights."""
 STIFFER = 1e3
 """Largest factor on the stiffness where progress is slow."""
 ROUND_OFF = 1e-14
@@ -46,14 +54,18 @@ CLOSED = 1e-16
 """Violation of a constraint that is round-off, with accelerations of 1 [g]."""
 STEEPEST = 3.0
 """Edges of friction cones steeper than that are not scaled to length 1: normals would fade."""
-MOST_NEWTON = 100
-MOST_SLIDING_NEWTON = 8
-MOST_OUTER = 30
-MOST_PASSES = 100
-PLAIN = 5
-"""Every so many passes the slip found is taken as it is, lest guesses go round."""
-SLIDING = 1e-6
-"""Share of the largest slip from which a contact counts as sliding."""
+MOST_ASSOCIATED = 100
+"""Newton steps; for friction as it is, `MOST_NEWTON`, before the path is followed."""
+MOST_NEWTON = 10
+MOST_ROUNDS = 40
+MOST_PIECES = 3000
+"""Pieces of a path before another is tried."""
+STARTS = (1e-6, 1e-3, 1e-1, 1.0)
+"""Where paths start, off the state known by random parts of the accelerations: paths from a
+symmetric state would meet several bends at once."""
+
+OPEN, STICKS, SLIDES_UP, SLIDES_DOWN = range(4)
+"""What a contact does: one piece of its law each."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,21 +75,22 @@ class Solution:
     Parameters
     ----------
     acceleration : (blocks, 3) float
-    multipliers : (joints, 4) float
-        Forces along the edges of the friction cones, where to start the next step from.
+    pressure, friction : (joints, 2) float
+        Contact forces along normal and tangent [mean weights].
     residual : float
         Worst of force imbalance (mean weights), penetration rate and complementarity.
     iterations : int
         Banded systems solved.
-    passes : int
-        Of the slip.
+    paths : int
+        Systems for which a path was followed.
     """
 
     acceleration: Array
-    multipliers: Array
+    pressure: Array
+    friction: Array
     residual: float
     iterations: int
-    passes: int
+    paths: int
 
 
 class ContactProblem:
@@ -149,72 +162,24 @@ class _Step:
         precision: float,
     ) -> None:
         self._bands, self._root, self._mu = problem.bands, problem.root, problem.mu
-        self._normal, self._tangent = normal * problem.scale, tangent * problem.scale
-        self._norm = min(math.sqrt(1 + self._mu**2), STEEPEST)
-        self._friction = self._mu / self._norm
-        slope = self._friction * self._tangent
-        self._slope = np.concatenate([slope, slope], axis=1)
-        upright = self._normal / self._norm
-        self._edges = np.concatenate([upright + slope, upright - slope], axis=1)
-        rate, lean = normal_rate / self._norm, self._friction * slip_rate
-        self._offset = np.concatenate([rate + lean, rate - lean], axis=1)
-        self._normal_rate, self._slip_rate = normal_rate, slip_rate
+        rows = np.concatenate([normal, tangent], axis=1)
+        self._rows = rows * problem.scale
+        self._rates = np.concatenate([normal_rate, slip_rate], axis=1)
         self._free = (free * self._root).ravel()
-        self._iterations = 0
         self._precision = precision
+        self._iterations = self._paths = 0
 
     def solve(self, start: Solution | None) -> Solution:
-        """Pass after pass until the slip assumed is the slip found."""
-        joints = len(self._offset)
+        """Round after round until contacts are rigid; forces hold normal ones, then friction."""
         if start is None:
-            x, forces = np.zeros_like(self._free), np.zeros((joints, 4))
+            x, forces = self._associated()
         else:
             x = (start.acceleration * self._root).ravel()
-            forces = start.multipliers
-        slip = np.zeros((joints, 2))
-        passes = 0
-        while passes < MOST_PASSES:
-            found = np.abs(self._slip(x))
-            pressed = (forces[:, :2] + forces[:, 2:]) > 0
-            largest = float(found[pressed].max(initial=0.0))
-            change = float(np.abs(found - slip)[pressed].max(initial=0.0))
-            if passes and change <= max(10 * self._precision, 1e-11 * largest):
-                break
-            follow, newton = pressed, None
-            if passes or start is not None:
-                slip = np.where(pressed, found, slip)
-                follow = found > SLIDING * largest
-                newton = self._sliding(x, forces, slip, follow)
-                if newton is None and passes % PLAIN:
-                    slip = self._guess(x, forces, slip, follow)
-            if newton is None:
-                x, forces = self._multipliers(
-                    x, forces, slip, cold=start is None and not passes
-                )
-            else:
-                x, forces = newton
-                slip = np.where(follow, np.abs(self._slip(x)), slip)
-            passes += 1
-        return Solution(
-            acceleration=x.reshape(-1, 3) / self._root,
-            multipliers=forces,
-            residual=self._residual(x, forces),
-            iterations=self._iterations,
-            passes=passes,
-        )
-
-    def _slip(self, x: Array) -> Array:
-        return self._slip_rate + self._bands.along(self._tangent, x)
-
-    def _multipliers(
-        self, x: Array, forces: Array, slip: Array, *, cold: bool
-    ) -> tuple[Array, Array]:
-        """Solve a pass by the method of multipliers, ever stiffer as it comes to rest."""
-        widened = self._friction * np.concatenate([slip, slip], axis=1)
-        stiffness = COLD if cold else self._stiffness(x)
+            forces = np.concatenate([start.pressure, start.friction], axis=1)
         stiffer, last = 1.0, math.inf
-        for _ in range(MOST_OUTER):
-            x, found = self._minimise(x, forces, self._offset + widened, stiffness)
+        for _ in range(MOST_ROUNDS):
+            stiffness = stiffer * self._stiffness(x)
+            x, found = self._balance(x, forces, stiffness)
             violation = np.abs(found - forces).max() / stiffness
             forces = found
             if violation <= self._least_violation(x):
@@ -222,25 +187,159 @@ class _Step:
             # Slow progress asks for stiffness, at the cost of digits.
             stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
             last = violation
-            stiffness = stiffer * self._stiffness(x)
-        return x, forces
+        return Solution(
+            acceleration=x.reshape(-1, 3) / self._root,
+            pressure=forces[:, :2],
+            friction=forces[:, 2:],
+            residual=self._residual(x, forces),
+            iterations=self._iterations,
+            paths=self._paths,
+        )
 
     def _least_violation(self, x: Array) -> float:
         size = float(np.abs(x).max())
         return max(self._precision * max(1.0, size), 10 * ROUND_OFF * size)
 
     def _stiffness(self, x: Array) -> float:
-        steep = max(1.0, self._friction)
+        steep = max(1.0, self._mu / STEEPEST)
         return float(np.clip(STIFFNESS / steep / max(np.abs(x).max(), 1e-9), SOFT, STIFF))
 
-    def _minimise(
-        self, x: Array, forces: Array, offset: Array, stiffness: float
-    ) -> tuple[Array, Array]:
-        """Minimise |x - f|^2 / 2 + stiffness/2 |max(0, forces/stiffness - rate)|^2."""
-        edges = self._edges
-        trial = forces - stiffness * (offset + self._bands.along(edges, x))
+    def _balanced(self, size: float, last: float, x: Array, stiffness: float) -> bool:
+        """Whether an imbalance is as small as it gets."""
+        noise = ROUND_OFF * stiffness * float(np.abs(x).max())
+        stalled = STALLED * max(1.0, self._mu / STEEPEST) * noise
+        return size <= max(BALANCE, noise) or last / 2 <= size <= stalled
+
+    def _balance(self, x: Array, forces: Array, stiffness: float) -> tuple[Array, Array]:
+        """Find the accelerations whose contact springs, preloaded by forces, balance."""
+        best = self._newton(x, forces, stiffness)
+        if best is None:
+            self._paths += 1
+            rng = np.random.default_rng(0)
+            size = float(np.abs(x).max())
+            for part in STARTS:
+                begin = x + part * size * rng.standard_normal(len(x))
+                end = self._path(begin, forces, stiffness)
+                if end is not None:
+                    best = self._newton(end, forces, stiffness)
+                    if best is not None:
+                        break
+        if best is None:
+            best = x
+        return best, self._cut(self._trial(best, forces, stiffness))[0]
+
+    def _trial(self, x: Array, forces: Array, stiffness: float) -> Array:
+        """Forces of the springs before friction and opening cut them."""
+        return forces - stiffness * (self._rates + self._bands.along(self._rows, x))
+
+    def _cut(self, trial: Array) -> tuple[Array, NDArray[np.int64]]:
+        """Forces that contacts can carry, and what the contacts do."""
+        normal, along = trial[:, :2], trial[:, 2:]
+        most = self._mu * np.maximum(normal, 0.0)
+        piece = np.where(np.abs(along) <= most, STICKS, np.where(along > 0, SLIDES_UP, SLIDES_DOWN))
+        piece = np.where(normal > 0, piece, OPEN)
+        cut = np.concatenate([np.maximum(normal, 0.0), np.clip(along, -most, most)], axis=1)
+        return cut, piece
+
+    def _newton(self, x: Array, forces: Array, stiffness: float) -> Array | None:
+        """Newton's method; None if it does not end soon."""
         size = math.inf
         for _ in range(MOST_NEWTON):
+            held, piece = self._cut(self._trial(x, forces, stiffness))
+            gradient = x - self._free - self._bands.pull(self._rows, held)
+            size, last = float(np.abs(gradient).max()), size
+            if self._balanced(size, last, x, stiffness):
+                return x
+            x = x + self._way(piece, stiffness, -gradient)
+        return None
+
+    def _way(self, piece: NDArray[np.int64], stiffness: float, right: Array) -> Array:
+        """Accelerations that change the imbalance by `right` where contacts stay what they are."""
+        lean = self._mu * LEAN[piece][:, :, None]
+        along = self._rows[:, 2:]
+        rows = np.concatenate([self._rows[:, :2] + lean * along, along], axis=1)
+        weight = stiffness * np.concatenate([piece != OPEN, piece == STICKS], axis=1)
+        self._iterations += 1
+        return self._bands.solve(rows, weight, self._rows, right)
+
+    def _path(self, x: Array, forces: Array, stiffness: float) -> Array | None:
+        """Follow the shrinking imbalance from piece to piece; None if that does not end."""
+        trial = self._trial(x, forces, stiffness)
+        held, piece = self._cut(trial)
+        imbalance = x - self._free - self._bands.pull(self._rows, held)
+        mu, done, sign = self._mu, 0.0, 1.0
+        # Per piece: the two functions of normal and tangential trial that are positive on it.
+        first = np.array([(-1.0, 0.0), (mu, -1.0), (1.0, 0.0), (1.0, 0.0)])
+        second = np.array([(0.0, 0.0), (mu, 1.0), (-mu, 1.0), (-mu, -1.0)])
+        way = self._way(piece, stiffness, -imbalance)
+        crossed = None
+        for _ in range(MOST_PIECES):
+            turn = -stiffness * sign * self._bands.along(self._rows, way)
+            edges = np.stack([first[piece], second[piece]])
+            value = edges[..., 0] * trial[:, :2] + edges[..., 1] * trial[:, 2:]
+            slope = edges[..., 0] * turn[:, :2] + edges[..., 1] * turn[:, 2:]
+            falls = slope < 0
+            if crossed is not None:
+                falls[crossed] = False
+            ahead = np.full(value.shape, math.inf)
+            ahead[falls] = np.maximum(value[falls], 0.0) / -slope[falls]
+            where = np.unravel_index(int(ahead.argmin()), ahead.shape)
+            length = float(ahead[where])
+            if sign > 0 and done + length >= 1:
+                return x + (1 - done) * way
+            if not math.isfinite(length):
+                return None
+            x, trial, done = x + length * sign * way, trial + length * turn, done + sign * length
+            which, joint, end = (int(i) for i in where)
+            gone = edges[which, joint, end]
+            old = int(piece[joint, end])
+            new = self._beyond(old, which, float(trial[joint, 2 + end]))
+            piece[joint, end] = new
+            way = self._way(piece, stiffness, -imbalance)
+            drift = -stiffness * self._bands.along(self._rows, way)[joint]
+            rate = gone[0] * drift[end] + gone[1] * drift[2 + end]
+            sign = -1.0 if rate > 0 else 1.0
+            back = 0 if (new == OPEN or (old == OPEN)) else (1 if new != STICKS else (0 if old == SLIDES_UP else 1))
+            crossed = (back, joint, end)
+        return None
+
+    @staticmethod
+    def _beyond(old: int, which: int, along: float) -> int:
+        if old == OPEN:
+            return SLIDES_UP if along > 0 else SLIDES_DOWN
+        if old == STICKS:
+            return SLIDES_UP if which == 0 else SLIDES_DOWN
+        return OPEN if which == 0 else STICKS
+
+    def _associated(self) -> tuple[Array, Array]:
+        """Solve the problem whose friction dilates, from nothing."""
+        norm = min(math.sqrt(1 + self._mu**2), STEEPEST)
+        lean = self._mu / norm
+        upright, along = self._rows[:, :2] / norm, lean * self._rows[:, 2:]
+        edges = np.concatenate([upright + along, upright - along], axis=1)
+        rate, slip = self._rates[:, :2] / norm, lean * self._rates[:, 2:]
+        offset = np.concatenate([rate + slip, rate - slip], axis=1)
+        x, forces = np.zeros_like(self._free), np.zeros_like(offset)
+        stiffness, stiffer, last = COLD, 1.0, math.inf
+        for _ in range(MOST_ROUNDS):
+            x, found = self._minimise(x, forces, edges, offset, stiffness)
+            violation = np.abs(found - forces).max() / stiffness
+            forces = found
+            if violation <= self._least_violation(x):
+                break
+            stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
+            last = violation
+            stiffness = stiffer * self._stiffness(x)
+        plus, minus = forces[:, :2], forces[:, 2:]
+        return x, np.concatenate([(plus + minus) / norm, (plus - minus) * lean], axis=1)
+
+    def _minimise(
+        self, x: Array, forces: Array, edges: Array, offset: Array, stiffness: float
+    ) -> tuple[Array, Array]:
+        """Minimise |x - f|^2 / 2 + stiffness/2 |max(0, forces/stiffness - rate)|^2."""
+        trial = forces - stiffness * (offset + self._bands.along(edges, x))
+        size = math.inf
+        for _ in range(MOST_ASSOCIATED):
             gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
             size, last = float(np.abs(gradient).max()), size
             if self._balanced(size, last, x, stiffness):
@@ -255,70 +354,18 @@ class _Step:
             trial = forces - stiffness * (offset + self._bands.along(edges, x))
         return x, np.maximum(trial, 0.0)
 
-    def _balanced(self, size: float, last: float, x: Array, stiffness: float) -> bool:
-        """Whether a gradient is as small as it gets."""
-        noise = ROUND_OFF * stiffness * float(np.abs(x).max())
-        stalled = STALLED * max(1.0, self._friction) * noise
-        return size <= max(BALANCE, noise) or last / 2 <= size <= stalled
-
-    def _sliding(
-        self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]
-    ) -> tuple[Array, Array] | None:
-        """Newton's method with the slip of sliding contacts as an unknown; None if it fails."""
-        edges = self._edges
-        stiffer, last = 1.0, math.inf
-        for _ in range(MOST_OUTER):
-            stiffness = stiffer * self._stiffness(x)
-            size = math.inf
-            for _ in range(MOST_SLIDING_NEWTON):
-                found = self._slip(x)
-                widened = self._friction * np.where(follow, np.abs(found), slip)
-                rate = self._offset + np.tile(widened, 2) + self._bands.along(edges, x)
-                trial = forces - stiffness * rate
-                gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
-                size, last = float(np.abs(gradient).max()), size
-                if self._balanced(size, last, x, stiffness):
-                    break
-                x = x + self._way(gradient, stiffness * (trial > 0), np.sign(found) * follow)
-            else:
-                return None
-            found = np.maximum(trial, 0.0)
-            violation = np.abs(found - forces).max() / stiffness
-            forces = found
-            if violation <= self._least_violation(x):
-                return x, forces
-            stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
-            last = violation
-        return None
-
-    def _guess(self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]) -> Array:
-        """Slip at which assumed and found agree if no contact changes what it does."""
-        stiffness = self._stiffness(x)
-        found = self._slip(x)
-        widened = self._friction * np.where(follow, np.abs(found), slip)
-        rate = self._offset + np.tile(widened, 2) + self._bands.along(self._edges, x)
-        active = forces > 0
-        held = np.where(active, forces - stiffness * rate, 0.0)
-        gradient = x - self._free - self._bands.pull(self._edges, held)
-        ahead = self._slip(x + self._way(gradient, stiffness * active, np.sign(found) * follow))
-        kept = follow & (ahead * found > 0)
-        return np.where(kept, np.abs(ahead), slip)
-
-    def _way(self, gradient: Array, weight: ArrayLike, sign: Array) -> Array:
-        """Newton step where contacts with a sign slide that way, the slip being unknown."""
-        seen = self._edges + np.tile(sign, 2)[:, :, None] * self._slope
-        self._iterations += 1
-        return self._bands.solve(self._edges, weight, seen, -gradient)
-
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
-        imbalance = np.abs(x - self._free - self._bands.pull(self._edges, forces)).max()
-        plus, minus = forces[:, :2], forces[:, 2:]
-        pressure, friction = (plus + minus) / self._norm, (plus - minus) * self._friction
-        rate = self._normal_rate + self._bands.along(self._normal, x)
-        slip = self._slip(x)
-        unilateral = np.abs(np.minimum(pressure, rate)).max()
+        imbalance = np.abs(x - self._free - self._bands.pull(self._rows, forces)).max()
+        rates = self._rates + self._bands.along(self._rows, x)
+        pressure, friction = forces[:, :2], forces[:, 2:]
+        slip = rates[:, 2:]
+        unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max()
         # Friction at the edge of the cone, against the slip, or no slip.
         against = self._mu * pressure + np.sign(slip) * friction
         coulomb = np.minimum(against, np.abs(slip)).max()
         return float(max(imbalance, unilateral, coulomb))
+
+
+LEAN = np.array([0.0, 0.0, 1.0, -1.0])
+"""Friction over mu times pressure, per piece where it is known."""
