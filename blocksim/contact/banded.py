@@ -1,10 +1,10 @@
-"""Sums over the joints of a chain of blocks, and the banded systems they form."""
+"""Sums over the joints of blocks, and the banded systems they form."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import LinAlgError, solve_banded, solveh_banded
+from scipy.linalg.lapack import dgbsv, dpbsv
 
 from blocksim.assembly import Array
 
@@ -12,7 +12,8 @@ from blocksim.assembly import Array
 class Bands:
     """Which unknowns each joint couples.
 
-    A system that cannot be solved gives nan, which no residual of a step survives.
+    A system that cannot be solved gives nan, which no residual of a step survives. LAPACK is
+    called without scipy's checks, which take as long as a system of 100 unknowns.
 
     Rows have shape (joints, k, 6): each is a velocity of a joint, from the six of its two
     blocks.
@@ -34,16 +35,21 @@ class Bands:
         row, column = np.broadcast_arrays(self._place[:, :, None], self._place[:, None, :])
         inside = (row < self.size) & (column < self.size)
         apart = row - column
-        self._width = int(np.abs(apart[inside]).max())
+        self._width = int(np.abs(apart[inside]).max(initial=0))
+        # Places in LAPACK's band storage, column after column.
         lower = inside & (apart >= 0)
         self._lower = np.flatnonzero(lower)
-        self._lower_at = (apart * self.size + column)[lower]
+        self._lower_at = (column * (self._width + 1) + apart)[lower]
         self._whole = np.flatnonzero(inside)
-        self._whole_at = ((self._width + apart) * self.size + column)[inside]
+        # The factors need as many rows again above the band.
+        self._rows = 3 * self._width + 1
+        self._whole_at = (column * self._rows + 2 * self._width + apart)[inside]
 
     def of_joints(self, values: Array) -> Array:
         """Return for each joint the six values of its blocks, 0 for the ground's."""
-        return np.append(values, 0.0)[self._place]
+        padded = np.zeros(self.size + 1)
+        padded[:-1] = values
+        return padded[self._place]
 
     def along(self, rows: Array, values: Array) -> Array:
         """Velocities along rows, shape (joints, k)."""
@@ -57,61 +63,24 @@ class Bands:
 
     def solve_symmetric(self, rows: Array, weight: ArrayLike, right: Array) -> Array:
         """Solve (1 + rows^T weight rows) x = right."""
-        weighted = rows.transpose(0, 2, 1) * np.asarray(weight)[:, None, :]
-        products = np.matmul(weighted, rows).ravel()
+        products = self._products(rows, weight, rows)[self._lower]
         count = self._width + 1
-        band = np.bincount(self._lower_at, products[self._lower], count * self.size)
-        band = band.reshape(count, self.size)
+        band = np.bincount(self._lower_at, products, count * self.size)
+        band = band.reshape(self.size, count).T
         band[0] += 1.0
-        try:
-            return solveh_banded(band, right, lower=True, check_finite=False)
-        except LinAlgError:
-            return np.full_like(right, np.nan)
+        _, x, failed = dpbsv(band, right, lower=1, overwrite_ab=1)
+        return x if failed == 0 else np.full_like(right, np.nan)
 
     def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
         """Solve (1 + rows^T weight seen) x = right."""
+        products = self._products(rows, weight, seen)[self._whole]
+        band = np.bincount(self._whole_at, products, self._rows * self.size)
+        band = band.reshape(self.size, self._rows).T
+        band[2 * self._width] += 1.0
+        _, _, x, failed = dgbsv(self._width, self._width, band, right, overwrite_ab=1)
+        return x if failed == 0 else np.full_like(right, np.nan)
+
+    @staticmethod
+    def _products(rows: Array, weight: ArrayLike, seen: Array) -> Array:
         weighted = rows.transpose(0, 2, 1) * np.asarray(weight)[:, None, :]
-        products = np.matmul(weighted, seen).ravel()
-        count = 2 * self._width + 1
-        band = np.bincount(self._whole_at, products[self._whole], count * self.size)
-        band = band.reshape(count, self.size)
-        band[self._width] += 1.0
-        try:
-            return solve_banded((self._width, self._width), band, right, check_finite=False)
-        except LinAlgError:
-            return np.full_like(right, np.nan)
-
-
-def line_search(
-    slope: float, curvature: float, trial: Array, turn: Array, stiffness: float
-) -> float:
-    """Step along a direction to the minimum of a convex, piecewise quadratic function.
-
-    Parameters
-    ----------
-    slope : float
-        Derivative at the start.
-    curvature : float
-        Second derivative without the constraints.
-    trial, turn : (joints, k) float
-        Forces of the constraints at the start, active where positive, and their change
-        over a step of length 1.
-    stiffness : float
-        An active constraint adds turn^2 / stiffness to the second derivative.
-    """
-    if not np.any((trial > 0) != (trial + turn > 0)):
-        return 1.0
-    moving = turn != 0
-    force, change = trial[moving], turn[moving]
-    weight = change * change / stiffness
-    active = (force > 0) | ((force == 0) & (change > 0))
-    where = -force / change
-    ahead = np.flatnonzero(where > 0)
-    order = ahead[np.argsort(where[ahead])]
-    bends = np.append(0.0, where[order])
-    curvatures = np.cumsum(
-        np.append(curvature + weight[active].sum(), np.sign(change[order]) * weight[order])
-    )
-    slopes = slope + np.append(0.0, np.cumsum(curvatures[:-1] * np.diff(bends)))
-    last = max(int(np.searchsorted(slopes, 0.0)) - 1, 0)
-    return float(bends[last] - slopes[last] / curvatures[last])
+        return np.matmul(weighted, seen).ravel()

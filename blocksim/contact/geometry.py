@@ -29,14 +29,13 @@ class Touch:
     ----------
     gap : (joints, 2) float
         At the inner and outer end, below 0 where blocks overlap.
-    normal, tangent : (joints, 2, 6) float
-        Velocities of `after` relative to `before` along the contact's normal and
-        tangent, from the velocities of both blocks.
+    rows : (joints, 4, 6) float
+        Velocities of `after` relative to `before` from those of both blocks, along the
+        normals of the two contacts, then along their tangents.
     """
 
     gap: Array
-    normal: Array
-    tangent: Array
+    rows: Array
 
 
 class Geometry:
@@ -98,6 +97,5 @@ class Geometry:
             parts = np.concatenate([both, turn], axis=-1) * self._signs * self._moves
             return np.concatenate([parts[:count], parts[count:]], axis=-1)
 
-        return Touch(
-            gap=np.where(lost, APART, gap), normal=rates(normal), tangent=rates(tangent)
-        )
+        rows = np.concatenate([rates(normal), rates(tangent)], axis=1)
+        return Touch(gap=np.where(lost, APART, gap), rows=rows)

@@ -81,24 +81,18 @@ class Blocks:
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002
         """Solve the contacts of a step from rest; the blocks stay."""
         touch = self._geometry.touch(self._poses)
-        closed = np.zeros_like(touch.gap)
-        return self._solve(touch, closed, closed, EXACT).acceleration
+        return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
         step = self._step
         for _ in range(steps):
             touch = self._geometry.touch(self._poses + step / 2 * self._velocities)
-            approach = self._rates(touch.normal)
-            gap = touch.gap - step / 2 * approach
+            rates = self._rates(touch.rows)
+            gap = touch.gap - step / 2 * rates[:, :2]
             self._penetration = max(self._penetration, -float(gap.min()))
-            opening = np.where(gap > CLOSED, gap, 0.0)
-            solution = self._solve(
-                touch,
-                approach / step + opening / step**2,
-                self._rates(touch.tangent) / step,
-                PRECISION,
-            )
+            rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
+            solution = self._solve(touch, rates / step, PRECISION)
             self._velocities = self._velocities + step * solution.acceleration
             self._poses = self._poses + step * self._velocities
 
@@ -134,17 +128,9 @@ class Blocks:
         padded = np.vstack([self._velocities, np.zeros(3)])
         return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
 
-    def _solve(
-        self, touch: Touch, normal_rate: Array, slip_rate: Array, precision: float
-    ) -> Solution:
+    def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
         solution = self._problem.solve(
-            touch.normal,
-            touch.tangent,
-            self._gravity,
-            normal_rate,
-            slip_rate,
-            self._solution,
-            precision,
+            touch.rows, rates, self._gravity, self._solution, precision
         )
         self._solution = solution
         # Unlike max, this keeps nan.
