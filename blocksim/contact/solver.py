@@ -44,6 +44,8 @@ MOST_NEWTON = 10
 """Newton steps before the path is followed."""
 MOST_PIECES = 1000
 """Pieces of a path before another is tried."""
+FARTHEST = 1e9
+"""Repetitions of a change of forces at once."""
 STARTS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0)
 """Where paths start, one after another: off the accelerations by random shares of them, lest
 a path meet several bends at once, as it would from a symmetric state."""
@@ -159,14 +161,16 @@ class _Step:
             # after an impact those of the last step say nothing.
             x = x + self._way(start.contacts, x, forces, springs.stiffness(x))
         contacts = np.zeros((len(forces), 2), dtype=np.int8)
+        preload = forces
         for _ in range(MOST_ROUNDS):
             stiffness = springs.stiffness(x)
-            x = self._balance(x, forces, stiffness, springs)
-            found, contacts = self._cut(self._trial(x, forces, stiffness))
-            change = float(np.abs(found - forces).max()) / stiffness
-            forces = found
-            if springs.rigid(x, change):
+            x = self._balance(x, preload, stiffness, springs)
+            forces, contacts = self._cut(self._trial(x, preload, stiffness))
+            change = forces - preload
+            if springs.rigid(x, float(np.abs(change).max()) / stiffness):
                 break
+            far = self._reach(forces, change) if springs.drifts else 0.0
+            preload = forces + far * change
         return Solution(
             acceleration=x.reshape(-1, 3) / self._root,
             forces=forces,
@@ -175,6 +179,18 @@ class _Step:
             iterations=self._iterations,
             paths=self._paths,
         )
+
+    def _reach(self, forces: Array, change: Array) -> float:
+        """How often a change can be repeated until a contact opens or slides.
+
+        Two contacts of a joint that stick although the blocks turn work against each other,
+        at equal accelerations, more from round to round, until one of them slides.
+        """
+        pressure, growth = forces[:, :2], change[:, :2]
+        room = np.stack([pressure] + [self._mu * pressure - s * forces[:, 2:] for s in (1, -1)])
+        loss = -np.stack([growth] + [self._mu * growth - s * change[:, 2:] for s in (1, -1)])
+        ahead = (loss > 0) & (room > loss)
+        return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
 
     def _balance(self, x: Array, forces: Array, stiffness: float, springs: Springs) -> Array:
         """Find the accelerations whose contact springs, preloaded by forces, balance."""
