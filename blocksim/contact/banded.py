@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg.lapack import dgbsv, dpbsv
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from blocksim.assembly import Array
 
@@ -29,10 +31,18 @@ class Bands:
         self, before: NDArray[np.int64], after: NDArray[np.int64], blocks: int
     ) -> None:
         self.size = 3 * blocks
-        pair = np.repeat(np.stack([before, after], axis=1), 3, axis=1)
-        # Entries of the ground go to one place past the end and are dropped.
-        self._place = np.where(pair < 0, self.size, 3 * pair + np.tile(np.arange(3), 2))
-        row, column = np.broadcast_arrays(self._place[:, :, None], self._place[:, None, :])
+        self._place = self._places(before, after)
+        self._order, place = None, self._place
+        inner = (before >= 0) & (after >= 0)
+        if np.abs(before - after)[inner].max(initial=0) > 1:
+            # Blocks that are no chain: numbered so that those that touch are near.
+            ones = np.ones(inner.sum())
+            graph = csr_array((ones, (before[inner], after[inner])), shape=(blocks, blocks))
+            order = reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
+            rank = np.append(np.argsort(order), -1)
+            self._order = (3 * order[:, None].astype(np.int64) + np.arange(3)).ravel()
+            place = self._places(rank[before], rank[after])
+        row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
         inside = (row < self.size) & (column < self.size)
         apart = row - column
         self._width = int(np.abs(apart[inside]).max(initial=0))
@@ -44,6 +54,11 @@ class Bands:
         # The factors need as many rows again above the band.
         self._rows = 3 * self._width + 1
         self._whole_at = (column * self._rows + 2 * self._width + apart)[inside]
+
+    def _places(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
+        pair = np.repeat(np.stack([before, after], axis=1), 3, axis=1)
+        return np.where(pair < 0, self.size, 3 * pair + np.tile(np.arange(3), 2))
 
     def of_joints(self, values: Array) -> Array:
         """Return for each joint the six values of its blocks, 0 for the ground's."""
@@ -68,8 +83,8 @@ class Bands:
         band = np.bincount(self._lower_at, products, count * self.size)
         band = band.reshape(self.size, count).T
         band[0] += 1.0
-        _, x, failed = dpbsv(band, right, lower=1, overwrite_ab=1)
-        return x if failed == 0 else np.full_like(right, np.nan)
+        _, x, failed = dpbsv(band, self._ordered(right), lower=1, overwrite_ab=1)
+        return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
 
     def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
         """Solve (1 + rows^T weight seen) x = right."""
@@ -77,8 +92,19 @@ class Bands:
         band = np.bincount(self._whole_at, products, self._rows * self.size)
         band = band.reshape(self.size, self._rows).T
         band[2 * self._width] += 1.0
-        _, _, x, failed = dgbsv(self._width, self._width, band, right, overwrite_ab=1)
-        return x if failed == 0 else np.full_like(right, np.nan)
+        width, right = self._width, self._ordered(right)
+        _, _, x, failed = dgbsv(width, width, band, right, overwrite_ab=1)
+        return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
+
+    def _ordered(self, values: Array) -> Array:
+        return values if self._order is None else values[self._order]
+
+    def _natural(self, values: Array) -> Array:
+        if self._order is None:
+            return values
+        natural = np.empty_like(values)
+        natural[self._order] = values
+        return natural
 
     @staticmethod
     def _products(rows: Array, weight: ArrayLike, seen: Array) -> Array:

@@ -2,9 +2,8 @@
 
 Each joint has two contacts, at its inner and its outer end. At either end the two corners
 lie side by side once the joint has slipped: the one that lies over the other block's face
-touches that face, whose normal it takes. Blocks that shared no joint when built pass
-through each other, and so do two that have lost each other: a contact ends where a corner
-leaves the face.
+touches that face, whose normal it takes. That ends where the faces no longer lie over each
+other or have turned far apart.
 """
 
 from __future__ import annotations
@@ -12,13 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.assembly import SUPPORT, Array, Assembly
 
 DEEPEST = 0.05
 """Overlap in joint lengths beyond which two faces no longer touch but have passed."""
-APART = 1e6
-"""Gap of a contact that is none [size]."""
+WIDEST = 0.5
+"""Cosine of the angle between two faces from which they no longer form a joint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +56,8 @@ class Geometry:
             :, None, None
         ]
 
-    def touch(self, poses: Array) -> Touch:
-        """Find the contacts.
+    def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
+        """Find the contacts, and which joints still are joints.
 
         Parameters
         ----------
@@ -66,7 +66,8 @@ class Geometry:
 
         Returns
         -------
-        Touch
+        touch : Touch
+        holds : (joints,) bool
         """
         count = len(self._lengths)
         placed = np.vstack([poses, np.zeros(3)])[self._sides]
@@ -87,7 +88,8 @@ class Geometry:
         normal = np.stack([tangent[:, :, 1], -tangent[:, :, 0]], axis=-1)
         gap = (apart * normal).sum(axis=-1)
         overlapping = self._lengths - np.maximum(along[:, 0], 0) + np.minimum(along[:, 1], 0)
-        lost = (overlapping <= 0)[:, None] | (gap < -DEEPEST * self._lengths[:, None])
+        holds = (overlapping > 0) & (gap.min(axis=1) > -DEEPEST * self._lengths)
+        holds &= (tangents[:count] * tangents[count:]).sum(axis=-1) > WIDEST
         point = np.where(after_over[:, :, None], second, first)
         arm = np.concatenate([point, point]) - placed[:, None, :2]
 
@@ -98,4 +100,4 @@ class Geometry:
             return np.concatenate([parts[:count], parts[count:]], axis=-1)
 
         rows = np.concatenate([rates(normal), rates(tangent)], axis=1)
-        return Touch(gap=np.where(lost, APART, gap), rows=rows)
+        return Touch(gap=gap, rows=rows), holds

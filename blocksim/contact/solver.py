@@ -28,7 +28,7 @@ those of rigid contact within a few rounds, however soft the springs are.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,6 +82,13 @@ class Solution:
     residual: float
     iterations: int
     paths: int
+
+    def carried(self, old: NDArray[np.int64], new: NDArray[np.int64]) -> Solution:
+        """Return the same for another list of joints; those not there before are open."""
+        forces, contacts = np.zeros((len(new), 4)), np.zeros((len(new), 2), dtype=np.int8)
+        _, was, now = np.intersect1d(old, new, assume_unique=True, return_indices=True)
+        forces[now], contacts[now] = self.forces[was], self.contacts[was]
+        return replace(self, forces=forces, contacts=contacts)
 
 
 class ContactProblem:

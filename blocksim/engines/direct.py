@@ -14,7 +14,7 @@ from importlib.metadata import version
 import numpy as np
 
 from blocksim.assembly import Array, Assembly
-from blocksim.contact import ContactProblem, Geometry, Solution, Touch
+from blocksim.contact import ContactProblem, Neighbours, Solution, Touch
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 
 STEP = 0.01
@@ -66,28 +66,28 @@ class Blocks:
         size = assembly.size
         self._mass = assembly.masses
         self._step = settings.step
-        self._geometry = Geometry(assembly)
-        self._problem = ContactProblem(
-            self._geometry.before, self._geometry.after, self._mass, min(mu, FRICTION_CAP)
-        )
+        self._mu = min(mu, FRICTION_CAP)
+        self._reach = assembly.reach / size
+        self._neighbours = Neighbours(assembly)
+        self._keys = self._neighbours.keys
+        self._problem = self._new_problem()
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
         self._velocities = np.zeros_like(self._poses)
         self._gravity = np.zeros_like(self._poses)
         self._gravity[:, 1] = -1.0
         self._solution: Solution | None = None
-        self._pairs = np.stack([self._geometry.before, self._geometry.after], axis=1)
         self._residual = self._penetration = 0.0
 
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002
         """Solve the contacts of a step from rest; the blocks stay."""
-        touch = self._geometry.touch(self._poses)
+        touch = self._touch(self._poses)
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
         step = self._step
         for _ in range(steps):
-            touch = self._geometry.touch(self._poses + step / 2 * self._velocities)
+            touch = self._touch(self._poses + step / 2 * self._velocities)
             rates = self._rates(touch.rows)
             gap = touch.gap - step / 2 * rates[:, :2]
             self._penetration = max(self._penetration, -float(gap.min()))
@@ -122,7 +122,25 @@ class Blocks:
     def start_from(self, other: Blocks) -> None:
         """Take poses, velocities and contact forces from the same blocks in another world."""
         self._poses, self._velocities = other._poses.copy(), other._velocities.copy()
-        self._solution = other._solution
+        self._solution = other._solution and other._solution.carried(other._keys, self._keys)
+
+    def _touch(self, poses: Array) -> Touch:
+        """Find the contacts; what is known of those that stay is kept."""
+        turning = np.abs(self._velocities[:, 2]) * self._reach
+        speed = float((np.hypot(*self._velocities[:, :2].T) + turning).max())
+        touch = self._neighbours.touch(poses, self._step * (speed + self._step))
+        keys = self._neighbours.keys
+        if not np.array_equal(keys, self._keys):
+            if self._solution is not None:
+                self._solution = self._solution.carried(self._keys, keys)
+            self._keys = keys
+            self._problem = self._new_problem()
+        return touch
+
+    def _new_problem(self) -> ContactProblem:
+        before, after = self._neighbours.before, self._neighbours.after
+        self._pairs = np.stack([before, after], axis=1)
+        return ContactProblem(before, after, self._mass, self._mu)
 
     def _rates(self, rows: Array) -> Array:
         padded = np.vstack([self._velocities, np.zeros(3)])
