@@ -42,14 +42,9 @@ EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
 MOST_NEWTON = 10
 """Newton steps before the path is followed."""
-MOST_PIECES = 1000
-"""Pieces of a path before another is tried."""
+MOST_PIECES = 20_000
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
-STARTS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0)
-"""Where paths start, one after another: off the accelerations by random shares of them, lest
-a path meet several bends at once, as it would from a symmetric state."""
-
 Contacts = NDArray[np.int8]
 """What each contact does, shape (joints, 2): one of the four pieces of its law."""
 OPEN, STICKS, SLIDES_UP, SLIDES_DOWN = range(4)
@@ -205,17 +200,8 @@ class _Step:
         if solved:
             return end
         self._paths += 1
-        rng = np.random.default_rng(0)
-        size = float(np.abs(x).max())
-        for share in STARTS:
-            begin = x + share * size * rng.standard_normal(len(x))
-            found = self._path(begin, forces, stiffness)
-            if found is None:
-                continue
-            solved, end = self._newton(found, forces, stiffness, springs)
-            if solved:
-                break
-        return end
+        found = self._path(forces, stiffness)
+        return self._newton(found, forces, stiffness, springs)[1]
 
     def _trial(self, x: Array, forces: Array, stiffness: float) -> Array:
         """Forces of the springs before friction and opening cut them."""
@@ -264,25 +250,30 @@ class _Step:
 
     def _solve(self, contacts: Contacts, stiffness: float, right: Array) -> Array:
         """Change of x that adds `right` to the imbalance if each contact does what is said."""
-        rows = self._rows.copy()
-        rows[:, :2] += (self._mu * LEAN[contacts])[:, :, None] * rows[:, 2:]
         weight = stiffness * np.concatenate([contacts != OPEN, contacts == STICKS], axis=1)
         self._iterations += 1
-        return self._bands.solve(rows, weight, self._rows, right)
+        return self._bands.solve(self._leaning(contacts), weight, self._rows, right)
 
-    def _path(self, x: Array, forces: Array, stiffness: float) -> Array | None:
-        """Follow the imbalance as it shrinks in proportion, from piece to piece.
+    def _leaning(self, contacts: Contacts) -> Array:
+        """Rows along which pressure acts: with its friction where a contact slides."""
+        rows = self._rows.copy()
+        rows[:, :2] += (self._mu * LEAN[contacts])[:, :, None] * rows[:, 2:]
+        return rows
 
-        On each piece x is linear in the share of the imbalance that is gone. Where a
-        contact comes to the edge of what it does, it changes over, and the share goes on
-        growing or turns back: whichever carries the contact across.
+    def _path(self, forces: Array, stiffness: float) -> Array:
+        """Let all contacts start apart and come together, from piece to piece.
 
-        Returns None if the path comes back to where it began, or has no end.
+        On each piece x is linear in how far they are kept apart. Where a contact comes to
+        the edge of what it does, it changes over, and they go on coming together or part
+        again for a while: whichever carries that contact across.
         """
+        x, mu, sign = self._free.copy(), self._mu, 1.0
+        # Each kept apart by another share, lest two change over at once, as by symmetry.
+        shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(forces), 2))
         trial = self._trial(x, forces, stiffness)
-        held, contacts = self._cut(trial)
-        imbalance = self._imbalance(x, held)
-        mu, gone, sign = self._mu, 0.0, 1.0
+        apart = float(np.maximum(trial[:, :2] / shares, 0.0).max()) / stiffness
+        trial[:, :2] -= stiffness * apart * shares
+        contacts = np.full((len(forces), 2), OPEN, dtype=np.int8)
         # Two functions of a contact's trial forces, positive while it does what it does.
         edges = np.array(
             [
@@ -290,33 +281,38 @@ class _Step:
                 [(0.0, 0.0), (mu, 1.0), (-mu, 1.0), (-mu, -1.0)],
             ]
         )
-        way = self._solve(contacts, stiffness, -imbalance)
+        way, turn = np.zeros_like(x), np.zeros_like(trial)
+        turn[:, :2] = stiffness * shares
         crossed: tuple[int, int, int] | None = None
         for _ in range(MOST_PIECES):
-            turn = -stiffness * sign * self._bands.along(self._rows, way)
             edge = edges[:, contacts]
             value = edge[..., 0] * trial[:, :2] + edge[..., 1] * trial[:, 2:]
-            slope = edge[..., 0] * turn[:, :2] + edge[..., 1] * turn[:, 2:]
+            slope = sign * (edge[..., 0] * turn[:, :2] + edge[..., 1] * turn[:, 2:])
             if crossed is not None:
                 slope[crossed] = 0.0
             lengths = np.full(value.shape, math.inf)
             np.divide(np.maximum(value, 0.0), -slope, out=lengths, where=slope < 0)
             which, joint, end = (int(i) for i in np.unravel_index(lengths.argmin(), value.shape))
             length = float(lengths[which, joint, end])
-            if sign > 0 and gone + length >= 1:
-                return x + (1 - gone) * way
-            x, trial, gone = x + length * sign * way, trial + length * turn, gone + sign * length
-            if not 0 <= gone < math.inf:
-                return None
+            if sign > 0 and length >= apart:
+                return x + apart * way
+            if not math.isfinite(length):
+                break
+            x, trial, apart = x + length * sign * way, trial + length * sign * turn, apart - sign * length
             left = edge[which, joint, end]
             old = int(contacts[joint, end])
             new = _beyond(old, which, float(trial[joint, 2 + end]))
             contacts[joint, end] = new
-            way = self._solve(contacts, stiffness, -imbalance)
-            onward = -self._bands.along(self._rows, way)[joint]
-            sign = 1.0 if left[0] * onward[end] + left[1] * onward[2 + end] < 0 else -1.0
+            pressed = np.zeros_like(trial)
+            pressed[:, :2] = stiffness * shares * (contacts != OPEN)
+            right = self._bands.pull(self._leaning(contacts), pressed)
+            way = self._solve(contacts, stiffness, right)
+            turn = -stiffness * self._bands.along(self._rows, way)
+            turn[:, :2] += stiffness * shares
+            onward = left[0] * turn[joint, end] + left[1] * turn[joint, 2 + end]
+            sign = 1.0 if onward < 0 else -1.0
             crossed = (_beyond_edge(old, new), joint, end)
-        return None
+        return x
 
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
