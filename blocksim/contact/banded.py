@@ -31,8 +31,8 @@ class Bands:
         self, before: NDArray[np.int64], after: NDArray[np.int64], blocks: int
     ) -> None:
         self.size = 3 * blocks
-        self._place = self._places(before, after)
-        self._order, place = None, self._place
+        self.place = self._places(before, after)
+        self._order, place = None, self.place
         inner = (before >= 0) & (after >= 0)
         if np.abs(before - after)[inner].max(initial=0) > 1:
             # Blocks that are no chain: numbered so that those that touch are near.
@@ -46,14 +46,14 @@ class Bands:
         inside = (row < self.size) & (column < self.size)
         apart = row - column
         self._width = int(np.abs(apart[inside]).max(initial=0))
-        # Places in LAPACK's band storage, column after column.
-        lower = inside & (apart >= 0)
-        self._lower = np.flatnonzero(lower)
-        self._lower_at = (column * (self._width + 1) + apart)[lower]
-        self._whole = np.flatnonzero(inside)
-        # The factors need as many rows again above the band.
-        self._rows = 3 * self._width + 1
-        self._whole_at = (column * self._rows + 2 * self._width + apart)[inside]
+        # Places in LAPACK's band storage, column after column, and one past its end. The
+        # factors of a general matrix need as many rows again above the band.
+        count = self._width + 1
+        lower = column * count + apart
+        self._lower = np.where(inside & (apart >= 0), lower, count * self.size).ravel()
+        self.rows = 3 * self._width + 1
+        whole = column * self.rows + 2 * self._width + apart
+        self.whole = np.where(inside, whole, self.rows * self.size).reshape(len(place), 36)
 
     def _places(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> NDArray[np.int64]:
         """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
@@ -64,7 +64,7 @@ class Bands:
         """Return for each joint the six values of its blocks, 0 for the ground's."""
         padded = np.zeros(self.size + 1)
         padded[:-1] = values
-        return padded[self._place]
+        return padded[self.place]
 
     def along(self, rows: Array, values: Array) -> Array:
         """Velocities along rows, shape (joints, k)."""
@@ -73,14 +73,14 @@ class Bands:
     def pull(self, rows: Array, forces: Array) -> Array:
         """Sum forces along rows, shape (joints, k), on the blocks."""
         parts = np.matmul(forces[:, None, :], rows).ravel()
-        sums = np.bincount(self._place.ravel(), parts, self.size + 1)
+        sums = np.bincount(self.place.ravel(), parts, self.size + 1)
         return sums[:-1].astype(np.float64, copy=False)
 
     def solve_symmetric(self, rows: Array, weight: ArrayLike, right: Array) -> Array:
         """Solve (1 + rows^T weight rows) x = right."""
-        products = self._products(rows, weight, rows)[self._lower]
         count = self._width + 1
-        band = np.bincount(self._lower_at, products, count * self.size)
+        products = self._products(rows, weight, rows)
+        band = np.bincount(self._lower, products, count * self.size + 1)[:-1]
         band = band.reshape(self.size, count).T
         band[0] += 1.0
         _, x, failed = dpbsv(band, self._ordered(right), lower=1, overwrite_ab=1)
@@ -88,11 +88,15 @@ class Bands:
 
     def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
         """Solve (1 + rows^T weight seen) x = right."""
-        products = self._products(rows, weight, seen)[self._whole]
-        band = np.bincount(self._whole_at, products, self._rows * self.size)
-        band = band.reshape(self.size, self._rows).T
-        band[2 * self._width] += 1.0
+        products = self._products(rows, weight, seen)
+        band = np.bincount(self.whole.ravel(), products, self.rows * self.size + 1)
+        return self.solve_band(band, right)
+
+    def solve_band(self, band: Array, right: Array) -> Array:
+        """Solve (1 + matrix) x = right, the matrix in LAPACK's storage, which is used up."""
         width, right = self._width, self._ordered(right)
+        band = band[:-1].reshape(self.size, self.rows).T
+        band[2 * width] += 1.0
         _, _, x, failed = dgbsv(width, width, band, right, overwrite_ab=1)
         return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
 
@@ -110,3 +114,26 @@ class Bands:
     def _products(rows: Array, weight: ArrayLike, seen: Array) -> Array:
         weighted = rows.transpose(0, 2, 1) * np.asarray(weight)[:, None, :]
         return np.matmul(weighted, seen).ravel()
+
+
+class System:
+    """A system (1 + matrix) x = right that changes joint by joint.
+
+    Parameters
+    ----------
+    bands : Bands
+    """
+
+    def __init__(self, bands: Bands) -> None:
+        self._bands = bands
+        self._band = np.zeros(bands.rows * bands.size + 1)
+        self._right = np.zeros(bands.size + 1)
+
+    def add(self, joint: int, matrix: Array, right: Array) -> None:
+        """Add a joint's matrix (6, 6) and right side (6,)."""
+        self._band[self._bands.whole[joint]] += matrix.ravel()
+        self._right[self._bands.place[joint]] += right
+
+    def solve(self) -> Array:
+        """Return x."""
+        return self._bands.solve_band(self._band.copy(), self._right[:-1])

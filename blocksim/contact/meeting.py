@@ -56,9 +56,7 @@ class Polygons:
         # Each pair once, the smaller index first.
         return met & (np.arange(len(low))[None] > np.arange(self.count)[:, None])
 
-    def touch(
-        self, poses: Array, before: NDArray[np.int64], after: NDArray[np.int64]
-    ) -> Touch:
+    def touch(self, poses: Array, before: NDArray[np.int64], after: NDArray[np.int64]) -> Touch:
         """Find two contacts for each pair, as `Geometry` does for each joint."""
         corners, normals = self._placed(poses)
         pairs = np.arange(len(before))

@@ -9,7 +9,6 @@ good; its blocks are then two like any others.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from blocksim.assembly import SUPPORT, Array, Assembly
 from blocksim.contact.geometry import Geometry, Touch

@@ -15,11 +15,8 @@ those of rigid contact within a few rounds, however soft the springs are.
 
 - Newton's method solves it as a rule, and may run in circles: friction makes the system
   unsymmetric, and no function tells progress from regress.
-- Then the path on which the imbalance shrinks in proportion is followed from piece to piece
-  (Katzenelson; Lemke's method is of this kind). Contact and friction take energy at
-  large velocities, so the system has degree 1: a path cannot escape, and it ends at a
-  solution. It may turn back on the way where a piece reverses orientation, as sliding with
-  much friction does.
+- Then a path is followed that begins with all contacts apart and cannot fail to arrive
+  (`path.py`).
 - From nothing, the associated problem, whose friction dilates, is solved first. It is a
   strictly convex quadratic programme, and Newton's method with an exact line search ends it
   from anywhere. Where nothing slides, its solution is the one sought.
@@ -36,20 +33,16 @@ from numpy.typing import NDArray
 from blocksim.assembly import Array
 from blocksim.contact.associated import associated
 from blocksim.contact.banded import Bands
+from blocksim.contact.law import LEAN, OPEN, STICKS, Contacts, cut, leaning
+from blocksim.contact.path import come_together
 from blocksim.contact.springs import MOST_ROUNDS, Springs
 
 EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
 MOST_NEWTON = 10
 """Newton steps before the path is followed."""
-MOST_PIECES = 20_000
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
-Contacts = NDArray[np.int8]
-"""What each contact does, shape (joints, 2): one of the four pieces of its law."""
-OPEN, STICKS, SLIDES_UP, SLIDES_DOWN = range(4)
-LEAN = np.array([0.0, 0.0, 1.0, -1.0])
-"""Friction over its largest, on each piece where that is known."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,7 +160,7 @@ class _Step:
         for _ in range(MOST_ROUNDS):
             stiffness = springs.stiffness(x)
             x = self._balance(x, preload, stiffness, springs)
-            forces, contacts = self._cut(self._trial(x, preload, stiffness))
+            forces, contacts = cut(self._glued(x, preload, stiffness), self._mu)
             change = forces - preload
             if springs.rigid(x, float(np.abs(change).max()) / stiffness):
                 break
@@ -183,7 +176,7 @@ class _Step:
         )
 
     def _reach(self, forces: Array, change: Array) -> float:
-        """How often a change can be repeated until a contact opens or slides.
+        """Return how often a change can be repeated until a contact opens or slides.
 
         Two contacts of a joint that stick although the blocks turn work against each other,
         at equal accelerations, more from round to round, until one of them slides.
@@ -194,38 +187,27 @@ class _Step:
         ahead = (loss > 0) & (room > loss)
         return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
 
-    def _balance(self, x: Array, forces: Array, stiffness: float, springs: Springs) -> Array:
-        """Find the accelerations whose contact springs, preloaded by forces, balance."""
-        solved, end = self._newton(x, forces, stiffness, springs)
+    def _balance(self, x: Array, preload: Array, stiffness: float, springs: Springs) -> Array:
+        """Find the accelerations whose contact springs balance."""
+        solved, end = self._newton(x, preload, stiffness, springs)
         if solved:
             return end
+        glued = self._glued(self._free, preload, stiffness)
+        end, pieces = come_together(
+            self._bands, self._rows, glued, self._free, self._mu, stiffness
+        )
+        self._iterations += pieces
         self._paths += 1
-        found = self._path(forces, stiffness)
-        return self._newton(found, forces, stiffness, springs)[1]
-
-    def _trial(self, x: Array, forces: Array, stiffness: float) -> Array:
-        """Forces of the springs before friction and opening cut them."""
-        return forces - stiffness * (self._rates + self._bands.along(self._rows, x))
-
-    def _cut(self, trial: Array) -> tuple[Array, Contacts]:
-        """Forces that contacts can carry, and what the contacts do."""
-        along = trial[:, 2:]
-        pressure = np.maximum(trial[:, :2], 0.0)
-        most = self._mu * pressure
-        friction = np.minimum(np.maximum(along, -most), most)
-        contacts = np.where(along > most, SLIDES_UP, STICKS)
-        contacts[along < -most] = SLIDES_DOWN
-        contacts[pressure == 0] = OPEN
-        return np.concatenate([pressure, friction], axis=1), contacts.astype(np.int8)
+        return self._newton(end, preload, stiffness, springs)[1]
 
     def _newton(
-        self, x: Array, forces: Array, stiffness: float, springs: Springs
+        self, x: Array, preload: Array, stiffness: float, springs: Springs
     ) -> tuple[bool, Array]:
         """Newton's method; whether it ended, and where."""
         size, seen = math.inf, set[bytes]()
         for _ in range(MOST_NEWTON):
-            held, contacts = self._cut(self._trial(x, forces, stiffness))
-            imbalance = self._imbalance(x, held)
+            forces, contacts = cut(self._glued(x, preload, stiffness), self._mu)
+            imbalance = self._imbalance(x, forces)
             size, last = float(np.abs(imbalance).max()), size
             if springs.balanced(size, last, x, stiffness):
                 return True, x
@@ -236,83 +218,28 @@ class _Step:
             x = x + self._solve(contacts, stiffness, -imbalance)
         return False, x
 
+    def _glued(self, x: Array, preload: Array, stiffness: float) -> Array:
+        """Return the springs' forces before opening and friction cut them."""
+        return preload - stiffness * (self._rates + self._bands.along(self._rows, x))
+
     def _imbalance(self, x: Array, forces: Array) -> Array:
         return x - self._free - self._bands.pull(self._rows, forces)
 
-    def _way(self, contacts: Contacts, x: Array, forces: Array, stiffness: float) -> Array:
-        """Change of x that balances the springs if each contact does what is said."""
-        trial = self._trial(x, forces, stiffness)
-        pressure = np.where(contacts != OPEN, trial[:, :2], 0.0)
+    def _way(self, contacts: Contacts, x: Array, preload: Array, stiffness: float) -> Array:
+        """Return the change of x that balances the springs if each contact does as said."""
+        glued = self._glued(x, preload, stiffness)
+        pressure = np.where(contacts != OPEN, glued[:, :2], 0.0)
         slides = self._mu * LEAN[contacts] * pressure
-        friction = np.where(contacts == STICKS, trial[:, 2:], slides)
+        friction = np.where(contacts == STICKS, glued[:, 2:], slides)
         imbalance = self._imbalance(x, np.concatenate([pressure, friction], axis=1))
         return self._solve(contacts, stiffness, -imbalance)
 
     def _solve(self, contacts: Contacts, stiffness: float, right: Array) -> Array:
-        """Change of x that adds `right` to the imbalance if each contact does what is said."""
-        weight = stiffness * np.concatenate([contacts != OPEN, contacts == STICKS], axis=1)
+        """Return the change of x that adds `right` to the imbalance, likewise."""
+        weight = stiffness * np.concatenate([contacts != OPEN, contacts == STICKS], axis=-1)
+        acting = leaning(self._rows, contacts, self._mu)
         self._iterations += 1
-        return self._bands.solve(self._leaning(contacts), weight, self._rows, right)
-
-    def _leaning(self, contacts: Contacts) -> Array:
-        """Rows along which pressure acts: with its friction where a contact slides."""
-        rows = self._rows.copy()
-        rows[:, :2] += (self._mu * LEAN[contacts])[:, :, None] * rows[:, 2:]
-        return rows
-
-    def _path(self, forces: Array, stiffness: float) -> Array:
-        """Let all contacts start apart and come together, from piece to piece.
-
-        On each piece x is linear in how far they are kept apart. Where a contact comes to
-        the edge of what it does, it changes over, and they go on coming together or part
-        again for a while: whichever carries that contact across.
-        """
-        x, mu, sign = self._free.copy(), self._mu, 1.0
-        # Each kept apart by another share, lest two change over at once, as by symmetry.
-        shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(forces), 2))
-        trial = self._trial(x, forces, stiffness)
-        apart = float(np.maximum(trial[:, :2] / shares, 0.0).max()) / stiffness
-        trial[:, :2] -= stiffness * apart * shares
-        contacts = np.full((len(forces), 2), OPEN, dtype=np.int8)
-        # Two functions of a contact's trial forces, positive while it does what it does.
-        edges = np.array(
-            [
-                [(-1.0, 0.0), (mu, -1.0), (1.0, 0.0), (1.0, 0.0)],
-                [(0.0, 0.0), (mu, 1.0), (-mu, 1.0), (-mu, -1.0)],
-            ]
-        )
-        way, turn = np.zeros_like(x), np.zeros_like(trial)
-        turn[:, :2] = stiffness * shares
-        crossed: tuple[int, int, int] | None = None
-        for _ in range(MOST_PIECES):
-            edge = edges[:, contacts]
-            value = edge[..., 0] * trial[:, :2] + edge[..., 1] * trial[:, 2:]
-            slope = sign * (edge[..., 0] * turn[:, :2] + edge[..., 1] * turn[:, 2:])
-            if crossed is not None:
-                slope[crossed] = 0.0
-            lengths = np.full(value.shape, math.inf)
-            np.divide(np.maximum(value, 0.0), -slope, out=lengths, where=slope < 0)
-            which, joint, end = (int(i) for i in np.unravel_index(lengths.argmin(), value.shape))
-            length = float(lengths[which, joint, end])
-            if sign > 0 and length >= apart:
-                return x + apart * way
-            if not math.isfinite(length):
-                break
-            x, trial, apart = x + length * sign * way, trial + length * sign * turn, apart - sign * length
-            left = edge[which, joint, end]
-            old = int(contacts[joint, end])
-            new = _beyond(old, which, float(trial[joint, 2 + end]))
-            contacts[joint, end] = new
-            pressed = np.zeros_like(trial)
-            pressed[:, :2] = stiffness * shares * (contacts != OPEN)
-            right = self._bands.pull(self._leaning(contacts), pressed)
-            way = self._solve(contacts, stiffness, right)
-            turn = -stiffness * self._bands.along(self._rows, way)
-            turn[:, :2] += stiffness * shares
-            onward = left[0] * turn[joint, end] + left[1] * turn[joint, 2 + end]
-            sign = 1.0 if onward < 0 else -1.0
-            crossed = (_beyond_edge(old, new), joint, end)
-        return x
+        return self._bands.solve(acting, weight, self._rows, right)
 
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
@@ -324,19 +251,3 @@ class _Step:
         against = self._mu * pressure + np.sign(slip) * friction
         coulomb = np.minimum(against, np.abs(slip)).max()
         return float(max(imbalance, unilateral, coulomb))
-
-
-def _beyond(old: int, which: int, along: float) -> int:
-    """What a contact does beyond one of the two edges of what it does."""
-    if old == OPEN:
-        return SLIDES_UP if along > 0 else SLIDES_DOWN
-    if old == STICKS:
-        return SLIDES_DOWN if which else SLIDES_UP
-    return STICKS if which else OPEN
-
-
-def _beyond_edge(old: int, new: int) -> int:
-    """Which of its edges leads back."""
-    if new == STICKS:
-        return 0 if old == SLIDES_UP else 1
-    return 1 if old == STICKS else 0
