@@ -88,12 +88,15 @@ class Bands:
 
     def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
         """Solve (1 + rows^T weight seen) x = right."""
+        return self.solve_band(self.band(rows, weight, seen), right)
+
+    def band(self, rows: Array, weight: ArrayLike, seen: Array) -> Array:
+        """Return rows^T weight seen in LAPACK's storage, and a place for what is dropped."""
         products = self._products(rows, weight, seen)
-        band = np.bincount(self.whole.ravel(), products, self.rows * self.size + 1)
-        return self.solve_band(band, right)
+        return np.bincount(self.whole.ravel(), products, self.rows * self.size + 1)
 
     def solve_band(self, band: Array, right: Array) -> Array:
-        """Solve (1 + matrix) x = right, the matrix in LAPACK's storage, which is used up."""
+        """Solve (1 + matrix) x = right, the matrix as from `band`; it is used up."""
         width, right = self._width, self._ordered(right)
         band = band[:-1].reshape(self.size, self.rows).T
         band[2 * width] += 1.0
@@ -122,12 +125,16 @@ class System:
     Parameters
     ----------
     bands : Bands
+    rows, weight, seen, right
+        As in `Bands.solve`, to begin with.
     """
 
-    def __init__(self, bands: Bands) -> None:
+    def __init__(
+        self, bands: Bands, rows: Array, weight: Array, seen: Array, right: Array
+    ) -> None:
         self._bands = bands
-        self._band = np.zeros(bands.rows * bands.size + 1)
-        self._right = np.zeros(bands.size + 1)
+        self._band = bands.band(rows, weight, seen)
+        self._right = np.append(right, 0.0)
 
     def add(self, joint: int, matrix: Array, right: Array) -> None:
         """Add a joint's matrix (6, 6) and right side (6,)."""

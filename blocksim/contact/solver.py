@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,7 @@ from blocksim.assembly import Array
 from blocksim.contact.associated import associated
 from blocksim.contact.banded import Bands
 from blocksim.contact.law import LEAN, OPEN, STICKS, Contacts, cut, leaning
-from blocksim.contact.path import come_together
+from blocksim.contact.path import Balance, come_together, shrink
 from blocksim.contact.springs import MOST_ROUNDS, Springs
 
 EXACT = 1e-16
@@ -189,33 +190,41 @@ class _Step:
 
     def _balance(self, x: Array, preload: Array, stiffness: float, springs: Springs) -> Array:
         """Find the accelerations whose contact springs balance."""
-        solved, end = self._newton(x, preload, stiffness, springs)
+        balance = Balance(
+            bands=self._bands,
+            rows=self._rows,
+            bare=preload - stiffness * self._rates,
+            free=self._free,
+            mu=self._mu,
+            stiffness=stiffness,
+        )
+        solved, end = self._newton(x, balance, springs)
         if solved:
             return end
-        glued = self._glued(self._free, preload, stiffness)
-        end, pieces = come_together(
-            self._bands, self._rows, glued, self._free, self._mu, stiffness
-        )
-        self._iterations += pieces
         self._paths += 1
-        return self._newton(end, preload, stiffness, springs)[1]
+        for path in (partial(shrink, balance, x), partial(come_together, balance)):
+            found, pieces = path()
+            self._iterations += pieces
+            if found is not None:
+                solved, end = self._newton(found, balance, springs)
+                if solved:
+                    break
+        return end
 
-    def _newton(
-        self, x: Array, preload: Array, stiffness: float, springs: Springs
-    ) -> tuple[bool, Array]:
+    def _newton(self, x: Array, balance: Balance, springs: Springs) -> tuple[bool, Array]:
         """Newton's method; whether it ended, and where."""
         size, seen = math.inf, set[bytes]()
         for _ in range(MOST_NEWTON):
-            forces, contacts = cut(self._glued(x, preload, stiffness), self._mu)
-            imbalance = self._imbalance(x, forces)
+            forces, contacts = cut(balance.glued(x), self._mu)
+            imbalance = balance.imbalance(x, forces)
             size, last = float(np.abs(imbalance).max()), size
-            if springs.balanced(size, last, x, stiffness):
+            if springs.balanced(size, last, x, balance.stiffness):
                 return True, x
+            way = self._solve(contacts, balance.stiffness, -imbalance)
             state = contacts.tobytes()
-            if state in seen and size > last / 2:
-                break
+            # In a circle: half way leads out of many.
+            x = x + way * (0.5 if state in seen else 1.0)
             seen.add(state)
-            x = x + self._solve(contacts, stiffness, -imbalance)
         return False, x
 
     def _glued(self, x: Array, preload: Array, stiffness: float) -> Array:
