@@ -17,8 +17,9 @@ from blocksim.assembly import SUPPORT, Array, Assembly
 
 DEEPEST = 0.05
 """Overlap in joint lengths beyond which two faces no longer touch but have passed."""
-WIDEST = 0.5
-"""Cosine of the angle between two faces from which they no longer form a joint."""
+WIDEST = 0.98
+"""Cosine of the angle between two faces from which they no longer form a joint: other faces
+of the blocks may then touch first."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,7 +58,8 @@ class Solution:
     contacts : (joints, 2) int
         What each contact does.
     residual : float
-        Worst of force imbalance (mean weights), penetration rate and complementarity.
+        Worst of force imbalance (mean weights), penetration rate and complementarity [g],
+        over the largest acceleration where that is above 1.
     iterations : int
         Banded systems solved.
     paths : int
@@ -163,7 +164,7 @@ class _Step:
             x = self._balance(x, preload, stiffness, springs)
             forces, contacts = cut(self._glued(x, preload, stiffness), self._mu)
             change = forces - preload
-            if springs.rigid(x, float(np.abs(change).max()) / stiffness):
+            if springs.rigid(x, float(np.abs(change).max(initial=0.0)) / stiffness):
                 break
             far = self._reach(forces, change) if springs.drifts else 0.0
             preload = forces + far * change
@@ -255,8 +256,8 @@ class _Step:
         imbalance = np.abs(self._imbalance(x, forces)).max()
         rates = self._rates + self._bands.along(self._rows, x)
         pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
-        unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max()
+        unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max(initial=0.0)
         # Friction at the edge of the cone, against the slip, or no slip.
         against = self._mu * pressure + np.sign(slip) * friction
-        coulomb = np.minimum(against, np.abs(slip)).max()
-        return float(max(imbalance, unilateral, coulomb))
+        coulomb = np.minimum(against, np.abs(slip)).max(initial=0.0)
+        return float(max(imbalance, unilateral, coulomb)) / max(1.0, float(np.abs(x).max()))

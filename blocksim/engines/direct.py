@@ -90,7 +90,7 @@ class Blocks:
             touch = self._touch(self._poses + step / 2 * self._velocities)
             rates = self._rates(touch.rows)
             gap = touch.gap - step / 2 * rates[:, :2]
-            self._penetration = max(self._penetration, -float(gap.min()))
+            self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
             rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
             solution = self._solve(touch, rates / step, PRECISION)
             self._velocities = self._velocities + step * solution.acceleration
