@@ -18,6 +18,8 @@ from blocksim.contact import ContactProblem, Neighbours, Solution, Touch
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 
 STEP = 0.01
+SLOW = 1e-4
+"""Way in a single long step of blocks that hardly move [size]."""
 STILL = 1e-11
 """Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
 REST = 1e-9
@@ -80,21 +82,27 @@ class Blocks:
 
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002
         """Solve the contacts of a step from rest; the blocks stay."""
-        touch = self._touch(self._poses)
+        touch = self._touch(self._poses, self._step)
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
     def advance(self, steps: int) -> None:
-        """Let the blocks move."""
-        step = self._step
-        for _ in range(steps):
-            touch = self._touch(self._poses + step / 2 * self._velocities)
-            rates = self._rates(touch.rows)
-            gap = touch.gap - step / 2 * rates[:, :2]
-            self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
-            rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
-            solution = self._solve(touch, rates / step, PRECISION)
-            self._velocities = self._velocities + step * solution.acceleration
-            self._poses = self._poses + step * self._velocities
+        """Let the blocks move; in a single long step while they hardly do."""
+        whole = steps * self._step
+        accelerations = 0.0 if self._solution is None else self._solution.acceleration
+        way = whole * np.abs(self._velocities) + whole**2 * np.abs(accelerations)
+        count = 1 if way.max() < SLOW else steps
+        for _ in range(count):
+            self._move(whole / count)
+
+    def _move(self, step: float) -> None:
+        touch = self._touch(self._poses + step / 2 * self._velocities, step)
+        rates = self._rates(touch.rows)
+        gap = touch.gap - step / 2 * rates[:, :2]
+        self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
+        rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
+        solution = self._solve(touch, rates / step, PRECISION)
+        self._velocities = self._velocities + step * solution.acceleration
+        self._poses = self._poses + step * self._velocities
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
@@ -124,11 +132,11 @@ class Blocks:
         self._poses, self._velocities = other._poses.copy(), other._velocities.copy()
         self._solution = other._solution and other._solution.carried(other._keys, self._keys)
 
-    def _touch(self, poses: Array) -> Touch:
+    def _touch(self, poses: Array, step: float) -> Touch:
         """Find the contacts; what is known of those that stay is kept."""
         turning = np.abs(self._velocities[:, 2]) * self._reach
         speed = float((np.hypot(*self._velocities[:, :2].T) + turning).max())
-        touch = self._neighbours.touch(poses, self._step * (speed + self._step))
+        touch = self._neighbours.touch(poses, step * (speed + step))
         keys = self._neighbours.keys
         if not np.array_equal(keys, self._keys):
             if self._solution is not None:
