@@ -130,6 +130,22 @@ class Assembly:
         return _frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
 
     @cached_property
+    def joint_ends(self) -> Array:
+        """Inner and outer ends of the joints, shape (joints, 2, 2) [m]."""
+        return _frozen([(joint.inner, joint.outer) for joint in self.joints], (-1, 2, 2))
+
+    @cached_property
+    def joint_lengths(self) -> Array:
+        """Lengths of the joints, shape (joints,) [m]."""
+        along = self.joint_ends[:, 1] - self.joint_ends[:, 0]
+        return _frozen(np.hypot(along[:, 0], along[:, 1]), (-1,))
+
+    @cached_property
+    def joint_sides(self) -> NDArray[np.int64]:
+        """Blocks before and after each joint, shape (joints, 2)."""
+        return np.array([(joint.before, joint.after) for joint in self.joints])
+
+    @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
         return _frozen(

@@ -59,11 +59,10 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
         Lengths in units of the assembly's size.
     """
     size = assembly.size
-    before = np.array([joint.before for joint in assembly.joints])
-    after = np.array([joint.after for joint in assembly.joints])
-    ends = np.array([(joint.inner, joint.outer) for joint in assembly.joints]) / size
-    normal = np.array([joint.normal for joint in assembly.joints])
-    tangent = np.array([joint.tangent for joint in assembly.joints])
+    before, after = assembly.joint_sides.T
+    ends = assembly.joint_ends / size
+    tangent = (ends[:, 1] - ends[:, 0]) / (assembly.joint_lengths / size)[:, None]
+    normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
     # The support is appended as a block that stays where it is, index -1.
     start = np.vstack([assembly.centres / size, np.zeros(2)])
     moved = np.vstack([poses, np.zeros(3)])
@@ -102,7 +101,7 @@ def overlap_share(assembly: Assembly, poses: Array) -> float:
     converged presses blocks into each other.
     """
     motion = joint_motion(assembly, poses)
-    lengths = np.array([joint.length for joint in assembly.joints]) / assembly.size
+    lengths = assembly.joint_lengths / assembly.size
     turned, slipped = np.abs(motion.turn) * lengths, np.abs(motion.slip)
     moved = max(float(turned.max()), float(slipped.max()))
     return max(0.0, -float(motion.gap.min())) / moved if moved > 0 else 0.0

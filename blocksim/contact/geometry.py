@@ -43,19 +43,16 @@ class Geometry:
     """Corners of the joints of an assembly, carried by their blocks."""
 
     def __init__(self, assembly: Assembly) -> None:
-        joints, size = assembly.joints, assembly.size
-        self.before = np.array([joint.before for joint in joints])
-        self.after = np.array([joint.after for joint in joints])
-        ends = np.array([(joint.inner, joint.outer) for joint in joints]) / size
+        size, count = assembly.size, len(assembly.joints)
+        self.before, self.after = assembly.joint_sides.T
+        ends = assembly.joint_ends / size
         # The ground is a block at the origin that stays, index -1.
         centres = np.vstack([assembly.centres / size, np.zeros(2)])
         self._sides = np.concatenate([self.before, self.after])
         self._arms = np.concatenate([ends, ends]) - centres[self._sides][:, None]
-        self._lengths = np.array([joint.length for joint in joints]) / size
+        self._lengths = assembly.joint_lengths / size
         self._moves = (self._sides != SUPPORT).astype(np.float64)[:, None, None]
-        self._signs = np.concatenate([-np.ones(len(joints)), np.ones(len(joints))])[
-            :, None, None
-        ]
+        self._signs = np.repeat([-1.0, 1.0], count)[:, None, None]
 
     def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
         """Find the contacts, and which joints still are joints.

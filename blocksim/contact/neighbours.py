@@ -8,6 +8,8 @@ good; its blocks are then two like any others.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from blocksim.assembly import SUPPORT, Array, Assembly
@@ -43,20 +45,14 @@ class Neighbours:
         self._joints = Geometry(assembly)
         self._start = assembly.centres / size
         self._reach = assembly.reach / size
-        level = ground_level(assembly) / size
-        floor = np.array([(-FAR, level - 1), (FAR, level - 1), (FAR, level), (-FAR, level)])
-        self._polygons = Polygons(
-            [(block.vertices - block.centre) / size for block in assembly.blocks],
-            [*(pier / size for pier in piers(assembly)), floor],
-        )
+        self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._loose = False
         # Which polygon is on each side of a joint: piers come after the blocks, in order.
-        count = len(assembly.blocks)
         sides = np.stack([self._joints.before, self._joints.after])
         fixed = (sides == SUPPORT).any(axis=0)
         pier = np.zeros(len(fixed), dtype=np.int64)
-        pier[fixed] = count + np.arange(fixed.sum())
+        pier[fixed] = self._count + np.arange(fixed.sum())
         self._sides = np.where(sides == SUPPORT, pier, sides)
         none = np.zeros(0, dtype=np.int64)
         self._meet = (none, none)
@@ -98,9 +94,20 @@ class Neighbours:
             rows=np.concatenate([touch.rows[self._holds], met.rows[close]]),
         )
 
+    @cached_property
+    def _polygons(self) -> Polygons:
+        """Blocks, then piers in the order of their joints, then the ground."""
+        assembly, size = self._assembly, self._assembly.size
+        level = ground_level(assembly) / size
+        floor = np.array([(-FAR, level - 1), (FAR, level - 1), (FAR, level), (-FAR, level)])
+        return Polygons(
+            [(block.vertices - block.centre) / size for block in assembly.blocks],
+            [*(pier / size for pier in piers(assembly)), floor],
+        )
+
     def _list(self) -> None:
         held, (before, after) = self._holds, self._meet
-        count = self._polygons.count
+        count = self._count
         self.before = np.concatenate([self._joints.before[held], before])
         after_block = np.where(after < count, after, SUPPORT)
         self.after = np.concatenate([self._joints.after[held], after_block])
