@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.assembly import Array, Assembly
-from blocksim.engines.base import World, trusted
+from blocksim.engines.base import Quality, Settings, World, trusted
 from blocksim.joints import overlap_share
 from blocksim.progress import Progress, silent
 from blocksim.recording import Recording, displacement
@@ -46,7 +46,7 @@ FRAME = 0.05
 """Time between frames."""
 SPARSE = 4
 """Frames in one while nothing has moved."""
-UNMOVED = 1e-5
+UNMOVED = 1e-4
 EARLY = 3e-4
 """Displacement at which the motion still is the collapse mechanism."""
 
@@ -140,13 +140,20 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
     quality = world.quality()
     if not trusted(world, setup.settings):
         verdict = Verdict.UNDECIDED
-        reason = f"released, a contact was left with a residual of {quality.residual:.1e}"
+        reason = "released, " + _distrust(quality, setup.settings)
     return Motion(
         verdict=verdict,
         reason=reason,
         overlap=overlap,
         recording=setup.record(times, poses, quality),
     )
+
+
+def _distrust(quality: Quality, settings: Settings) -> str:
+    residual, penetration = quality.residual, quality.penetration
+    if residual is not None and not residual <= settings.residual:
+        return f"a contact was left with a residual of {residual:.1e}"
+    return f"blocks overlap by {penetration:.1e} r"
 
 
 def _moved(assembly: Assembly, poses: list[Array]) -> float:

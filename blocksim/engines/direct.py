@@ -5,6 +5,9 @@ friction and carry the blocks through it, contacts being those half a step ahead
 forces then do no work or take some away, gravity's work is that of the step, and so the
 energy never grows. An open contact may close within a step, but not pass; one that overlaps
 is kept from closing further and not pushed apart, which would add energy.
+
+A collapse goes on to the ground: blocks meet any others, the piers below the springings and
+the floor (`blocksim.ground`), without bouncing.
 """
 
 from __future__ import annotations
@@ -18,13 +21,17 @@ from blocksim.contact import ContactProblem, Neighbours, Solution, Touch
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 
 STEP = 0.01
-SLOW = 1e-4
+SLOW = 5e-4
 """Way in a single long step of blocks that hardly move [size]."""
 STILL = 1e-11
 """Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
 REST = 1e-9
 """Let go 1e-8 below its limit an arch moves 1e-7 and more in the time watched."""
 RESIDUAL = 1e-7
+UNSOLVED = 1e-4
+"""Residual of a step that is not taken."""
+PENETRATION = 1e-3
+"""Of a collapse until its verdict is certain; falling blocks may do worse on impact."""
 EXACT = 1e-16
 """Violation of contact and friction left in the onset test [g]."""
 PRECISION = 1e-12
@@ -46,7 +53,13 @@ class Direct:
     def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002
         """Return the same settings for every assembly."""
         return Settings(
-            step=STEP, sweeps=1, hold_sweeps=1, still=STILL, rest=REST, residual=RESIDUAL
+            step=STEP,
+            sweeps=1,
+            hold_sweeps=1,
+            still=STILL,
+            rest=REST,
+            residual=RESIDUAL,
+            penetration=PENETRATION,
         )
 
     def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
@@ -92,7 +105,9 @@ class Blocks:
         way = whole * np.abs(self._velocities) + whole**2 * np.abs(accelerations)
         count = 1 if way.max() < SLOW else steps
         for _ in range(count):
-            self._move(whole / count)
+            # A step that cannot be solved is the last: the blocks stay, the residual tells.
+            if self._residual <= UNSOLVED:
+                self._move(whole / count)
 
     def _move(self, step: float) -> None:
         touch = self._touch(self._poses + step / 2 * self._velocities, step)
@@ -101,6 +116,8 @@ class Blocks:
         self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
         rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
         solution = self._solve(touch, rates / step, PRECISION)
+        if not solution.residual <= UNSOLVED:
+            return
         self._velocities = self._velocities + step * solution.acceleration
         self._poses = self._poses + step * self._velocities
 
