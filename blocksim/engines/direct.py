@@ -103,7 +103,7 @@ class Blocks:
         whole = steps * self._step
         accelerations = 0.0 if self._solution is None else self._solution.acceleration
         way = whole * np.abs(self._velocities) + whole**2 * np.abs(accelerations)
-        count = 1 if way.max() < SLOW else steps
+        count = min(steps, 1) if way.max() < SLOW else steps
         for _ in range(count):
             # A step that cannot be solved is the last: the blocks stay, the residual tells.
             if self._residual <= UNSOLVED:
