@@ -85,7 +85,9 @@ def come_together(balance: Balance) -> tuple[Array | None, int]:
     glued[:, :2] -= apart * push
     contacts = np.full(push.shape, OPEN, dtype=np.int8)
     load = np.zeros_like(balance.free)
-    return _follow(balance, balance.free, glued, contacts, push, load, apart, math.inf, MOST_PIECES)
+    return _follow(
+        balance, balance.free, glued, contacts, push, load, apart, math.inf, MOST_PIECES
+    )
 
 
 def _follow(
@@ -162,9 +164,7 @@ def _follow(
     return None, most
 
 
-def _part(
-    balance: Balance, joint: int, push: Array, contacts: Contacts
-) -> tuple[Array, Array]:
+def _part(balance: Balance, joint: int, push: Array, contacts: Contacts) -> tuple[Array, Array]:
     """Return the share of one joint in the system: matrix (6, 6) and right side (6,)."""
     rows = balance.rows[joint]
     acting = leaning(rows, contacts, balance.mu)

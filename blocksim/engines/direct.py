@@ -12,6 +12,7 @@ the floor (`blocksim.ground`), without bouncing.
 
 from __future__ import annotations
 
+import math
 from importlib.metadata import version
 
 import numpy as np
@@ -21,8 +22,8 @@ from blocksim.contact import ContactProblem, Neighbours, Solution, Touch
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 
 STEP = 0.01
-SLOW = 5e-4
-"""Way in a single long step of blocks that hardly move [size]."""
+LONG, SLOW = 0.2, 5e-4
+"""Longest step, and the way in it up to which blocks hardly move [size]."""
 STILL = 1e-11
 """Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
 REST = 1e-9
@@ -99,11 +100,15 @@ class Blocks:
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
     def advance(self, steps: int) -> None:
-        """Let the blocks move; in a single long step while they hardly do."""
+        """Let the blocks move; in few long steps while they hardly do."""
         whole = steps * self._step
-        accelerations = 0.0 if self._solution is None else self._solution.acceleration
-        way = whole * np.abs(self._velocities) + whole**2 * np.abs(accelerations)
-        count = min(steps, 1) if way.max() < SLOW else steps
+        count = min(steps, math.ceil(whole / LONG))
+        if count:
+            step = whole / count
+            # With nothing known of them, blocks may fall.
+            speeding = self._gravity if self._solution is None else self._solution.acceleration
+            way = step * np.abs(self._velocities) + step**2 * np.abs(speeding)
+            count = count if way.max() < SLOW else steps
         for _ in range(count):
             # A step that cannot be solved is the last: the blocks stay, the residual tells.
             if self._residual <= UNSOLVED:
