@@ -27,7 +27,7 @@ from blocksim.contact.law import OPEN, STICKS, Contacts, beyond, cut, edges, lea
 
 MOST_PIECES = 20_000
 SHORT = 60
-"""Pieces after which a way from a guess is no short one."""
+"""Pieces after which a way from a guess is no short one; no fewer than there are joints."""
 ASIDE = 1e-6
 """How far off the guess it begins, in its size, lest contacts change over together, as by
 symmetry."""
@@ -73,7 +73,7 @@ def shrink(balance: Balance, x: Array) -> tuple[Array | None, int]:
     forces, contacts = cut(glued, balance.mu)
     load = -balance.imbalance(x, forces)
     push = np.zeros((len(forces), 2))
-    return _follow(balance, x, glued, contacts, push, load, 1.0, 1.0, SHORT)
+    return _follow(balance, x, glued, contacts, push, load, 1.0, 1.0, max(SHORT, len(forces)))
 
 
 def come_together(balance: Balance) -> tuple[Array | None, int]:
