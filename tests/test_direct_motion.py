@@ -72,7 +72,7 @@ def test_a_collapse_ends_on_the_ground_with_no_block_in_another(
         for block, (x, y, angle) in zip(assembly.blocks, world.poses(), strict=True):
             cos, sin = math.cos(angle), math.sin(angle)
             turned = (block.vertices - block.centre) @ np.array([[cos, sin], [-sin, cos]])
-            shapes.append(turned + (x, y))
+            shapes.append(turned + np.array([x, y]))
         assert min(shape[:, 1].min() for shape in shapes) > level - 3e-3
         everything = [*shapes, *piers(assembly)]
         for i, shape in enumerate(shapes):

@@ -93,7 +93,8 @@ class Bands:
     def band(self, rows: Array, weight: ArrayLike, seen: Array) -> Array:
         """Return rows^T weight seen in LAPACK's storage, and a place for what is dropped."""
         products = self._products(rows, weight, seen)
-        return np.bincount(self.whole.ravel(), products, self.rows * self.size + 1)
+        band = np.bincount(self.whole.ravel(), products, self.rows * self.size + 1)
+        return band.astype(np.float64, copy=False)
 
     def solve_band(self, band: Array, right: Array) -> Array:
         """Solve (1 + matrix) x = right, the matrix as from `band`; it is used up."""

@@ -61,13 +61,13 @@ class Polygons:
         corners, normals = self._placed(poses)
         pairs = np.arange(len(before))
         gaps = [
-            _gaps(corners[one], normals[one], corners[two])
-            for one, two in ((before, after), (after, before))
+            _gaps(corners[owner], normals[owner], corners[other])
+            for owner, other in ((before, after), (after, before))
         ]
-        faces = [gap.argmax(axis=1) for gap in gaps]
-        swap = gaps[1][pairs, faces[1]] > gaps[0][pairs, faces[0]] + PREFER
+        one, two = (gap.argmax(axis=1).astype(np.int64) for gap in gaps)
+        swap = gaps[1][pairs, two] > gaps[0][pairs, one] + PREFER
         owner, other = np.where(swap, after, before), np.where(swap, before, after)
-        face = np.where(swap, faces[1], faces[0])
+        face = np.where(swap, two, one)
         normal = normals[owner, face]
         along = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
         following = (face + 1) % corners.shape[1]

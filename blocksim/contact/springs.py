@@ -28,8 +28,6 @@ STIFFER = 1e3
 """Largest factor on the stiffness where progress is slow."""
 DRIFT = 0.9
 """Springs that yield by as much as before, within this ratio, do so without end."""
-LEFT = 1e3
-"""Multiple of the precision at which such a yield is left alone."""
 MOST_ROUNDS = 40
 
 
