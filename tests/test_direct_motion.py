@@ -105,3 +105,22 @@ def test_a_recording_of_a_collapse_goes_to_the_ground():
     assert recording.times[-1] == pytest.approx(6.0)
     lowest = recording.poses[-1, :, 1].min() - ground_level(arch.assembly())
     assert 0.0 < lowest < arch.eta
+
+
+@pytest.mark.parametrize("half_angle_deg", [20, 60, 90, 120, 159])
+def test_piers_carry_their_joint_and_touch_nothing_else(half_angle_deg):
+    arch = Arch(half_angle=math.radians(half_angle_deg), eta=0.3, voussoirs=9)
+    assembly = arch.assembly()
+    level = ground_level(assembly)
+    lowest = min(block.vertices[:, 1].min() for block in assembly.blocks)
+    assert lowest == pytest.approx(level + 0.5)
+    for pier, joint in zip(
+        piers(assembly), (assembly.joints[0], assembly.joints[-1]), strict=True
+    ):
+        assert {tuple(corner) for corner in pier} >= {tuple(joint.inner), tuple(joint.outer)}
+        assert pier[:, 1].min() == level
+        edge = np.roll(pier, -1, axis=0) - pier
+        following = np.roll(edge, -1, axis=0)
+        assert (edge[:, 0] * following[:, 1] - edge[:, 1] * following[:, 0]).min() > 0
+        for block in assembly.blocks:
+            assert clipped(block.vertices, pier) < 1e-12

@@ -64,7 +64,8 @@ class Polygons:
             _gaps(corners[owner], normals[owner], corners[other])
             for owner, other in ((before, after), (after, before))
         ]
-        one, two = (gap.argmax(axis=1).astype(np.int64) for gap in gaps)
+        one: NDArray[np.int64] = gaps[0].argmax(axis=1)
+        two: NDArray[np.int64] = gaps[1].argmax(axis=1)
         swap = gaps[1][pairs, two] > gaps[0][pairs, one] + PREFER
         owner, other = np.where(swap, after, before), np.where(swap, before, after)
         face = np.where(swap, two, one)
