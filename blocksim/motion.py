@@ -1,6 +1,7 @@
 """The moving run: let the arch go and watch.
 
-It is released from the impulses the onset test ended with, and recorded. What is said of
+It is released from the impulses the onset test ended with, and recorded: every `FRAME`, or
+every `SPARSE` frames while nothing moves and only a verdict is asked for. What is said of
 it rests on the largest displacement d of any corner, in units of r, and on time in units
 of sqrt(r/g):
 
@@ -44,9 +45,8 @@ FINER = 4
 REPEATS = 2
 FRAME = 0.05
 """Time between frames."""
-SPARSE = 4
-"""Frames in one while nothing has moved."""
-UNMOVED = 1e-4
+SPARSE, UNMOVED = 4, 1e-5
+"""Frames in one while nothing has moved by that; it may not have passed `EARLY` after them."""
 EARLY = 3e-4
 """Displacement at which the motion still is the collapse mechanism."""
 
@@ -124,7 +124,8 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
     overlap = 0.0
     while times[-1] < end - step / 2 and overlap <= OVERLAP:
         # Before anything moves a verdict needs no frames, and some engines longer steps.
-        frames = SPARSE if until is None and moved[-1] < UNMOVED else 1
+        idle = until is None and len(moved) > 1 and moved[-1] < UNMOVED
+        frames = SPARSE if idle else 1
         world.advance(frames * stride)
         taken += frames * stride
         times.append(taken * step)
