@@ -1,7 +1,7 @@
-"""What a contact may do, with springs for the rigid ground of the matter.
+"""What a contact may do.
 
-The law of a contact is piecewise linear in the forces its springs would have if it were
-glued, normal q and tangential s: it is open where q <= 0, sticks where |s| <= mu q, and
+Its law is piecewise linear in the forces its springs would have if it were glued, normal q
+and tangential s: it is open where q <= 0, sticks where |s| <= mu q, and
 slides either way beyond.
 """
 

@@ -77,7 +77,7 @@ def shrink(balance: Balance, x: Array) -> tuple[Array | None, int]:
 
 
 def come_together(balance: Balance) -> tuple[Array | None, int]:
-    """Find the balance from all contacts apart; None never, but for round-off."""
+    """Find the balance from all contacts apart; None only where round-off spoils it."""
     glued = balance.glued(balance.free)
     shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(glued), 2))
     push = balance.stiffness * shares
