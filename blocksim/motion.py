@@ -1,6 +1,7 @@
 """The moving run: let the arch go and watch.
 
-It is released from the impulses the onset test ended with, and recorded. What is said of
+It is released from the impulses the onset test ended with, and recorded: every `FRAME`, or
+every `SPARSE` frames while nothing moves and only a verdict is asked for. What is said of
 it rests on the largest displacement d of any corner, in units of r, and on time in units
 of sqrt(r/g):
 
@@ -26,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.assembly import Array, Assembly, displacement
-from blocksim.engines.base import World, trusted
+from blocksim.engines.base import Quality, Settings, World, trusted
 from blocksim.joints import overlap_share
 from blocksim.progress import Progress, silent
 from blocksim.recording import Recording
@@ -44,6 +45,8 @@ FINER = 4
 REPEATS = 2
 FRAME = 0.05
 """Time between frames."""
+SPARSE, UNMOVED = 4, 1e-5
+"""Frames in one while nothing has moved by that; it may not have passed `EARLY` after them."""
 EARLY = 3e-4
 """Displacement at which the motion still is the collapse mechanism."""
 
@@ -115,12 +118,17 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
     """Record one release, as far as its blocks do not overlap."""
     assembly, step, rest = setup.assembly, setup.settings.step, setup.settings.rest
     stride = max(1, round(FRAME / step))
+    taken = 0
     times, poses, moved = [0.0], [world.poses()], [0.0]
     end = LONGEST if until is None else until
     overlap = 0.0
     while times[-1] < end - step / 2 and overlap <= OVERLAP:
-        world.advance(stride)
-        times.append(len(times) * stride * step)
+        # Before anything moves a verdict needs no frames, and some engines longer steps.
+        idle = until is None and len(moved) > 1 and moved[-1] < UNMOVED
+        frames = SPARSE if idle else 1
+        world.advance(frames * stride)
+        taken += frames * stride
+        times.append(taken * step)
         poses.append(world.poses())
         moved.append(_moved(assembly, poses))
         if moved[-1] > NOISE and moved[-2] < EARLY:
@@ -133,13 +141,20 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
     quality = world.quality()
     if not trusted(world, setup.settings):
         verdict = Verdict.UNDECIDED
-        reason = f"released, a contact was left with a residual of {quality.residual:.1e}"
+        reason = "released, " + _distrust(quality, setup.settings)
     return Motion(
         verdict=verdict,
         reason=reason,
         overlap=overlap,
         recording=setup.record(times, poses, quality),
     )
+
+
+def _distrust(quality: Quality, settings: Settings) -> str:
+    residual, penetration = quality.residual, quality.penetration
+    if residual is not None and not residual <= settings.residual:
+        return f"a contact was left with a residual of {residual:.1e}"
+    return f"blocks overlap by {penetration:.1e} r"
 
 
 def _moved(assembly: Assembly, poses: list[Array]) -> float:
@@ -162,6 +177,7 @@ def _reason(verdict: Verdict, times: list[float], moved: list[float], overlap: f
         return f"released, it stayed within {way}"
     if overlap > OVERLAP:
         return f"released, its blocks overlap by {overlap:.0%} of their motion: {way}"
-    if moved[-1] < CREEP * moved[len(moved) // 2]:
+    halfway = moved[int(np.searchsorted(times, times[-1] / 2))]
+    if moved[-1] < CREEP * halfway:
         return f"released, it creeps: {way}"
     return f"released, it starts too slowly to tell: {way}"

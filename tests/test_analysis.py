@@ -45,3 +45,11 @@ def test_the_gain_of_direct_is_taken_at_equal_time(tmp_path: Path) -> None:
 def test_every_study_is_listed_with_its_claim() -> None:
     listed = (STUDIES / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in STUDIES.glob("*.py") if path.name not in listed] == []
+
+
+def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:
+    result = study("direct_arches").main(tmp_path, quick=True)
+    assert result.arches == result.confirmed == 3
+    assert result.false == result.unsure == 0
+    assert result.worst_error < 1e-8
+    assert (tmp_path / "direct_arches.png").stat().st_size > 0

@@ -2,9 +2,8 @@
 
 Each joint has two contacts, at its inner and its outer end. At either end the two corners
 lie side by side once the joint has slipped: the one that lies over the other block's face
-touches that face, whose normal it takes. Blocks that shared no joint when built pass
-through each other, and so do two that have lost each other: a contact ends where a corner
-leaves the face.
+touches that face, whose normal it takes. That ends where the faces no longer lie over each
+other or have turned far apart.
 """
 
 from __future__ import annotations
@@ -12,13 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.assembly import SUPPORT, Array, Assembly
 
 DEEPEST = 0.05
 """Overlap in joint lengths beyond which two faces no longer touch but have passed."""
-APART = 1e6
-"""Gap of a contact that is none [size]."""
+WIDEST = 0.98
+"""Cosine of the angle between two faces from which they no longer form a joint: other faces
+of the blocks may then touch first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,36 +30,33 @@ class Touch:
     ----------
     gap : (joints, 2) float
         At the inner and outer end, below 0 where blocks overlap.
-    normal, tangent : (joints, 2, 6) float
-        Velocities of `after` relative to `before` along the contact's normal and
-        tangent, from the velocities of both blocks.
+    rows : (joints, 4, 6) float
+        Velocities of `after` relative to `before` from those of both blocks, along the
+        normals of the two contacts, then along their tangents.
     """
 
     gap: Array
-    normal: Array
-    tangent: Array
+    rows: Array
 
 
 class Geometry:
     """Corners of the joints of an assembly, carried by their blocks."""
 
     def __init__(self, assembly: Assembly) -> None:
-        joints, size = assembly.joints, assembly.size
-        self.before = np.array([joint.before for joint in joints])
-        self.after = np.array([joint.after for joint in joints])
-        ends = np.array([(joint.inner, joint.outer) for joint in joints]) / size
+        size, count = assembly.size, len(assembly.joints)
+        joints = assembly.joint_arrays
+        self.before, self.after = joints.before, joints.after
+        ends = joints.ends
         # The ground is a block at the origin that stays, index -1.
         centres = np.vstack([assembly.centres / size, np.zeros(2)])
         self._sides = np.concatenate([self.before, self.after])
         self._arms = np.concatenate([ends, ends]) - centres[self._sides][:, None]
-        self._lengths = np.array([joint.length for joint in joints]) / size
+        self._lengths = joints.length
         self._moves = (self._sides != SUPPORT).astype(np.float64)[:, None, None]
-        self._signs = np.concatenate([-np.ones(len(joints)), np.ones(len(joints))])[
-            :, None, None
-        ]
+        self._signs = np.repeat([-1.0, 1.0], count)[:, None, None]
 
-    def touch(self, poses: Array) -> Touch:
-        """Find the contacts.
+    def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
+        """Find the contacts, and which joints still are joints.
 
         Parameters
         ----------
@@ -67,7 +65,8 @@ class Geometry:
 
         Returns
         -------
-        Touch
+        touch : Touch
+        holds : (joints,) bool
         """
         count = len(self._lengths)
         placed = np.vstack([poses, np.zeros(3)])[self._sides]
@@ -88,7 +87,8 @@ class Geometry:
         normal = np.stack([tangent[:, :, 1], -tangent[:, :, 0]], axis=-1)
         gap = (apart * normal).sum(axis=-1)
         overlapping = self._lengths - np.maximum(along[:, 0], 0) + np.minimum(along[:, 1], 0)
-        lost = (overlapping <= 0)[:, None] | (gap < -DEEPEST * self._lengths[:, None])
+        holds = (overlapping > 0) & (gap.min(axis=1) > -DEEPEST * self._lengths)
+        holds &= (tangents[:count] * tangents[count:]).sum(axis=-1) > WIDEST
         point = np.where(after_over[:, :, None], second, first)
         arm = np.concatenate([point, point]) - placed[:, None, :2]
 
@@ -98,6 +98,5 @@ class Geometry:
             parts = np.concatenate([both, turn], axis=-1) * self._signs * self._moves
             return np.concatenate([parts[:count], parts[count:]], axis=-1)
 
-        return Touch(
-            gap=np.where(lost, APART, gap), normal=rates(normal), tangent=rates(tangent)
-        )
+        rows = np.concatenate([rates(normal), rates(tangent)], axis=1)
+        return Touch(gap=gap, rows=rows), holds

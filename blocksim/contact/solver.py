@@ -2,58 +2,48 @@
 
 For x, the mean accelerations over the step, and p, the contact forces,
 
-    M (x - f) = H^T p,    0 <= p_n  _|_  n >= 0,    |p_t| <= mu p_n, against the slip t,
+    M (x - f) = N^T p_n + T^T p_t,    0 <= p_n  _|_  n >= 0,    |p_t| <= mu p_n, against t,
 
 where n = n0 + N x and t = t0 + T x are the normal and tangential velocities at the end of
-the step over its length. Each pass keeps n >= mu (|t| - s) with a given slip s: for s = 0
-the associated problem, whose friction dilates, for s = |t| Coulomb's. A pass is a
-strictly convex quadratic programme. The method of multipliers turns it into a few
-piecewise quadratic minimisations without constraints, and Newton's method with an exact
-line search ends each of them after finitely many steps, from anywhere. Only neighbours
-touch, so all matrices are banded and a step costs as much as the number of blocks.
+the step over its length. Only neighbours touch, so all matrices are banded and a step costs
+as much as the number of blocks.
 
-The slip is part of the unknowns where a contact slides: Newton's method then sees s = |t|
-itself (no longer symmetric, banded all the same). Where that fails to converge, s is
-replaced by the slip of the last pass, again and again.
+The method of multipliers makes the contacts springs of stiffness k with a preload, the
+forces found last: p_n = max(0, q_n - k n) and p_t = q_t - k t, cut to the friction cone.
+What remains is a continuous, piecewise linear system in x, and the springs' forces become
+those of rigid contact within a few rounds, however soft the springs are.
+
+- Newton's method solves it as a rule, and may run in circles: friction makes the system
+  unsymmetric, and no function tells progress from regress.
+- Then a path is followed that begins with all contacts apart and cannot fail to arrive
+  (`path.py`).
+- From nothing, the associated problem, whose friction dilates, is solved first. It is a
+  strictly convex quadratic programme, and Newton's method with an exact line search ends it
+  from anywhere. Where nothing slides, its solution is the one sought.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from blocksim.assembly import Array
-from blocksim.contact.banded import Bands, line_search
+from blocksim.contact.associated import associated
+from blocksim.contact.banded import Bands
+from blocksim.contact.law import LEAN, OPEN, STICKS, Contacts, cut, leaning
+from blocksim.contact.path import Balance, come_together, shrink
+from blocksim.contact.springs import MOST_ROUNDS, Springs
 
-COLD = 1e8
-"""Weight of the constraints to start with when nothing is known."""
-SOFT, STIFF = 1e3, 1e9
-"""Least and largest weight of the constraints."""
-STIFFNESS = 1e4
-"""Weight of the constraints times accelerations, limited by round-off."""
-BALANCE = 1e-11
-"""Forces out of balance at which a minimisation ends, in mean weights."""
-STIFFER = 1e3
-"""Largest factor on the stiffness where progress is slow."""
-ROUND_OFF = 1e-14
-"""The same, in units of the stiffest forces."""
-STALLED = 30.0
-"""Multiple of that below which an imbalance that no longer halves is round-off."""
-CLOSED = 1e-16
-"""Violation of a constraint that is round-off, with accelerations of 1 [g]."""
-STEEPEST = 3.0
-"""Edges of friction cones steeper than that are not scaled to length 1: normals would fade."""
-MOST_NEWTON = 100
-MOST_SLIDING_NEWTON = 8
-MOST_OUTER = 30
-MOST_PASSES = 100
-PLAIN = 5
-"""Every so many passes the slip found is taken as it is, lest guesses go round."""
-SLIDING = 1e-6
-"""Share of the largest slip from which a contact counts as sliding."""
+EXACT = 1e-16
+"""Yield of a contact that is round-off, with accelerations of 1 [g]."""
+MOST_NEWTON = 10
+"""Newton steps before the path is followed."""
+FARTHEST = 1e9
+"""Repetitions of a change of forces at once."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,21 +53,32 @@ class Solution:
     Parameters
     ----------
     acceleration : (blocks, 3) float
-    multipliers : (joints, 4) float
-        Forces along the edges of the friction cones, where to start the next step from.
+    forces : (joints, 4) float
+        Pressure at the two contacts of each joint, then friction [mean weights].
+    contacts : (joints, 2) int
+        What each contact does.
     residual : float
-        Worst of force imbalance (mean weights), penetration rate and complementarity.
+        Worst of force imbalance (mean weights), penetration rate and complementarity [g],
+        over the largest acceleration where that is above 1.
     iterations : int
         Banded systems solved.
-    passes : int
-        Of the slip.
+    paths : int
+        Systems for which a path was followed.
     """
 
     acceleration: Array
-    multipliers: Array
+    forces: Array
+    contacts: Contacts
     residual: float
     iterations: int
-    passes: int
+    paths: int
+
+    def carried(self, old: NDArray[np.int64], new: NDArray[np.int64]) -> Solution:
+        """Return the same for another list of joints; those not there before are open."""
+        forces, contacts = np.zeros((len(new), 4)), np.zeros((len(new), 2), dtype=np.int8)
+        _, was, now = np.intersect1d(old, new, assume_unique=True, return_indices=True)
+        forces[now], contacts[now] = self.forces[was], self.contacts[was]
+        return replace(self, forces=forces, contacts=contacts)
 
 
 class ContactProblem:
@@ -103,222 +104,160 @@ class ContactProblem:
 
     def solve(
         self,
-        normal: Array,
-        tangent: Array,
+        rows: Array,
+        rates: Array,
         free: Array,
-        normal_rate: Array,
-        slip_rate: Array,
         start: Solution | None = None,
-        precision: float = CLOSED,
+        precision: float = EXACT,
     ) -> Solution:
         """Solve one step.
 
         Parameters
         ----------
-        normal, tangent : (joints, 2, 6) float
-            Velocities at the contacts from those of the two blocks (N and T).
+        rows : (joints, 4, 6) float
+            Normal velocities at the two contacts from those of the two blocks (N), then
+            the tangential ones (T).
+        rates : (joints, 4) float
+            The same velocities without acceleration, over the step (n0, t0).
         free : (blocks, 3) float
             Accelerations without contact (f).
-        normal_rate, slip_rate : (joints, 2) float
-            What the contacts' velocities are without acceleration, over the step (n0, t0).
         start : Solution, optional
             Of a similar step.
         precision : float
-            Largest violation of a constraint at which the step counts as solved [g].
+            Largest yield of a contact at which the step counts as solved [g].
 
         Returns
         -------
         Solution
         """
-        return _Step(self, normal, tangent, free, normal_rate, slip_rate, precision).solve(
-            start
-        )
+        return _Step(self, rows, rates, free, precision).solve(start)
 
 
 class _Step:
     """The contact problem of one step, in accelerations times the root of mass."""
 
     def __init__(
-        self,
-        problem: ContactProblem,
-        normal: Array,
-        tangent: Array,
-        free: Array,
-        normal_rate: Array,
-        slip_rate: Array,
-        precision: float,
+        self, problem: ContactProblem, rows: Array, rates: Array, free: Array, precision: float
     ) -> None:
         self._bands, self._root, self._mu = problem.bands, problem.root, problem.mu
-        self._normal, self._tangent = normal * problem.scale, tangent * problem.scale
-        self._norm = min(math.sqrt(1 + self._mu**2), STEEPEST)
-        self._friction = self._mu / self._norm
-        slope = self._friction * self._tangent
-        self._slope = np.concatenate([slope, slope], axis=1)
-        upright = self._normal / self._norm
-        self._edges = np.concatenate([upright + slope, upright - slope], axis=1)
-        rate, lean = normal_rate / self._norm, self._friction * slip_rate
-        self._offset = np.concatenate([rate + lean, rate - lean], axis=1)
-        self._normal_rate, self._slip_rate = normal_rate, slip_rate
+        self._rows, self._rates = rows * problem.scale, rates
         self._free = (free * self._root).ravel()
-        self._iterations = 0
         self._precision = precision
+        self._iterations = self._paths = 0
 
     def solve(self, start: Solution | None) -> Solution:
-        """Pass after pass until the slip assumed is the slip found."""
-        joints = len(self._offset)
+        """Round after round, until contact springs no longer yield."""
+        springs = Springs(self._mu, self._precision)
         if start is None:
-            x, forces = np.zeros_like(self._free), np.zeros((joints, 4))
+            x, forces, self._iterations = associated(
+                self._bands, self._rows, self._rates, self._free, self._mu, self._precision
+            )
         else:
-            x = (start.acceleration * self._root).ravel()
-            forces = start.multipliers
-        slip = np.zeros((joints, 2))
-        passes = 0
-        while passes < MOST_PASSES:
-            found = np.abs(self._slip(x))
-            pressed = (forces[:, :2] + forces[:, 2:]) > 0
-            largest = float(found[pressed].max(initial=0.0))
-            change = float(np.abs(found - slip)[pressed].max(initial=0.0))
-            if passes and change <= max(10 * self._precision, 1e-11 * largest):
+            x, forces = (start.acceleration * self._root).ravel(), start.forces
+            # The contacts do what they did, above all where accelerations have changed:
+            # after an impact those of the last step say nothing.
+            x = x + self._way(start.contacts, x, forces, springs.stiffness(x))
+        contacts = np.zeros((len(forces), 2), dtype=np.int8)
+        preload = forces
+        for _ in range(MOST_ROUNDS):
+            stiffness = springs.stiffness(x)
+            x = self._balance(x, preload, stiffness, springs)
+            forces, contacts = cut(self._glued(x, preload, stiffness), self._mu)
+            change = forces - preload
+            if springs.rigid(x, float(np.abs(change).max(initial=0.0)) / stiffness):
                 break
-            follow, newton = pressed, None
-            if passes or start is not None:
-                slip = np.where(pressed, found, slip)
-                follow = found > SLIDING * largest
-                newton = self._sliding(x, forces, slip, follow)
-                if newton is None and passes % PLAIN:
-                    slip = self._guess(x, forces, slip, follow)
-            if newton is None:
-                x, forces = self._multipliers(
-                    x, forces, slip, cold=start is None and not passes
-                )
-            else:
-                x, forces = newton
-                slip = np.where(follow, np.abs(self._slip(x)), slip)
-            passes += 1
+            far = self._reach(forces, change) if springs.drifts else 0.0
+            preload = forces + far * change
         return Solution(
             acceleration=x.reshape(-1, 3) / self._root,
-            multipliers=forces,
+            forces=forces,
+            contacts=contacts,
             residual=self._residual(x, forces),
             iterations=self._iterations,
-            passes=passes,
+            paths=self._paths,
         )
 
-    def _slip(self, x: Array) -> Array:
-        return self._slip_rate + self._bands.along(self._tangent, x)
+    def _reach(self, forces: Array, change: Array) -> float:
+        """Return how often a change can be repeated until a contact opens or slides.
 
-    def _multipliers(
-        self, x: Array, forces: Array, slip: Array, *, cold: bool
-    ) -> tuple[Array, Array]:
-        """Solve a pass by the method of multipliers, ever stiffer as it comes to rest."""
-        widened = self._friction * np.concatenate([slip, slip], axis=1)
-        stiffness = COLD if cold else self._stiffness(x)
-        stiffer, last = 1.0, math.inf
-        for _ in range(MOST_OUTER):
-            x, found = self._minimise(x, forces, self._offset + widened, stiffness)
-            violation = np.abs(found - forces).max() / stiffness
-            forces = found
-            if violation <= self._least_violation(x):
-                break
-            # Slow progress asks for stiffness, at the cost of digits.
-            stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
-            last = violation
-            stiffness = stiffer * self._stiffness(x)
-        return x, forces
+        Two contacts of a joint that stick although the blocks turn work against each other,
+        at equal accelerations, more from round to round, until one of them slides.
+        """
+        pressure, growth = forces[:, :2], change[:, :2]
+        room = np.stack([pressure] + [self._mu * pressure - s * forces[:, 2:] for s in (1, -1)])
+        loss = -np.stack([growth] + [self._mu * growth - s * change[:, 2:] for s in (1, -1)])
+        ahead = (loss > 0) & (room > loss)
+        return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
 
-    def _least_violation(self, x: Array) -> float:
-        size = float(np.abs(x).max())
-        return max(self._precision * max(1.0, size), 10 * ROUND_OFF * size)
-
-    def _stiffness(self, x: Array) -> float:
-        steep = max(1.0, self._friction)
-        return float(np.clip(STIFFNESS / steep / max(np.abs(x).max(), 1e-9), SOFT, STIFF))
-
-    def _minimise(
-        self, x: Array, forces: Array, offset: Array, stiffness: float
-    ) -> tuple[Array, Array]:
-        """Minimise |x - f|^2 / 2 + stiffness/2 |max(0, forces/stiffness - rate)|^2."""
-        edges = self._edges
-        trial = forces - stiffness * (offset + self._bands.along(edges, x))
-        size = math.inf
-        for _ in range(MOST_NEWTON):
-            gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
-            size, last = float(np.abs(gradient).max()), size
-            if self._balanced(size, last, x, stiffness):
-                break
-            way = self._bands.solve_symmetric(edges, stiffness * (trial > 0), -gradient)
-            self._iterations += 1
-            turn = -stiffness * self._bands.along(edges, way)
-            length = line_search(
-                float(way @ gradient), float(way @ way), trial, turn, stiffness
-            )
-            x = x + length * way
-            trial = forces - stiffness * (offset + self._bands.along(edges, x))
-        return x, np.maximum(trial, 0.0)
-
-    def _balanced(self, size: float, last: float, x: Array, stiffness: float) -> bool:
-        """Whether a gradient is as small as it gets."""
-        noise = ROUND_OFF * stiffness * float(np.abs(x).max())
-        stalled = STALLED * max(1.0, self._friction) * noise
-        return size <= max(BALANCE, noise) or last / 2 <= size <= stalled
-
-    def _sliding(
-        self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]
-    ) -> tuple[Array, Array] | None:
-        """Newton's method with the slip of sliding contacts as an unknown; None if it fails."""
-        edges = self._edges
-        stiffer, last = 1.0, math.inf
-        for _ in range(MOST_OUTER):
-            stiffness = stiffer * self._stiffness(x)
-            size = math.inf
-            for _ in range(MOST_SLIDING_NEWTON):
-                found = self._slip(x)
-                widened = self._friction * np.where(follow, np.abs(found), slip)
-                rate = self._offset + np.tile(widened, 2) + self._bands.along(edges, x)
-                trial = forces - stiffness * rate
-                gradient = x - self._free - self._bands.pull(edges, np.maximum(trial, 0.0))
-                size, last = float(np.abs(gradient).max()), size
-                if self._balanced(size, last, x, stiffness):
+    def _balance(self, x: Array, preload: Array, stiffness: float, springs: Springs) -> Array:
+        """Find the accelerations whose contact springs balance."""
+        balance = Balance(
+            bands=self._bands,
+            rows=self._rows,
+            bare=preload - stiffness * self._rates,
+            free=self._free,
+            mu=self._mu,
+            stiffness=stiffness,
+        )
+        solved, end = self._newton(x, balance, springs)
+        if solved:
+            return end
+        self._paths += 1
+        for path in (partial(shrink, balance, x), partial(come_together, balance)):
+            found, pieces = path()
+            self._iterations += pieces
+            if found is not None:
+                solved, end = self._newton(found, balance, springs)
+                if solved:
                     break
-                x = x + self._way(gradient, stiffness * (trial > 0), np.sign(found) * follow)
-            else:
-                return None
-            found = np.maximum(trial, 0.0)
-            violation = np.abs(found - forces).max() / stiffness
-            forces = found
-            if violation <= self._least_violation(x):
-                return x, forces
-            stiffer *= 4.0 if violation > last / 10 and stiffer < STIFFER else 1.0
-            last = violation
-        return None
+        return end
 
-    def _guess(self, x: Array, forces: Array, slip: Array, follow: NDArray[np.bool_]) -> Array:
-        """Slip at which assumed and found agree if no contact changes what it does."""
-        stiffness = self._stiffness(x)
-        found = self._slip(x)
-        widened = self._friction * np.where(follow, np.abs(found), slip)
-        rate = self._offset + np.tile(widened, 2) + self._bands.along(self._edges, x)
-        active = forces > 0
-        held = np.where(active, forces - stiffness * rate, 0.0)
-        gradient = x - self._free - self._bands.pull(self._edges, held)
-        ahead = self._slip(x + self._way(gradient, stiffness * active, np.sign(found) * follow))
-        kept = follow & (ahead * found > 0)
-        return np.where(kept, np.abs(ahead), slip)
+    def _newton(self, x: Array, balance: Balance, springs: Springs) -> tuple[bool, Array]:
+        """Newton's method; whether it ended, and where."""
+        size, seen = math.inf, set[bytes]()
+        for _ in range(MOST_NEWTON):
+            forces, contacts = cut(balance.glued(x), self._mu)
+            imbalance = balance.imbalance(x, forces)
+            size, last = float(np.abs(imbalance).max()), size
+            if springs.balanced(size, last, x, balance.stiffness):
+                return True, x
+            way = self._solve(contacts, balance.stiffness, -imbalance)
+            state = contacts.tobytes()
+            # In a circle: half way leads out of many.
+            x = x + way * (0.5 if state in seen else 1.0)
+            seen.add(state)
+        return False, x
 
-    def _way(self, gradient: Array, weight: ArrayLike, sign: Array) -> Array:
-        """Newton step where contacts with a sign slide that way, the slip being unknown."""
-        seen = self._edges + np.tile(sign, 2)[:, :, None] * self._slope
+    def _glued(self, x: Array, preload: Array, stiffness: float) -> Array:
+        """Return the springs' forces before opening and friction cut them."""
+        return preload - stiffness * (self._rates + self._bands.along(self._rows, x))
+
+    def _imbalance(self, x: Array, forces: Array) -> Array:
+        return x - self._free - self._bands.pull(self._rows, forces)
+
+    def _way(self, contacts: Contacts, x: Array, preload: Array, stiffness: float) -> Array:
+        """Return the change of x that balances the springs if each contact does as said."""
+        glued = self._glued(x, preload, stiffness)
+        pressure = np.where(contacts != OPEN, glued[:, :2], 0.0)
+        slides = self._mu * LEAN[contacts] * pressure
+        friction = np.where(contacts == STICKS, glued[:, 2:], slides)
+        imbalance = self._imbalance(x, np.concatenate([pressure, friction], axis=1))
+        return self._solve(contacts, stiffness, -imbalance)
+
+    def _solve(self, contacts: Contacts, stiffness: float, right: Array) -> Array:
+        """Return the change of x that adds `right` to the imbalance, likewise."""
+        weight = stiffness * np.concatenate([contacts != OPEN, contacts == STICKS], axis=-1)
+        acting = leaning(self._rows, contacts, self._mu)
         self._iterations += 1
-        return self._bands.solve(self._edges, weight, seen, -gradient)
+        return self._bands.solve(acting, weight, self._rows, right)
 
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
-        imbalance = np.abs(x - self._free - self._bands.pull(self._edges, forces)).max()
-        plus, minus = forces[:, :2], forces[:, 2:]
-        pressure, friction = (plus + minus) / self._norm, (plus - minus) * self._friction
-        rate = self._normal_rate + self._bands.along(self._normal, x)
-        slip = self._slip(x)
-        unilateral = np.abs(np.minimum(pressure, rate)).max()
+        imbalance = np.abs(self._imbalance(x, forces)).max()
+        rates = self._rates + self._bands.along(self._rows, x)
+        pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
+        unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max(initial=0.0)
         # Friction at the edge of the cone, against the slip, or no slip.
         against = self._mu * pressure + np.sign(slip) * friction
-        coulomb = np.minimum(against, np.abs(slip)).max()
-        return float(max(imbalance, unilateral, coulomb))
+        coulomb = np.minimum(against, np.abs(slip)).max(initial=0.0)
+        return float(max(imbalance, unilateral, coulomb)) / max(1.0, float(np.abs(x).max()))

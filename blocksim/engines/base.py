@@ -42,6 +42,8 @@ class Settings:
         Displacement below which an arch let go counts as at rest [size].
     residual : float
         Worst residual of the contacts at which an answer still counts.
+    penetration : float
+        Deepest overlap at which an answer still counts [size].
     tilt : float
         Angle by which gravity leans out of the plane [rad].
     plane_lock : bool
@@ -56,6 +58,7 @@ class Settings:
     still: float = 1e-6
     rest: float = 1e-5
     residual: float = math.inf
+    penetration: float = math.inf
     tilt: float = 0.0
     plane_lock: bool = False
 
@@ -114,9 +117,11 @@ class World(Protocol):
 
 
 def trusted(world: World, settings: Settings) -> bool:
-    """Tell whether the contacts of a world have kept within the residual allowed."""
-    residual = world.quality().residual
-    return residual is None or residual <= settings.residual
+    """Tell whether the contacts of a world have kept within the bounds allowed."""
+    quality = world.quality()
+    return (quality.residual is None or quality.residual <= settings.residual) and (
+        quality.penetration is None or quality.penetration <= settings.penetration
+    )
 
 
 class Engine(Protocol):

@@ -124,3 +124,50 @@ def test_a_rocking_block_loses_energy_at_the_impact_only_as_housner_says():
         # An impact within a step takes two: one up to the touch, one that stops there.
         ratios.append(rates[at + 2] / rates[at - 1])
     assert ratios[-1] == pytest.approx(1 - 1.5 * math.sin(lean) ** 2, abs=0.01)
+
+
+def test_two_bars_collapse_as_their_feet_slide_apart():
+    # An A of two bars: their tops lean on each other at the upper corner.
+    left = np.array([(-1.2, 0.0), (-0.9, 0.0), (0.0, 0.8), (0.0, 1.0)])
+    right = (left * (-1.0, 1.0))[::-1]
+    inertia, mu, time = 0.1, 0.2, 0.5
+    bars = tuple(
+        Block(vertices=bar, centre=bar.mean(axis=0), mass=1.0, inertia=inertia, depth=1.0)
+        for bar in (left, right)
+    )
+    joints = (
+        Joint(before=SUPPORT, after=0, inner=left[1], outer=left[0]),
+        Joint(before=0, after=1, inner=left[2], outer=left[3]),
+        Joint(before=1, after=SUPPORT, inner=right[2], outer=right[3]),
+    )
+    assembly = Assembly(blocks=bars, joints=joints, size=1.0)
+    top, foot = left[3] - left.mean(axis=0), left[1] - left.mean(axis=0)
+
+    def turn(_, state):
+        # The left bar: its upper corner stays on the axis, the inner corner of its foot on
+        # the ground. Unknown are its angular acceleration, the thrust at the top and the
+        # pressure below, whose friction holds the foot back.
+        angle, speed = state
+        turned = np.array(
+            [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+        )
+        (tx, ty), (fx, fy) = turned @ top, turned @ foot
+        system = [
+            [ty, 1.0, -mu],
+            [-fx, 0.0, -1.0],
+            [inertia, -ty, -(fx - mu * fy)],
+        ]
+        known = [-tx * speed**2, -1.0 - fy * speed**2, 0.0]
+        return [speed, np.linalg.solve(system, known)[0]]
+
+    exact = solve_ivp(turn, (0, time), [0.0, 0.0], rtol=1e-12, atol=1e-14).y[0, -1]
+    errors = []
+    for step in STEPS:
+        world = world_of(assembly, mu, step)
+        world.advance(round(time / step))
+        turned = world.poses()[:, 2]
+        assert turned[0] == pytest.approx(-turned[1], abs=1e-6)
+        errors.append(abs(turned[0] - exact))
+        assert world.quality().penetration < 10 * step**2
+    assert exact < -0.04
+    assert order(errors) == pytest.approx(1.0, abs=0.1)

@@ -1,0 +1,150 @@
+"""The contact problem, held to its own law, and to all combinations tried one by one."""
+
+from itertools import product
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from blocksim.contact.banded import Bands
+from blocksim.contact.law import cut
+from blocksim.contact.path import Balance, come_together
+from blocksim.contact.solver import ContactProblem
+
+
+def chain(seed, blocks):
+    """Blocks in a row between two walls, touching at random places in random directions.
+
+    What their velocities would be without acceleration comes from velocities of the blocks,
+    so that stopping them all is always possible.
+    """
+    random = np.random.default_rng(seed)
+    before, after = np.arange(-1, blocks), np.append(np.arange(blocks), -1)
+    if blocks > 3:
+        # Two that are no neighbours in the row.
+        before, after = np.append(before, 0), np.append(after, blocks - 1)
+    joints = len(before)
+    angle = random.uniform(-0.3, 0.3, (joints, 2))
+    angle[:, 1] = angle[:, 0] + random.choice([0.0, 0.05], joints)
+    normal = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    tangent = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
+    axes = np.concatenate([normal, tangent], axis=1)
+    arms = random.uniform(-1, 1, (joints, 2, 2, 2))
+    arms = np.concatenate([arms, arms], axis=1)
+    turn = arms[..., 0] * axes[:, :, None, 1] - arms[..., 1] * axes[:, :, None, 0]
+    rows = np.concatenate([-axes, -turn[:, :, :1], axes, turn[:, :, 1:]], axis=-1)
+    velocities = np.vstack([random.normal(size=(blocks, 3)), np.zeros(3)])
+    pairs = np.stack([before, after], axis=1)
+    rates = np.matmul(rows, velocities[pairs].reshape(joints, 6, 1))[:, :, 0]
+    rates[:, :2] += random.uniform(0, 2, (joints, 2)) * random.integers(0, 2, (joints, 2))
+    mass = np.repeat(random.uniform(0.5, 2, (blocks, 1)), 3, axis=1)
+    mass[:, 2] *= 0.2
+    free = np.tile([0.0, -1.0, 0.0], (blocks, 1))
+    return before, after, mass, rows, rates, free
+
+
+def dense(before, after, blocks, rows):
+    """Rows as a matrix on all velocities, shape (joints, 4, 3 blocks)."""
+    matrix = np.zeros((*rows.shape[:2], 3 * blocks))
+    for joint, pair in enumerate(zip(before, after, strict=True)):
+        for side, block in enumerate(pair):
+            if block >= 0:
+                part = rows[joint, :, 3 * side : 3 * side + 3]
+                matrix[joint, :, 3 * block : 3 * block + 3] += part
+    return matrix
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32), st.integers(1, 8), st.floats(0.05, 3.0))
+def test_a_solution_obeys_newton_signorini_and_coulomb(seed, blocks, mu):
+    before, after, mass, rows, rates, free = chain(seed, blocks)
+    solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
+    matrix = dense(before, after, blocks, rows)
+    x = solution.acceleration.ravel()
+    pull = np.einsum("jk,jkx->x", solution.forces, matrix)
+    scale = max(1.0, np.abs(x).max())
+    assert np.abs(mass.ravel() * (x - free.ravel()) - pull).max() < 1e-7 * scale
+    ahead = rates + matrix @ x
+    pressure, friction = solution.forces[:, :2], solution.forces[:, 2:]
+    opening, slip = ahead[:, :2], ahead[:, 2:]
+    assert pressure.min() >= 0
+    assert opening.min() > -1e-8 * scale
+    assert np.minimum(pressure, opening).max() < 1e-8 * scale
+    assert (np.abs(friction) - mu * pressure).max() < 1e-7 * scale
+    slides = np.abs(slip) > 1e-7 * scale
+    assert (
+        np.abs(friction + mu * pressure * np.sign(slip))[slides].max(initial=0) < 1e-6 * scale
+    )
+
+
+def enumerated(matrix, mass, rates, free, mu):
+    """All solutions of one block's two contacts, by trying what each may do."""
+    found = []
+    for does in product(("open", "stick", "up", "down"), repeat=2):
+        # Unknowns: accelerations, then forces; one equation for each.
+        system, known = np.zeros((7, 7)), np.zeros(7)
+        system[:3, :3] = np.diag(mass.ravel())
+        system[:3, 3:] = -matrix[0].T
+        known[:3] = mass.ravel() * free.ravel()
+        for end, what in enumerate(does):
+            pressed, rubbed, one, two = 3 + end, 5 + end, 3 + 2 * end, 4 + 2 * end
+            if what == "open":
+                system[one, pressed] = system[two, rubbed] = 1.0
+                continue
+            system[one, :3], known[one] = matrix[0, end], -rates[0, end]
+            if what == "stick":
+                system[two, :3], known[two] = matrix[0, 2 + end], -rates[0, 2 + end]
+            else:
+                system[two, rubbed] = 1.0
+                system[two, pressed] = -mu if what == "up" else mu
+        if np.linalg.cond(system) > 1e10:
+            continue
+        values = np.linalg.solve(system, known)
+        x, pressure, friction = values[:3], values[3:5], values[5:]
+        ahead = rates[0] + matrix[0] @ x
+        fine = pressure.min() > -1e-9 and ahead[:2].min() > -1e-9
+        fine = fine and (np.abs(friction) <= mu * pressure + 1e-9).all()
+        for end, what in enumerate(does):
+            sign = {"up": -1.0, "down": 1.0}.get(what, 0.0)
+            fine = fine and ahead[2 + end] * sign >= -1e-9
+        if fine:
+            found.append(x)
+    return found
+
+
+def test_one_block_on_two_contacts_does_what_one_of_all_combinations_says():
+    several = 0
+    for seed in range(200):
+        random = np.random.default_rng(seed)
+        mu = random.uniform(0.1, 2.0)
+        _, _, mass, rows, rates, free = chain(seed, 1)
+        before, after = np.array([-1]), np.array([0])
+        rows, rates = rows[:1], rates[:1]
+        solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
+        found = enumerated(dense(before, after, 1, rows), mass, rates, free, mu)
+        off = [np.abs(x - solution.acceleration.ravel()).max() for x in found]
+        assert min(off) < 1e-8 * max(1.0, np.abs(solution.acceleration).max())
+        several += max(np.abs(x - found[0]).max() for x in found) > 1e-6
+    # Friction may leave a choice; that is rare.
+    assert several < 20
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32), st.integers(1, 8), st.floats(0.05, 5.0))
+def test_the_path_from_apart_always_arrives(seed, blocks, mu):
+    before, after, mass, rows, rates, free = chain(seed, blocks)
+    bands, stiffness = Bands(before, after, blocks), 1e4
+    scaled = rows * bands.of_joints(1 / np.sqrt(mass).ravel())[:, None, :]
+    balance = Balance(
+        bands=bands,
+        rows=scaled,
+        bare=-stiffness * rates,
+        free=(free * np.sqrt(mass)).ravel(),
+        mu=mu,
+        stiffness=stiffness,
+    )
+    x, pieces = come_together(balance)
+    assert x is not None
+    forces, _ = cut(balance.glued(x), mu)
+    assert np.abs(balance.imbalance(x, forces)).max() < 1e-5 * max(1.0, np.abs(forces).max())
+    assert pieces < 40 * len(rows)

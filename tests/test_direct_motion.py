@@ -1,0 +1,126 @@
+"""The direct engine in large motion: a collapse goes to the ground."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from blocksim import limit
+from blocksim.arch import Arch
+from blocksim.engines.direct import Blocks, Direct
+from blocksim.ground import ground_level, piers
+from blocksim.motion import moving_run
+from blocksim.setup import Setup
+from blocksim.trial import simulate
+from blocksim.verdict import Verdict
+
+
+def world_of(assembly, mu, step):
+    engine = Direct()
+    return Blocks(assembly, mu, replace(engine.settings(assembly), step=step))
+
+
+FALLS = [(90, 0.9, 20, 0.9), (125, 0.9, 15, 0.9), (150, 2.0, 15, 0.97), (65, 0.35, 12, 0.7)]
+
+
+def arch_of(half_angle_deg, mu, voussoirs, ratio):
+    half_angle = math.radians(half_angle_deg)
+    eta = limit.least_thickness(half_angle, mu, voussoirs).eta
+    return Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs)
+
+
+def clipped(polygon, other):
+    """Area that a convex polygon shares with another, both counter-clockwise."""
+    for start, end in zip(other, np.roll(other, -1, axis=0), strict=True):
+        edge = end - start
+        side = edge[0] * (polygon[:, 1] - start[1]) - edge[1] * (polygon[:, 0] - start[0])
+        kept = []
+        for i in range(len(polygon)):
+            j = (i + 1) % len(polygon)
+            if side[i] >= 0:
+                kept.append(polygon[i])
+            if side[i] * side[j] < 0:
+                kept.append(
+                    polygon[i] + side[i] / (side[i] - side[j]) * (polygon[j] - polygon[i])
+                )
+        if len(kept) < 3:
+            return 0.0
+        polygon = np.array(kept)
+    x, y = polygon.T
+    return abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+@pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "ratio"), FALLS)
+def test_a_collapse_ends_on_the_ground_with_no_block_in_another(
+    half_angle_deg, mu, voussoirs, ratio
+):
+    arch = arch_of(half_angle_deg, mu, voussoirs, ratio)
+    assembly = arch.assembly()
+    world = world_of(assembly, mu, 0.01)
+    world.hold(1)
+    energies = [world.energy]
+    level = ground_level(assembly)
+    area = arch.eta * 2 * arch.half_angle / voussoirs
+    for frame in range(70):
+        for _ in range(10):
+            world.advance(1)
+            energies.append(world.energy)
+        if frame % 10 and frame < 66:
+            continue
+        shapes = []
+        for block, (x, y, angle) in zip(assembly.blocks, world.poses(), strict=True):
+            cos, sin = math.cos(angle), math.sin(angle)
+            turned = (block.vertices - block.centre) @ np.array([[cos, sin], [-sin, cos]])
+            shapes.append(turned + np.array([x, y]))
+        assert min(shape[:, 1].min() for shape in shapes) > level - 3e-3
+        everything = [*shapes, *piers(assembly)]
+        for i, shape in enumerate(shapes):
+            for other in everything[i + 1 :]:
+                assert clipped(shape, other) < 0.02 * area
+    # Impacts take energy, nothing gives any, and at last all lies still.
+    assert np.diff(energies).max() < 1e-9
+    assert world.poses()[:, 1].max() < 0.5 + level + arch.eta * 3
+    assert world.quality().residual < 1e-7
+    assert world.quality().penetration < 0.02
+
+
+def test_deeper_overlap_than_allowed_is_undecided():
+    setup = Setup.of(arch_of(90, 0.9, 12, 0.9), 0.9, "direct")
+    # Below the round-off of corners at rest nothing could pass.
+    strict = replace(setup, settings=replace(setup.settings, penetration=-1.0))
+    world = strict.world()
+    world.hold(1)
+    motion = moving_run(strict, world, 1)
+    assert motion.verdict is Verdict.UNDECIDED
+    assert "overlap" in motion.reason
+    world = setup.world()
+    world.hold(1)
+    assert moving_run(setup, world, 1).verdict is Verdict.COLLAPSES
+
+
+def test_a_recording_of_a_collapse_goes_to_the_ground():
+    arch = arch_of(90, 0.9, 9, 0.8)
+    recording = simulate(arch, mu=0.9, method="direct", duration=6.0)
+    assert recording.times[-1] == pytest.approx(6.0)
+    lowest = recording.poses[-1, :, 1].min() - ground_level(arch.assembly())
+    assert 0.0 < lowest < arch.eta
+
+
+@pytest.mark.parametrize("half_angle_deg", [20, 60, 90, 120, 159])
+def test_piers_carry_their_joint_and_touch_nothing_else(half_angle_deg):
+    arch = Arch(half_angle=math.radians(half_angle_deg), eta=0.3, voussoirs=9)
+    assembly = arch.assembly()
+    level = ground_level(assembly)
+    lowest = min(block.vertices[:, 1].min() for block in assembly.blocks)
+    assert lowest == pytest.approx(level + 0.5)
+    for pier, joint in zip(
+        piers(assembly), (assembly.joints[0], assembly.joints[-1]), strict=True
+    ):
+        assert {tuple(corner) for corner in pier} >= {tuple(joint.inner), tuple(joint.outer)}
+        assert pier[:, 1].min() == level
+        edge = np.roll(pier, -1, axis=0) - pier
+        following = np.roll(edge, -1, axis=0)
+        assert (edge[:, 0] * following[:, 1] - edge[:, 1] * following[:, 0]).min() > 0
+        for block in assembly.blocks:
+            assert clipped(block.vertices, pier) < 1e-12
