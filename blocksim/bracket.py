@@ -46,7 +46,7 @@ class Bracket:
         Scaled thrust; angles of the inner hinge and inner sliding joint [rad]. For
         static methods.
     confirmed : bool or None
-        Whether moving runs at both ends agree; None for static methods.
+        Whether moving runs at both ends agree; None where there were none.
     runs, undecided : int
         Arches tried, and those without an answer.
     reason : str
@@ -92,6 +92,7 @@ def bracket(
     weight: Weight = "centreline",
     method: str = "auto",
     tol: float = 0.005,
+    confirm: bool = True,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
@@ -111,6 +112,8 @@ def bracket(
         `auto`, `theory`, `limit`, or the name of an engine.
     tol : float
         Relative width at which to end, above 0 and at most 0.5.
+    confirm : bool
+        Let the arch go at both ends; without, an engine answers by the onset test alone.
     progress : Progress, optional
 
     Returns
@@ -169,7 +172,7 @@ def bracket(
             reason="static limit analysis of the voussoirs as built",
         )
     else:
-        answer = _by_simulation(arch, answer, continuous.eta, progress)
+        answer = _by_simulation(arch, answer, continuous.eta, progress, confirm=confirm)
     return replace(answer, wall_s=time.perf_counter() - started)
 
 
@@ -178,9 +181,9 @@ def _inner(angles: tuple[float, ...]) -> float | None:
 
 
 def _by_simulation(
-    arch: Arch, answer: Bracket, guess: float | None, progress: Progress
+    arch: Arch, answer: Bracket, guess: float | None, progress: Progress, *, confirm: bool
 ) -> Bracket:
-    """Bisect with the onset test, then let the arch go at both ends."""
+    """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     search = Search(
         judge=lambda eta: (
             trial(replace(arch, eta=eta), answer.mu, answer.method, moving=False).verdict
@@ -192,13 +195,14 @@ def _by_simulation(
     verdicts: list[bool] = []
     mode = None
     for eta, expected in ((search.low, Verdict.COLLAPSES), (search.high, Verdict.STANDS)):
-        if eta is not None:
+        # The lower end tells the mode, too.
+        if eta is not None and (confirm or expected is Verdict.COLLAPSES):
             progress(0.95, f"moving run at {eta:.6g}")
-            ended = trial(replace(arch, eta=eta), answer.mu, answer.method)
+            ended = trial(replace(arch, eta=eta), answer.mu, answer.method, moving=confirm)
             verdicts.append(ended.verdict is expected)
             mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
-    confirmed = bool(verdicts) and all(verdicts)
-    ends = "confirmed" if confirmed else "not confirmed"
+    confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
+    words = {True: "confirmed", False: "not confirmed", None: "not tried"}
     return replace(
         answer,
         eta_low=search.low,
@@ -207,7 +211,7 @@ def _by_simulation(
         confirmed=confirmed,
         runs=search.runs,
         undecided=search.undecided,
-        reason=f"onset test at {search.runs} ratios, both ends {ends} by moving runs",
+        reason=f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs",
     )
 
 

@@ -54,8 +54,6 @@ class Row:
         1 % below and above the bracket, by onset test and moving run; None where not tried.
     verdict_expected, verdict : Verdict or None
         Of the arch as the scenario has it, where its claim is that and not the bracket.
-    confirmed : bool or None
-        Whether moving runs confirm both ends of the bracket.
     miss : str
         What disagrees; empty where nothing does.
     note : str
@@ -86,7 +84,6 @@ class Row:
     above: Verdict | None
     verdict_expected: Verdict | None
     verdict: Verdict | None
-    confirmed: bool | None
     miss: str
     note: str
     wall_s: float
@@ -167,6 +164,7 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         weight=scenario.weight,
         method=engine,
         tol=TOLS[engine],
+        confirm=False,
     )
     mode, below, above = found.mode, None, None
     recording = None
@@ -204,7 +202,6 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         above=above,
         verdict_expected=None,
         verdict=None,
-        confirmed=found.confirmed,
         miss=miss,
         note=_note(scenario, found, mode),
         wall_s=time.perf_counter() - started,
@@ -238,7 +235,6 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
         above=None,
         verdict_expected=scenario.expected_verdict,
         verdict=seen.verdict,
-        confirmed=None,
         miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
         note=seen.reason,
         wall_s=time.perf_counter() - started,
@@ -316,7 +312,7 @@ def _misses(
 
 
 def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
-    """Say why modes differ, where that is known, and what was not confirmed."""
+    """Say why modes differ, where that is known, and what else to keep in mind."""
     notes: list[str] = []
     if mode is not found.mode_limit:
         tied = {mode, found.mode_limit} <= {*scenario.expected_modes}
@@ -329,8 +325,6 @@ def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
             )
         else:
             notes.append(f"0.2 % below it is {nearer or 'unnamed'}")
-    if found.confirmed is False:
-        notes.append("an end of the bracket starts too slowly for a moving run to tell")
     if scenario.mu > get_engine(found.method).most_friction:
         notes.append(f"friction is {get_engine(found.method).most_friction:g} in the engine")
     return "; ".join(notes)

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+import pytest
+
 STUDIES = Path(__file__).parent.parent / "analysis"
 
 
@@ -27,6 +29,16 @@ def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> N
     assert result.false == 0
     assert result.worst_error < 0.002
     assert (tmp_path / "random_arches.png").stat().st_size > 0
+
+
+def test_what_limits_pybullet(tmp_path: Path) -> None:
+    pytest.importorskip("pybullet")
+    result = study("pybullet_settings").main(tmp_path, quick=True)
+    as_built = result.accelerations["as built"]
+    # Losing contacts or starting apart is not a matter of sweeps.
+    assert as_built["thin"] < 1e-3 < result.accelerations["breaking 0.02"]["thin"]
+    assert as_built["semicircle"] < 3e-3 < result.accelerations["slop 5e-5"]["semicircle"]
+    assert result.moved[0.1] < result.moved[0.01] / 30
 
 
 def test_the_gain_of_direct_is_taken_at_equal_time(tmp_path: Path) -> None:

@@ -22,13 +22,14 @@ from blocksim.arch import GRAVITY, Arch
 from blocksim.assembly import Array
 from blocksim.engines.base import Settings
 from blocksim.errors import InputError
+from blocksim.ground import DEPTH
 from blocksim.joints import JointState, classify, joint_motion
 from blocksim.recording import Recording, load_recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
 from blocksim.view.film import Film
 from blocksim.view.order import painting_order
 from blocksim.view.spatial import SpatialView
-from blocksim.view.stage import DROP, SUNK, Stage
+from blocksim.view.stage import SUNK, Stage
 from blocksim.view.style import JOINTS
 from blocksim.view.video import render
 
@@ -121,14 +122,14 @@ def test_turns_beyond_half_a_turn_go_the_short_way() -> None:
 
 
 def test_a_film_ends_when_a_falling_block_reaches_the_ground() -> None:
-    """Free fall of the crown: the lowest corner of the two crown blocks has DROP plus its
+    """Free fall of the crown: the lowest corner of the two crown blocks has DEPTH plus its
     height above the springings to go."""
     stage = Stage(falling(frames=400))
     assembly = ARCH.assembly()
     lowest = min(assembly.blocks[block].vertices[:, 1].min() for block in (2, 3)) / 2.0
-    expected = math.sqrt(2 * (lowest + DROP + SUNK))
+    expected = math.sqrt(2 * (lowest + DEPTH + SUNK))
     assert stage.end == pytest.approx(expected, abs=1e-4)
-    assert stage.ground == pytest.approx(-DROP, abs=1e-15)
+    assert stage.ground == pytest.approx(-DEPTH, abs=1e-15)
     assert Film([falling()]).on_ground
 
 

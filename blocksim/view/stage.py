@@ -1,9 +1,8 @@
 """A recording made ready for the eye: blocks in space at any time, supports, ground, joints.
 
-Lengths are in units of the arch's radius, times in units of sqrt(r/g). Engines know no
-ground. The arch is shown on footings that stand on one, `DROP` below the lower ends of its
-springings, and a film ends when the first block reaches it, or a footing it does not rest
-on: what the recording holds beyond would be blocks falling through the floor.
+Lengths are in units of the arch's radius, times in units of sqrt(r/g). The arch is shown on
+the piers and above the floor of `blocksim.ground`, which only `direct` lets it fall on: a
+film ends when a block sinks into the floor, or into a pier it does not rest on.
 """
 
 from __future__ import annotations
@@ -15,14 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.assembly import SPATIAL, SUPPORT, Array
+from blocksim.ground import ground_level, piers
 from blocksim.joints import JointState, classify
 from blocksim.recording import Recording
 from blocksim.view.archfigure import lines_of, picture_of_arch
 
-DROP = 0.4
-"""Height of the footings below the lower end of a springing [r]."""
-LEDGE = 0.12
-"""How far a footing reaches beyond its springing, as a share of the joint's length."""
 FEWEST = 4
 """Sides of a footing, and of a block at least."""
 SUNK = 0.02
@@ -89,9 +85,8 @@ class Stage:
             [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for each in outlines]
         )
         springings = [j for j in self.assembly.joints if SUPPORT in (j.before, j.after)]
-        ends = np.array([(joint.inner, joint.outer) for joint in springings]) / size
-        self.ground = float(ends[..., 1].min()) - DROP
-        self.footings = tuple(_footing(pair, self.ground) for pair in ends)
+        self.ground = ground_level(self.assembly) / size
+        self.footings = tuple(pier / size for pier in piers(self.assembly))
         self._bearing = [max(joint.before, joint.after) for joint in springings]
         self.grain = float(np.hypot(*np.diff(self.assembly.centres, axis=0).T).min()) / size
         self._turns = _quaternions(recording)
@@ -243,15 +238,6 @@ def _depth(points: Array, outline: Array) -> Array:
     # A corner given twice makes a side without length, which bounds nothing.
     bounds = length > 0
     return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)
-
-
-def _footing(springing: Array, ground: float) -> Array:
-    """Outline of what a springing stands on, down to the ground."""
-    inner, outer = springing
-    ledge = (outer - inner) * LEDGE
-    top = np.array([inner - ledge, outer + ledge])
-    top = top[np.argsort(top[:, 0])]
-    return np.array([top[0], [top[0, 0], ground], [top[1, 0], ground], top[1]])
 
 
 def _centres(recording: Recording, frame: int) -> Array:
