@@ -133,6 +133,8 @@ def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
 
 ACTIVE = 0.02
 """A joint takes part if it turns or slips more than this share of the most active one."""
+LEFT = 0.02
+"""Gap of both ends at which the blocks of a joint have left each other [size]."""
 PARTED = 0.25
 """A turning joint is open if its closer end parts by this share of what its turn opens."""
 
@@ -167,12 +169,13 @@ def classify(
 
     Turning (relative rotation times the assembly's size) and slipping are both lengths
     of the motion itself and compared with the largest of either. A turning joint is
-    hinged at the end that stays closed, and open where neither does.
+    hinged at the end that stays closed, and open where neither does. A joint whose blocks
+    have left each other, apart or past each other, is open whatever else it did.
 
     Parameters
     ----------
     assembly : Assembly
-    poses : (blocks, 3) float
+    poses : (blocks, 3 or 6) float
         As for `joint_motion`; best an early instant, while the motion is the collapse
         mechanism and not yet what follows from it.
     least : float, optional
@@ -193,8 +196,11 @@ def classify(
         angle = math.atan2(tangent[0], tangent[1])
         opening = motion.gap[index]
         slips = bool(slip[index] > least > 0)
-        if turn[index] > least > 0:
-            parted = turn[index] * assembly.joint_arrays.length[index]
+        length = assembly.joint_arrays.length[index]
+        if opening.min() > LEFT or slip[index] > length:
+            state = JointState.OPEN
+        elif turn[index] > least > 0:
+            parted = turn[index] * length
             state = _turning(opening, parted, slips=slips)
         else:
             state = JointState.SLIDES if slips else JointState.CLOSED

@@ -183,11 +183,7 @@ class Film:
             f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
             f"μ = {friction}   n = {arch.voussoirs}"
         )
-        least = limit.least_thickness(
-            arch.half_angle, stage.recording.mu, arch.voussoirs, arch.weight
-        ).eta
-        share = "no thickness stands" if least is None else _share(arch.eta / least)
-        below = f"{stage.recording.engine} {stage.recording.engine_version}   {share}"
+        below = f"{stage.recording.engine} {stage.recording.engine_version}   {_load(stage)}"
         x, top = panel.x + 24 * size, self.height
         return [
             Label(x, top - 36 * size, head, size=20 * size, bold=True),
@@ -241,6 +237,19 @@ def _round_length(length: float) -> float:
     """Largest 1, 2 or 5 times a power of ten that is no longer."""
     power = 10.0 ** math.floor(math.log10(length))
     return max(step * power for step in (1, 2, 5) if step * power <= length * (1 + 1e-9))
+
+
+def _load(stage: Stage) -> str:
+    """Say what the arch is up against: its own weight, or gravity that leans."""
+    recording = stage.recording
+    tilt = math.degrees(recording.settings.tilt)
+    if tilt:
+        return f"gravity leans {tilt:.3g}° out of the plane"
+    arch = recording.arch
+    least = limit.least_thickness(
+        arch.half_angle, recording.mu, arch.voussoirs, arch.weight
+    ).eta
+    return "no thickness stands" if least is None else _share(arch.eta / least)
 
 
 def _share(ratio: float) -> str:

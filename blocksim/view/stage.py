@@ -123,6 +123,8 @@ class Stage:
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
         """Line of thrust of the arch at rest, by limit analysis, in pieces (k, 2)."""
+        if self.recording.settings.tilt:
+            return ()
         line, _ = lines_of(picture_of_arch(self.recording.arch, self.recording.mu))
         drawn = np.isfinite(line).all(axis=1)
         pieces = np.split(line, np.flatnonzero(np.diff(drawn)) + 1)
@@ -208,6 +210,9 @@ class Stage:
         return sorted({*range(0, last, 1 + last // SAMPLES), last})
 
     def _joints(self, poses: Array) -> tuple[JointState, ...]:
+        # Joint states are those of motion in the plane.
+        if self.recording.settings.tilt:
+            return (JointState.CLOSED,) * len(self.assembly.joints)
         return tuple(joint.state for joint in classify(self.assembly, poses, least=SEEN))
 
     def _corners(self, earlier: int, later: int, share: float) -> Array:
