@@ -115,6 +115,8 @@ def test_look_up_inverts_least_thickness(
 def test_iso_lines_and_divide() -> None:
     alpha = math.radians(125)
     assert divide_friction(alpha) == pytest.approx(0.8477497839674316, rel=1e-13)
+    # Flat arches: mu -> alpha^3/12, from expanding eqs (8) and (9).
+    assert divide_friction(0.01) == pytest.approx(0.01**3 / 12, rel=1e-4)
     line = iso_half_angle(alpha, np.linspace(0.1, 4, 200))
     assert line.mu.min() > divide_friction(alpha)
     assert (np.diff(line.eta) <= 0).all()

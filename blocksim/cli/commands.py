@@ -173,7 +173,7 @@ def simulate(
     weight: WeightOption = None,
     method: Annotated[str, typer.Option(help=f"An engine: {', '.join(ENGINES)}.")] = "pymunk",
     seconds: Annotated[
-        float | None, typer.Option(help="Time to record [s]; until decided if left out.")
+        float | None, typer.Option(help="Seconds to record; until decided if left out.")
     ] = None,
     tilt: Tilt = None,
     plane_lock: PlaneLock = False,
@@ -298,7 +298,7 @@ def render(
     slow: Slow = None,
     at: At = None,
     height: Height = 720,
-    method: EngineOption = "pymunk",
+    method: EngineOption = None,
 ) -> None:
     """Draw an arch, or film its motion.
 

@@ -15,6 +15,7 @@ from blocksim.cli.console import progress, say
 from blocksim.cli.options import named_options, question
 from blocksim.engines import ENGINES
 from blocksim.errors import MISSING, InputError
+from blocksim.ladder import SPATIAL
 from blocksim.limit import least_thickness
 from blocksim.recording import Recording, load_recording
 from blocksim.scenario import Scenario
@@ -39,7 +40,10 @@ At = Annotated[
 ]
 Height = Annotated[int, typer.Option(help="In pixels; frames are 16:9.")]
 EngineOption = Annotated[
-    str, typer.Option("--method", help=f"Simulates a scenario: {', '.join(ENGINES)}.")
+    str | None,
+    typer.Option(
+        "--method", help=f"Simulates a scenario: {', '.join(ENGINES)}; direct if left out."
+    ),
 ]
 
 
@@ -80,7 +84,7 @@ class RenderOptions:
 
 
 def recordings(
-    scene: str | None, given: Given, method: str, beside: Path | None
+    scene: str | None, given: Given, method: str | None, beside: Path | None
 ) -> list[Recording]:
     """Read recordings, or simulate the scenario."""
     second = [] if beside is None else [load_recording(beside)]
@@ -91,7 +95,16 @@ def recordings(
     asked = question(scene, given.alpha, given.mu, given.voussoirs, given.weight)
     with named_options(), progress() as report:
         arch = asked.arch(_ratio(asked) if given.eta is None else given.eta)
-        run = simulate(arch, mu=asked.mu, method=method, duration=FALL, progress=report)
+        # Of those in the plane, only direct lets blocks fall on the ground.
+        named = method or (SPATIAL if asked.tilt else "direct")
+        run = simulate(
+            arch,
+            mu=asked.mu,
+            method=named,
+            duration=FALL,
+            tilt=asked.tilt,
+            progress=report,
+        )
     return [run, *second]
 
 

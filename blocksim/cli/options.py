@@ -17,16 +17,21 @@ from blocksim.ladder import CHOICES
 from blocksim.scenario import Scenario, load_scenario
 
 Scene = Annotated[str | None, typer.Argument(help="Scenario: a .toml file or a shipped name.")]
-Alpha = Annotated[float | None, typer.Option(help="Half-angle of embrace [deg], 0 to 180.")]
+Alpha = Annotated[
+    float | None, typer.Option(help="Half-angle of embrace in degrees, 0 to 180.")
+]
 Eta = Annotated[float | None, typer.Option(help="Thickness-to-radius ratio, up to 2.")]
 Mu = Annotated[float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")]
-Voussoirs = Annotated[int | None, typer.Option(help="Number of voussoirs, 3 to 1000 [27].")]
+Voussoirs = Annotated[
+    int | None, typer.Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
+]
 WeightOption = Annotated[
-    str | None, typer.Option(help="Where weight acts: centreline or sector [centreline].")
+    str | None, typer.Option(help="Where weight acts: centreline (if left out) or sector.")
 ]
 MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
 Tilt = Annotated[
-    float | None, typer.Option(help="Angle by which gravity leans out of the plane [deg].")
+    float | None,
+    typer.Option(help="Angle by which gravity leans out of the plane, in degrees."),
 ]
 PlaneLock = Annotated[
     bool, typer.Option("--plane-lock", help="Keep voussoirs in the plane by large inertias.")

@@ -139,10 +139,13 @@ def divide_friction(half_angle: float) -> float:
     """Friction at and below which no thickness stands: both joints slide, (8) and (9)."""
     require(0.01 <= half_angle <= 3.0, "half_angle", half_angle, "from 0.01 to 3")
 
+    # Friction goes like the cube of a small half-angle: look for its logarithm.
     angle = _root(
-        lambda angle: divide_half_angle(math.tan(angle)) - half_angle, 1e-3, math.pi / 2 - 1e-4
+        lambda log: divide_half_angle(math.tan(math.exp(log))) - half_angle,
+        math.log(1e-9),
+        math.log(math.pi / 2 - 1e-4),
     )
-    return math.tan(angle)
+    return math.tan(math.exp(angle))
 
 
 def iso_half_angle(half_angle: float, mu: ArrayLike, weight: Weight = "centreline") -> Curve:
