@@ -236,7 +236,7 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
         verdict_expected=scenario.expected_verdict,
         verdict=seen.verdict,
         miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
-        note=seen.reason,
+        note="" if right else seen.reason,
         wall_s=time.perf_counter() - started,
         title=scenario.title,
         source=scenario.source,
