@@ -41,17 +41,11 @@ def test_what_limits_pybullet(tmp_path: Path) -> None:
     assert result.moved[0.1] < result.moved[0.01] / 30
 
 
-def test_the_gain_of_direct_is_taken_at_equal_time(tmp_path: Path) -> None:
-    module = study("direct_against_pymunk")
-    point = module.Point
-    points = [
-        point("pymunk", 1e-2, 1e-3, 1.0),
-        point("pymunk", 1e-4, 2e-5, 5.0),
-        point("direct", 1e-6, 1e-7, 4.0),
-        point("direct", 1e-8, 1e-9, 9.0),
-    ]
-    assert abs(module.gain(points) / 200 - 1) < 1e-12
-    assert set(module.main(tmp_path, quick=True)) == {"semicircle, n = 9"}
+def test_every_method_is_charted(tmp_path: Path) -> None:
+    """What the figures are depends on the machine; `test_workprec` has the errors."""
+    result = study("speed_accuracy").main(tmp_path, quick=True)
+    assert len(result.over_pymunk) == 2
+    assert (tmp_path / "chart.png").stat().st_size > 0
 
 
 def test_every_study_is_listed_with_its_claim() -> None:

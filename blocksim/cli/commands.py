@@ -15,6 +15,7 @@ from blocksim.bracket import bracket as ask_bracket
 from blocksim.check import check as ask_check
 from blocksim.cli.console import (
     answer_with,
+    chart_table,
     picture_kind,
     progress,
     save_picture,
@@ -65,6 +66,7 @@ from blocksim.trial import simulate as record_motion
 from blocksim.validate import disagreements, scenarios
 from blocksim.validate import validate as run_validation
 from blocksim.verdict import Verdict
+from blocksim.workprec import cases, measure
 
 if TYPE_CHECKING:
     pass
@@ -238,6 +240,25 @@ def validate(
     say("wrote " + ", ".join(str(path) for path in paths))
 
 
+@app.command()
+def chart(
+    quick: Annotated[
+        bool, typer.Option("--quick/--full", help="Two small arches, or five.")
+    ] = False,
+    out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/chart"),
+) -> None:
+    """Chart the accuracy of every method that simulates against its time."""
+    # matplotlib takes a second to import, which other commands need not wait for.
+    from blocksim.report.chart import write_chart
+
+    make_folder(out)
+    with progress() as report:
+        points = measure(cases(quick=quick), progress=report)
+    paths = write_chart(points, out)
+    show(chart_table(points))
+    say("wrote " + ", ".join(str(path) for path in paths))
+
+
 @app.command(name="map")
 def draw_map(
     out: Annotated[Path, typer.Option(help="Picture, .svg or .png, or a page, .html.")],
@@ -350,6 +371,6 @@ def doctor() -> None:
     for heading in ("method", "here", "finest bracket", "sees"):
         table.add_column(heading)
     for finding in examine():
-        finest = "exact" if finding.finest == 0 else f"{finding.finest:.2%}"
+        finest = "exact" if finding.finest == 0 else f"{finding.finest:g}"
         table.add_row(finding.method, finding.remedy or "ready", finest, finding.sees)
     show(table)

@@ -19,6 +19,7 @@ from blocksim.files import write_whole
 from blocksim.progress import Progress as Report
 from blocksim.report.answers import ratio
 from blocksim.validate import Row, numbered
+from blocksim.workprec import Point, front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,6 +73,31 @@ def validation_table(rows: list[Row]) -> Table:
             ratio(row.eta_published),
             ratio(row.eta_limit),
             *(_answer(answers.get(engine)) for engine in engines),
+        )
+    return table
+
+
+def chart_table(points: list[Point]) -> Table:
+    """Lay out what was measured for the chart, one line a bracket."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for heading in ("arch", "method", "tol", "error", "s", "contact solves", ""):
+        side = "left" if heading in {"arch", "method", ""} else "right"
+        table.add_column(heading, justify=side, no_wrap=True)
+    best = {
+        point
+        for name in dict.fromkeys(point.case for point in points)
+        for point in front([p for p in points if p.case == name])
+    }
+    for point in points:
+        error = f"{point.error:.1e}" if math.isfinite(point.error) else "none"
+        table.add_row(
+            point.case,
+            point.method,
+            f"{point.tol:g}",
+            error,
+            f"{point.wall_s:.3g}",
+            f"{point.work:.1e}",
+            "on the front" if point in best else "",
         )
     return table
 

@@ -10,7 +10,7 @@ from blocksim.verdict import Verdict
 
 
 class Style(NamedTuple):
-    """How a mode is drawn.
+    """How a mode or a method is drawn.
 
     Parameters
     ----------
@@ -36,6 +36,12 @@ MODES = {
     Mode.RS: Style("#AA4499", "#efd8ec", "D"),
     Mode.R: Style("#332288", "#d8d3ea", "P"),
 }
+METHODS = {
+    "direct": Style("#0072B2", "#cfe3f0", "o"),
+    "pymunk": Style("#D55E00", "#f8dcc9", "s"),
+    "pybullet": Style("#009E73", "#cdebe2", "^"),
+}
+"""Of engines, where they are compared."""
 UNNAMED = Style("#000000", "#ffffff", "*")
 MISS = "#c00000"
 
