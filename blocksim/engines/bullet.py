@@ -125,8 +125,8 @@ class Bullet:
     def settings(self, assembly: Assembly) -> Settings:
         """Choose sweeps that suffice for impulses to cross the assembly.
 
-        What has to cross n blocks takes n^2 sweeps; more where joints are short, and a
-        small moment at one of them is a large change of its pressures.
+        What has to cross n blocks and a support takes (n + 1)^2 sweeps; more where joints
+        are short, and a small moment at one of them is a large change of its pressures.
         """
         pairs = _pairs(assembly)
         return Settings(
@@ -142,9 +142,9 @@ class Bullet:
 
 
 def _pairs(assembly: Assembly) -> float:
-    """Pairs of blocks, as many more as short joints count for."""
+    """Pairs of bodies, as many more as short joints count for."""
     shortest = min(joint.length for joint in assembly.joints) / assembly.size
-    return len(assembly.blocks) ** 2 * max(1.0, SHORT / shortest)
+    return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / shortest)
 
 
 class _Frame:
