@@ -325,8 +325,8 @@ def test_a_stack_of_twenty_stands(engine: str) -> None:
 def test_a_leaning_stack_of_twenty_tips_as_a_whole(engine: str, share: float) -> None:
     """It stands if and only if tan(slope) < width/(20 height).
 
-    pybullet by its onset test alone: let go 1 % before it tips, the stack does not stay
-    within 1e-5 of its place nor fall, which leaves its moving run undecided.
+    pybullet by its onset test alone: 1 % before the stack tips, its moving run does not
+    confirm that it stands.
     """
     tower = stack(math.atan(share / (20 * 0.5)), 1.0, 0.5, 20)
     expected = Verdict.STANDS if share < 1 else Verdict.COLLAPSES
