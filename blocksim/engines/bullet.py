@@ -32,16 +32,15 @@ import sys
 import weakref
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from blocksim.assembly import Array, Assembly, Block, Joint, displacement
+from blocksim.assembly import Array, Assembly, Joint, displacement
 from blocksim.engines.base import Quality, Settings, World
-from blocksim.engines.faces import crowding, faces_of, ledge, side, springings, stands_on
+from blocksim.engines.boxes import OVERLAP, Box, Frame, plate
+from blocksim.engines.faces import faces_of, side, springings, stands_on
 
 
 @contextmanager
@@ -65,12 +64,6 @@ bullet: Any = pybullet
 
 MOST_FRICTION = 10.0
 """Bullet's own bound of a pair's friction."""
-OVERLAP = 2e-5
-"""Overlap of two closed faces, and slop [size]."""
-PLATE = 0.15
-"""Thickness of the box on a face, in units of the block's extent normal to it."""
-THINNEST = 2e-4
-"""Least thickness of the box on a face [size]."""
 BREAKING = 0.1
 """Distance at which contact points count as one, in units of the shortest joint."""
 MOST_BREAKING = 0.02
@@ -115,7 +108,7 @@ class Bullet:
     def __init__(
         self, turn: float = 0.0, origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ) -> None:
-        self._frame = _Frame(turn, origin)
+        self._frame = Frame(turn, origin)
 
     @property
     def version(self) -> str:
@@ -125,8 +118,8 @@ class Bullet:
     def settings(self, assembly: Assembly) -> Settings:
         """Choose sweeps that suffice for impulses to cross the assembly.
 
-        What has to cross n blocks takes n^2 sweeps; more where joints are short, and a
-        small moment at one of them is a large change of its pressures.
+        What has to cross n blocks and a support takes (n + 1)^2 sweeps; more where joints
+        are short, and a small moment at one of them is a large change of its pressures.
         """
         pairs = _pairs(assembly)
         return Settings(
@@ -142,52 +135,15 @@ class Bullet:
 
 
 def _pairs(assembly: Assembly) -> float:
-    """Pairs of blocks, as many more as short joints count for."""
+    """Pairs of bodies, as many more as short joints count for."""
     shortest = min(joint.length for joint in assembly.joints) / assembly.size
-    return len(assembly.blocks) ** 2 * max(1.0, SHORT / shortest)
-
-
-class _Frame:
-    """Where the plane of the assembly lies in Bullet's space."""
-
-    def __init__(self, turn: float, origin: tuple[float, float, float]) -> None:
-        self._turned = Rotation.from_rotvec([0.0, turn, 0.0])
-        self._origin = np.array(origin)
-
-    def vector(self, x: float, y: float, z: float) -> list[float]:
-        """Turn a vector of the plane into Bullet's space."""
-        turned: list[float] = self._turned.apply([x, y, z]).tolist()
-        return turned
-
-    def place(self, centre: Array) -> list[float]:
-        """Where a point of the plane lies, x, y, z."""
-        x, y, z = self.vector(centre[0], centre[1], 0.0)
-        return [x + self._origin[0], y + self._origin[1], z + self._origin[2]]
-
-    @property
-    def quaternion(self) -> list[float]:
-        """How a block at rest is turned."""
-        turned: list[float] = self._turned.as_quat().tolist()
-        return turned
-
-    def motions(self, linear: Array, angular: Array) -> Array:
-        """Return velocities as columns x, y, rotation; z, rotation vector's x, y."""
-        back = self._turned.inv()
-        shift, turn = back.apply(linear), back.apply(angular)
-        return np.column_stack([shift[:, :2], turn[:, 2], shift[:, 2], turn[:, :2]])
-
-    def poses(self, places: Array, quaternions: Array) -> Array:
-        """Return places and orientations in the same columns."""
-        since = Rotation.from_quat(quaternions) * self._turned.inv()
-        return self.motions(places - self._origin, since.as_rotvec())
+    return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / shortest)
 
 
 class _Bodies:
     """Bullet's space with one body for each block."""
 
-    def __init__(
-        self, assembly: Assembly, mu: float, settings: Settings, frame: _Frame
-    ) -> None:
+    def __init__(self, assembly: Assembly, mu: float, settings: Settings, frame: Frame) -> None:
         self._assembly, self._settings, self._frame = assembly, settings, frame
         self._pairs = _pairs(assembly)
         self._client = bullet.connect(bullet.DIRECT)
@@ -231,7 +187,7 @@ class _Bodies:
     def _block(self, index: int, faces: list[Joint]) -> int:
         """Create a body that is a thin box on each of its block's faces."""
         block, size = self._assembly.blocks[index], self._assembly.size
-        boxes = [_plate(block, index, joint, faces, size) for joint in faces]
+        boxes = [plate(block, index, joint, faces, size) for joint in faces]
         shape = bullet.createCollisionShapeArray(
             shapeTypes=[bullet.GEOM_BOX] * len(boxes),
             halfExtents=[box.half for box in boxes],
@@ -257,7 +213,7 @@ class _Bodies:
         length = joint.length / size
         into = side(joint, stands_on(joint)) * joint.normal
         centre = (joint.inner + joint.outer) / 2 / size - into * (length - OVERLAP) / 2
-        box = _Box.along(joint, [1.5 * length, length / 2, block.depth / size], centre)
+        box = Box.along(joint, [1.5 * length, length / 2, block.depth / size], centre)
         shape = bullet.createCollisionShapeArray(
             shapeTypes=[bullet.GEOM_BOX],
             halfExtents=[box.half],
@@ -339,49 +295,3 @@ class _Bodies:
         ]
         linear, angular = zip(*read, strict=True)
         return self._frame.motions(np.array(linear), np.array(angular))
-
-
-@dataclass(frozen=True)
-class _Box:
-    """A box in the frame of its body: half extents, centre, orientation."""
-
-    half: list[float]
-    centre: list[float]
-    quaternion: list[float]
-
-    @classmethod
-    def along(cls, joint: Joint, half: list[float], centre: Array) -> _Box:
-        """Return one whose first axis is the joint's tangent and whose last is the depth."""
-        angle = math.atan2(joint.tangent[1], joint.tangent[0])
-        quaternion = [0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)]
-        return cls(half=half, centre=[*centre.tolist(), 0.0], quaternion=quaternion)
-
-
-def _plate(block: Block, index: int, joint: Joint, faces: list[Joint], size: float) -> _Box:
-    """Return the box on one face of a block."""
-    inward = side(joint, index) * joint.normal
-    extent = float(((block.vertices - joint.inner) @ inward).max()) / size
-    ends = ((joint.inner, joint.tangent), (joint.outer, -joint.tangent))
-    narrowest = min(
-        (
-            float(np.hypot(*(corner - end))) / size
-            for end, _ in ends
-            for other in faces
-            if other is not joint
-            for corner in (other.inner, other.outer)
-        ),
-        default=extent,
-    )
-    thickness = min(PLATE * extent, max(narrowest / 2, THINNEST))
-    beyond = ledge(joint, index, size)
-    cuts = [max(-beyond, crowding(*end, faces, size, thickness)) for end in ends]
-    inner, outer = (
-        end / size + along * cut for (end, along), cut in zip(ends, cuts, strict=True)
-    )
-    half = [
-        float(np.hypot(*(outer - inner))) / 2,
-        thickness / 2,
-        block.depth / size / 2 + beyond,
-    ]
-    centre = (inner + outer) / 2 + inward * (thickness - OVERLAP) / 2 - block.centre / size
-    return _Box.along(joint, half, centre)

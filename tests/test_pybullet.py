@@ -1,0 +1,241 @@
+"""The pybullet engine: both sides of the least thickness, what cannot matter, what it says.
+
+Held to limit analysis, and to invariance: where in Bullet's space the arch stands and how
+it is turned there, mirror, size, order of insertion, which run it is.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from blocksim import limit
+from blocksim.arch import Arch
+from blocksim.assembly import SPATIAL, SUPPORT, Assembly, Joint
+from blocksim.check import check
+from blocksim.engines.base import Engine
+from blocksim.errors import InputError
+from blocksim.modes import Mode
+from blocksim.onset import onset
+from blocksim.recording import load_recording
+from blocksim.trial import simulate, trial
+from blocksim.verdict import Verdict
+
+pytest.importorskip("pybullet", exc_type=ImportError)
+
+from blocksim.engines.bullet import Bullet
+
+ARCHES = [
+    (90, 0.7, 9, "centreline", Mode.RRR),
+    (90, 0.35, 10, "centreline", Mode.SRR),
+    (145, 1.6, 17, "centreline", Mode.RRS),
+    (155, 3.0, 11, "centreline", Mode.RS),
+]
+SIDES = [(0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)]
+THIN = Arch(half_angle=math.pi / 2, eta=0.08, voussoirs=9)
+
+
+def arch_at(ratio: float, angle: float, mu: float, count: int, weight: str) -> Arch:
+    alpha = math.radians(angle)
+    least = limit.least_thickness(alpha, mu, count, weight).eta
+    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
+
+
+def held(
+    assembly: Assembly, mu: float, engine: Engine | None = None
+) -> tuple[Verdict, np.ndarray]:
+    """Verdict of the onset test and the accelerations it ends with."""
+    engine = engine or Bullet()
+    settings = engine.settings(assembly)
+    world = engine.build(assembly, mu, settings)
+    seen = onset(world, assembly, settings)
+    return seen.verdict, world.hold(5000)
+
+
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
+def test_both_sides_of_the_least_thickness(
+    angle: float,
+    mu: float,
+    count: int,
+    weight: str,
+    mode: Mode,
+    ratio: float,
+    expected: Verdict,
+) -> None:
+    """Onset test and moving run, 1 % below and above."""
+    assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
+    seen = trial(arch_at(ratio, angle, mu, count, weight), mu, "pybullet")
+    assert seen.verdict is expected
+    assert seen.motion.verdict is expected
+
+
+@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
+def test_mode_just_below_the_least_thickness(
+    angle: float, mu: float, count: int, weight: str, mode: Mode
+) -> None:
+    arch = arch_at(0.995, angle, mu, count, weight)
+    seen = trial(arch, mu, "pybullet", moving=False)
+    assert seen.verdict is Verdict.COLLAPSES
+    assert seen.mode is mode
+
+
+@pytest.mark.xfail(strict=True, reason="impulses find a motion where rest is possible, too")
+@pytest.mark.parametrize("engine", ["pymunk", "pybullet"])
+def test_few_thick_voussoirs_above_the_least_thickness(engine: str) -> None:
+    """Known fault: 5 % above, `limit` and `direct` find rest, impulse engines a motion.
+
+    pymunk's motion has the same accelerations after 1,000 and 160,000 sweeps and closes no
+    joint, so it is no lack of sweeps.
+    """
+    arch = arch_at(1.05, 155, 3.0, 7, "centreline")
+    assert trial(arch, 3.0, "direct").verdict is Verdict.STANDS
+    assert trial(arch, 3.0, engine).verdict is Verdict.STANDS
+
+
+ELSEWHERE = {
+    "turned by 90": Bullet(turn=math.radians(90)),
+    "far away": Bullet(origin=(100.0, 0.0, 100.0)),
+}
+
+
+@pytest.mark.parametrize("where", ELSEWHERE)
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES[:2])
+def test_where_the_arch_stands_does_not_matter(
+    angle: float,
+    mu: float,
+    count: int,
+    weight: str,
+    mode: Mode,
+    ratio: float,
+    expected: Verdict,
+    where: str,
+) -> None:
+    assembly = arch_at(ratio, angle, mu, count, weight).assembly()
+    verdict, start = held(assembly, mu, ELSEWHERE[where])
+    assert verdict is expected, mode
+    assert start == pytest.approx(held(assembly, mu)[1], abs=1e-6)
+
+
+@pytest.mark.parametrize("degrees", [15, 30, 45, 60])
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+def test_turned_by_any_angle_where_nothing_slides(
+    ratio: float, expected: Verdict, degrees: float
+) -> None:
+    assembly = arch_at(ratio, *ARCHES[0][:4]).assembly()
+    assert held(assembly, 0.7, Bullet(turn=math.radians(degrees)))[0] is expected
+
+
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+def test_turned_by_45_degrees_friction_is_larger(ratio: float, expected: Verdict) -> None:
+    """Known limit: a level joint between bodies at rest has a box of friction, not a cone.
+
+    Bullet then takes the axes of its own space for the two directions of friction, each
+    with a bound of its own. Along the diagonal they bear sqrt(2) mu together: with
+    mu/sqrt(2) the least thickness is that of mu, and with mu an arch whose springings
+    slide stands when it should not. That is why the plane lies along those axes.
+    """
+    angle, mu, count, weight, _ = ARCHES[1]
+    assembly = arch_at(ratio, angle, mu, count, weight).assembly()
+    diagonal = Bullet(turn=math.radians(45))
+    assert held(assembly, mu / math.sqrt(2), diagonal)[0] is expected
+    assert held(assembly, mu, diagonal)[0] is Verdict.STANDS
+
+
+def mirrored(assembly: Assembly) -> Assembly:
+    flip = np.array([-1.0, 1.0])
+    blocks = tuple(
+        replace(block, vertices=(block.vertices * flip)[::-1], centre=block.centre * flip)
+        for block in assembly.blocks
+    )
+    joints = tuple(
+        Joint(before=j.after, after=j.before, inner=j.inner * flip, outer=j.outer * flip)
+        for j in assembly.joints
+    )
+    return Assembly(blocks=blocks, joints=joints, size=assembly.size)
+
+
+def shuffled(assembly: Assembly) -> Assembly:
+    random = np.random.default_rng(1)
+    order = random.permutation(len(assembly.blocks))
+    place = {SUPPORT: SUPPORT, **{int(old): new for new, old in enumerate(order)}}
+    joints = [
+        Joint(before=place[j.before], after=place[j.after], inner=j.inner, outer=j.outer)
+        for j in assembly.joints
+    ]
+    return Assembly(
+        blocks=tuple(assembly.blocks[old] for old in order),
+        joints=tuple(joints[i] for i in random.permutation(len(joints))),
+        size=assembly.size,
+    )
+
+
+@pytest.mark.parametrize("change", [mirrored, shuffled])
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+def test_mirror_and_order_change_no_verdict(ratio: float, expected: Verdict, change) -> None:
+    for angle, mu, count, weight, _ in ARCHES[:2]:
+        assembly = arch_at(ratio, angle, mu, count, weight).assembly()
+        assert held(change(assembly), mu)[0] is expected
+
+
+@pytest.mark.parametrize("radius", [0.01, 100.0])
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+def test_size_changes_nothing(ratio: float, expected: Verdict, radius: float) -> None:
+    """Radius and depth together: a deeper arch is another one in space."""
+    arch = arch_at(ratio, 90, 0.7, 9, "centreline")
+    other = replace(arch, radius=radius, depth=radius)
+    verdict, start = held(other.assembly(), 0.7)
+    assert verdict is expected
+    assert start == pytest.approx(held(arch.assembly(), 0.7)[1], abs=1e-6)
+
+
+def test_same_motion_in_every_run() -> None:
+    first, second = (
+        simulate(THIN, mu=0.6, method="pybullet", duration=1.0).state_hash for _ in range(2)
+    )
+    assert first == second
+    assert simulate(THIN, mu=0.3, method="pybullet", duration=1.0).state_hash != first
+
+
+@pytest.mark.parametrize(
+    ("ratio", "right"), [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
+)
+def test_a_thin_arch_is_never_answered_wrongly(ratio: float, right: Verdict) -> None:
+    """Its joints are shorter than Bullet's own breaking threshold for contact points."""
+    verdict, _ = held(arch_at(ratio, 41, 0.7, 11, "centreline").assembly(), 0.7)
+    assert verdict in {right, Verdict.UNDECIDED}
+
+
+def test_the_reason_names_plane_lock_and_bounded_friction() -> None:
+    thick = replace(THIN, eta=0.3)
+    locked = trial(thick, 0.7, "pybullet", moving=False, plane_lock=True)
+    assert "kept in its plane" in locked.reason
+    assert "as friction" not in locked.reason
+    rough = trial(thick, 20.0, "pybullet", moving=False)
+    assert "pybullet took 10 as friction" in rough.reason
+    assert "plane" not in rough.reason
+
+
+@pytest.mark.parametrize("method", ["theory", "limit", "direct", "pymunk"])
+def test_planar_methods_take_no_tilt(method: str) -> None:
+    with pytest.raises(InputError) as caught:
+        check(THIN, mu=0.7, method=method, tilt=0.1)
+    assert caught.value.field == "method"
+    assert "pybullet" in str(caught.value)
+
+
+def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
+    thick = replace(THIN, eta=0.3)
+    recording = simulate(thick, mu=0.7, method="pybullet", duration=0.5, tilt=0.7)
+    path = tmp_path / "run.npz"
+    recording.save(path)
+    again = load_recording(path)
+    assert again.poses.shape == (len(again.times), THIN.voussoirs, SPATIAL)
+    assert again.state_hash == recording.state_hash
+    assert again.settings.tilt == 0.7
+    assert again.beyond_plane[-1] > 1e-2
