@@ -8,6 +8,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
 
+from blocksim import limit
 from blocksim.arch import Arch
 from blocksim.bracket import ETA_MAX, Bracket, bracket
 from blocksim.engines import get_engine
@@ -325,8 +326,13 @@ def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
             )
         else:
             notes.append(f"0.2 % below it is {nearer or 'unnamed'}")
-    if scenario.mu > get_engine(found.method).most_friction:
-        notes.append(f"friction is {get_engine(found.method).most_friction:g} in the engine")
+    most = get_engine(found.method).most_friction
+    if scenario.mu > most:
+        there = limit.least_thickness(
+            scenario.half_angle, most, scenario.voussoirs, scenario.weight
+        )
+        least = "nothing stands" if there.eta is None else f"{there.eta:.6g}, {there.mode}"
+        notes.append(f"friction is {most:g} in the engine, where limit analysis says {least}")
     return "; ".join(notes)
 
 

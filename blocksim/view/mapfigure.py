@@ -36,7 +36,7 @@ CENTRAL_NAMES = {
     Mode.RRS: (2.1, 0.87),
     Mode.RS: (2.15, 1.1),
 }
-LETTERS = {"T": (-11, 3), "S": (-11, -9), "J": (-11, 3), "B": (6, -12)}
+LETTERS = {"T": (-13, 4), "S": (-19, -12), "J": (-17, 6), "B": (13, -9)}
 """Where the letter of each landmark begins, in points from it."""
 POINT = (0.009, 0.0052)
 """Friction and thickness that a typographic point covers on the whole map, about."""
