@@ -7,7 +7,7 @@ import tomllib
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, TypeVar
 
 from pydantic import Field, TypeAdapter, ValidationError
 
@@ -19,6 +19,7 @@ from blocksim.verdict import Verdict
 LARGEST_FILE = 64 * 1024
 """Bytes; a larger file is not read."""
 
+Table = TypeVar("Table")
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 
 
@@ -172,17 +173,37 @@ def load_scenario(name: str) -> Scenario:
     if not path.is_file():
         allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
         raise InputError("scenario", name, allowed)
+    written = read_table(path, ScenarioFile, "scenario")
+    return _scenario(path.stem, written)
+
+
+def read_table(path: Path, schema: type[Table], what: str) -> Table:
+    """Read a TOML file as a dataclass says.
+
+    Parameters
+    ----------
+    path : Path
+        An existing file.
+    schema : type
+        A dataclass; unknown keys are refused where it forbids them.
+    what : str
+        What the file is, for what is said of one too large.
+
+    Raises
+    ------
+    InputError
+        In one line, with file, field, value and what is allowed.
+    """
     if path.stat().st_size > LARGEST_FILE:
-        raise InputError("scenario", name, f"at most {LARGEST_FILE} bytes")
+        raise InputError(what, str(path), f"at most {LARGEST_FILE} bytes")
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError("file", str(error), "valid TOML", where=str(path)) from None
     try:
-        written = TypeAdapter(ScenarioFile).validate_python(table)
+        return TypeAdapter(schema).validate_python(table)
     except ValidationError as error:
         raise _first_of(error, str(path)) from None
-    return _scenario(path.stem, written)
 
 
 def _first_of(error: ValidationError, where: str) -> InputError:

@@ -50,6 +50,7 @@ from blocksim.cli.options import (
     named_options,
     question,
 )
+from blocksim.cli.sweeping import run_sweep
 from blocksim.doctor import examine
 from blocksim.engines import ENGINES
 from blocksim.errors import MISSING, BlocksimError, InputError
@@ -257,6 +258,22 @@ def chart(
     paths = write_chart(points, out)
     show(chart_table(points))
     say("wrote " + ", ".join(str(path) for path in paths))
+
+
+@app.command()
+def sweep(
+    design: Annotated[Path, typer.Argument(help="Which arches to ask about: a .toml file.")],
+    out: Annotated[
+        Path, typer.Option(help="Folder for the rows; one that has some is resumed.")
+    ],
+    workers: Annotated[int, typer.Option(min=1, max=256, help="Processes.")] = 2,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a dask scheduler, instead of processes.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Ask about many arches; a kill at any moment loses nothing that was done."""
+    run_sweep(design, out, workers, scheduler, as_json=as_json)
 
 
 @app.command(name="map")

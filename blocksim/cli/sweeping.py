@@ -1,0 +1,56 @@
+"""The `sweep` command: a design to an executor, and what became of it in words."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
+
+from blocksim.cli.console import answer_with, progress
+from blocksim.sweep import Summary, load_design
+from blocksim.sweep import sweep as ask_sweep
+from blocksim.sweep.cluster import cluster
+
+
+def run_sweep(
+    path: Path, out: Path, workers: int, scheduler: str | None, *, as_json: bool
+) -> None:
+    """Run a design on processes or on a cluster, and say what was done."""
+    design = load_design(path)
+    with ExitStack() as stack:
+        executor = None
+        if scheduler is not None:
+            executor, workers = stack.enter_context(cluster(scheduler))
+        report = stack.enter_context(progress())
+        done = ask_sweep(design, out, executor=executor, workers=workers, progress=report)
+    answer_with(summary_record(done), summary_lines(done, out), as_json=as_json)
+
+
+def summary_record(done: Summary) -> dict[str, object]:
+    """Return a summary as `sweep --json` prints it."""
+    return {
+        "cases": done.cases,
+        "found": done.found,
+        **asdict(done.tally),
+        "saved_s": done.saved_s,
+        "wall_s": done.wall_s,
+    }
+
+
+def summary_lines(done: Summary, out: Path) -> list[str]:
+    """Return a summary in words."""
+    tally = done.tally
+    lines = [f"{done.cases} cases: {done.found} were there, {tally.rows} rows added to {out}"]
+    if tally.rows:
+        lines.append(
+            f"  took      {done.wall_s:.3g} s, {tally.rows / done.wall_s:.3g} a second"
+        )
+    if tally.simulated:
+        mean = tally.simulated_s / tally.simulated
+        lines.append(f"  simulated {tally.simulated}, {mean:.2g} s each")
+    if tally.spared:
+        saved = "" if done.saved_s is None else f": about {done.saved_s:.3g} s saved"
+        lines.append(f"  settled   {tally.spared} by limit analysis instead{saved}")
+    if tally.failed:
+        lines.append(f"  failed    {tally.failed}: see error in their rows")
+    return lines

@@ -1,0 +1,330 @@
+"""Designs: which arches a sweep asks about, as a TOML file says."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from hashlib import blake2b
+from pathlib import Path
+from typing import Annotated, ClassVar, NamedTuple, cast
+
+import numpy as np
+from pydantic import BeforeValidator, Field
+
+from blocksim.arch import WEIGHTS, Weight, is_number, require
+from blocksim.bracket import ETA_MAX
+from blocksim.errors import MISSING, InputError
+from blocksim.ladder import CHOICES, METHODS, STATIC
+from blocksim.scenario import read_table
+
+LARGEST_DESIGN = 20_000_000
+"""Cases of one sweep: their identities are held in memory, about 0.1 kB each."""
+DRAWN_AT_ONCE = 4096
+"""Arches drawn together; a longer random design begins with those of a shorter one."""
+AUTO_BAND = 0.001
+"""Share of the least thickness within which `auto` simulates."""
+AUTO_ENGINE = "direct"
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=True)]
+
+
+class Case(NamedTuple):
+    """One question about one arch.
+
+    Parameters
+    ----------
+    alpha_deg : float
+        Half-angle of embrace [deg].
+    mu : float
+    voussoirs : int
+    weight : str
+    eta : float or None
+        Thickness-to-radius ratio.
+    ratio : float or None
+        Thickness over the least thickness of the voussoirs as built. Where this and
+        `eta` are None, the question is how thin the arch can be.
+    method : str
+    band : float
+        An engine simulates arches within this share of their least thickness.
+    tol : float
+        Relative width of the bracket of an engine; 0 where nothing is bracketed.
+    """
+
+    alpha_deg: float
+    mu: float
+    voussoirs: int
+    weight: Weight
+    eta: float | None
+    ratio: float | None
+    method: str
+    band: float
+    tol: float
+
+    @property
+    def engine(self) -> str:
+        """Method that answers where simulation is worth it; static ones never do."""
+        return AUTO_ENGINE if self.method == "auto" else self.method
+
+    @property
+    def is_bracket(self) -> bool:
+        """Whether the question is how thin the arch can be."""
+        return self.eta is None and self.ratio is None
+
+    def identity(self, version: str) -> bytes:
+        """Hash of what is asked and of the version of the method that answers."""
+        return blake2b(f"{tuple(self)!r} {version}".encode(), digest_size=12).digest()
+
+
+def _as_table(written: object) -> object:
+    """Take a number or a list for an axis of values."""
+    if isinstance(written, list):
+        return {"values": cast("list[object]", written)}
+    return cast("object", written) if isinstance(written, dict) else {"values": [written]}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """Values of one quantity: a list, or a range of evenly spaced ones.
+
+    Parameters
+    ----------
+    values : tuple of float
+    low, high : float, optional
+        Range, both ends included.
+    steps : int, optional
+        Number of values in the range; a random design draws from anywhere in it.
+    log : bool
+        Evenly spaced in the logarithm.
+    """
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    values: Annotated[tuple[Number, ...], Field(max_length=10_000)] = ()
+    low: Annotated[float, Field(strict=True, allow_inf_nan=False)] | None = None
+    high: Annotated[float, Field(strict=True, allow_inf_nan=False)] | None = None
+    steps: Annotated[int, Field(ge=2, le=1_000_000, strict=True)] | None = None
+    log: Annotated[bool, Field(strict=True)] = False
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Values, or the ends of the range: all are in range where these are."""
+        if self.low is not None and self.high is not None:
+            return self.low, self.high
+        return self.values
+
+    def every(self) -> list[float]:
+        """Values in order."""
+        if self.low is None or self.high is None or self.steps is None:
+            return list(self.values)
+        spaced = np.geomspace if self.log else np.linspace
+        return spaced(self.low, self.high, self.steps).tolist()
+
+    def draw(self, generator: np.random.Generator, whole: bool) -> list[float]:
+        """Values at random, evenly spread; whole numbers include both ends."""
+        count = DRAWN_AT_ONCE
+        if self.low is None or self.high is None:
+            return generator.choice(np.array(self.values), count).tolist()
+        low, high = (self.low - 0.5, self.high + 0.5) if whole else (self.low, self.high)
+        share = generator.random(count)
+        drawn = low * (high / low) ** share if self.log else low + (high - low) * share
+        return np.clip(drawn, self.low, self.high).tolist()
+
+
+AxisField = Annotated[Axis, BeforeValidator(_as_table)]
+
+
+def _as_list(written: object) -> object:
+    """Take a single word for a list of one."""
+    return cast("object", written) if isinstance(written, list) else [written]
+
+
+Words = Annotated[
+    tuple[str, ...], Field(min_length=1, max_length=10), BeforeValidator(_as_list)
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RandomTable:
+    """Table `[random]`: draw arches instead of taking every combination."""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    count: Annotated[int, Field(ge=1, strict=True)]
+    seed: Annotated[int, Field(ge=0, strict=True)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Design:
+    """Every combination of the values given, or a number of arches drawn from them.
+
+    Parameters
+    ----------
+    alpha_deg, mu : Axis
+    voussoirs : Axis
+    weight : tuple of str
+    eta, ratio : Axis, optional
+        Thickness over the radius, or over the least thickness of the voussoirs as
+        built; with neither the question is how thin the arch can be.
+    method : tuple of str
+        Every arch is put to each.
+    band : float, optional
+        Engines simulate arches within this share of their least thickness, and `limit`
+        answers for the others. By default a named engine simulates all, and `auto`
+        those within 0.001, with `direct`.
+    tol : float
+        Relative width of an engine's bracket.
+    random : RandomTable, optional
+    """
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    alpha_deg: AxisField
+    mu: AxisField
+    voussoirs: AxisField = Axis(values=(27.0,))
+    weight: Words = ("centreline",)
+    eta: AxisField | None = None
+    ratio: AxisField | None = None
+    method: Words = ("auto",)
+    band: Number | None = None
+    tol: Number = 0.005
+    random: RandomTable | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of cases, those that occur twice included."""
+        arches = math.prod(len(axis.every()) for axis in self._axes())
+        if self.random is None:
+            return arches * len(self.weight) * len(self.method)
+        return self.random.count * len(self.method)
+
+    def cases(self) -> Iterator[Case]:
+        """Give the cases one after the other, always in the same order."""
+        arches = self._grid() if self.random is None else self._drawn(self.random)
+        free = [(*self._width(method), method) for method in self.method]
+        for alpha, mu, voussoirs, weight, eta, ratio in arches:
+            for band, tol, method in free:
+                yield Case(alpha, mu, round(voussoirs), weight, eta, ratio, method, band, tol)
+
+    def _axes(self) -> list[Axis]:
+        axes = self.alpha_deg, self.mu, self.voussoirs, self.eta, self.ratio
+        return [axis for axis in axes if axis is not None]
+
+    def _width(self, method: str) -> tuple[float, float]:
+        """Band and tolerance of one method, 0 where it has none: then they change nothing."""
+        bracketed = self.eta is None and self.ratio is None
+        if method in STATIC or (bracketed and method == "auto"):
+            return 0.0, 0.0
+        band = AUTO_BAND if method == "auto" else math.inf
+        return (0.0, self.tol) if bracketed else (self.band or band, 0.0)
+
+    def _grid(self) -> Iterator[_Arch]:
+        return itertools.product(
+            self.alpha_deg.every(),
+            self.mu.every(),
+            self.voussoirs.every(),
+            cast("tuple[Weight, ...]", self.weight),
+            [None] if self.eta is None else self.eta.every(),
+            [None] if self.ratio is None else self.ratio.every(),
+        )
+
+    def _drawn(self, table: RandomTable) -> Iterator[_Arch]:
+        generator = np.random.default_rng(table.seed)
+        nothing = [None] * DRAWN_AT_ONCE
+        for start in range(0, table.count, DRAWN_AT_ONCE):
+            block = zip(
+                self.alpha_deg.draw(generator, whole=False),
+                self.mu.draw(generator, whole=False),
+                self.voussoirs.draw(generator, whole=True),
+                cast("list[Weight]", generator.choice(self.weight, DRAWN_AT_ONCE).tolist()),
+                nothing if self.eta is None else self.eta.draw(generator, whole=False),
+                nothing if self.ratio is None else self.ratio.draw(generator, whole=False),
+                strict=True,
+            )
+            yield from itertools.islice(block, table.count - start)
+
+
+_Arch = tuple[float, float, float, Weight, float | None, float | None]
+
+
+def load_design(path: Path) -> Design:
+    """Read a design.
+
+    Parameters
+    ----------
+    path : Path
+        TOML file with the fields of `Design`.
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    InputError
+        In one line, with file, field, value and what is allowed.
+    """
+    if not path.is_file():
+        raise InputError("design", str(path), "an existing .toml file")
+    design = read_table(path, Design, "design")
+    try:
+        _require_ranges(design)
+    except InputError as error:
+        raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
+    return design
+
+
+def _require_ranges(design: Design) -> None:
+    """Raise `InputError` where a case would be out of range."""
+    spaced = design.random is None
+    for field, top, allowed in (
+        ("alpha_deg", math.nextafter(180, 0), "above 0 and below 180"),
+        ("mu", math.inf, "above 0 (inf for unbounded friction)"),
+        ("voussoirs", 1000, "a whole number from 3 to 1000"),
+        ("eta", ETA_MAX, "above 0 and at most 2"),
+        ("ratio", 100, "above 0 and at most 100"),
+    ):
+        axis = cast("Axis | None", getattr(design, field))
+        if axis is None:
+            continue
+        _require_axis(field, axis, spaced)
+        for value in axis.ends:
+            require(is_number(value, 0, top), field, value, allowed)
+        if field == "voussoirs":
+            for value in (*axis.ends, *(axis.every() if spaced else ())):
+                require(3 <= value == int(value), field, value, allowed)
+    for field, words, known in (
+        ("weight", design.weight, WEIGHTS),
+        ("method", design.method, CHOICES),
+    ):
+        for word in words:
+            require(word in known, field, word, f"one of {', '.join(known)}")
+    both = design.eta is not None and design.ratio is not None
+    require(not both, "ratio", "given", "left out where eta is given")
+    band_ok = design.band is None or is_number(design.band, 0, math.inf)
+    require(band_ok, "band", design.band, "above 0 (inf to simulate every arch)")
+    require(is_number(design.tol, 0, 0.5), "tol", design.tol, "above 0 and at most 0.5")
+    if design.eta is None and design.ratio is None:
+        require(design.band is None, "band", design.band, "left out where brackets are asked")
+        for name in set(design.method) - {"auto"}:
+            finest = METHODS[name].finest
+            require(design.tol >= finest, "tol", design.tol, f"at least {finest:g} for {name}")
+    count = design.size
+    ok = 0 < count <= LARGEST_DESIGN
+    require(ok, "design", f"{count} cases", f"at most {LARGEST_DESIGN} cases")
+
+
+def _require_axis(field: str, axis: Axis, spaced: bool) -> None:
+    """Raise `InputError` unless an axis is either a list or a whole range."""
+    if axis.low is None and axis.high is None and axis.steps is None:
+        require(bool(axis.values), field, list(axis.values), "a value, a list or a range")
+        require(not axis.log, f"{field}.log", axis.log, "left out of a list")
+        return
+    require(not axis.values, f"{field}.values", list(axis.values), "left out of a range")
+    for name, value in (("low", axis.low), ("high", axis.high)):
+        require(value is not None, f"{field}.{name}", MISSING, "given in a range")
+    low, high = axis.low or 0.0, axis.high or 0.0
+    require(low < high, f"{field}.high", high, f"above low = {low}")
+    if spaced:
+        require(axis.steps is not None, f"{field}.steps", MISSING, "given in a grid")
