@@ -143,11 +143,12 @@ def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
         _by_simulation(cases[k], rows[k])
     tally = Tally(rows=len(rows), failed=sum(row["error"] is not None for row in rows))
     seconds: defaultdict[Kind, tuple[int, float]] = defaultdict(lambda: (0, 0.0))
-    for case, row in zip(cases, rows, strict=True):
+    simulated = set(simulations)
+    for k, (case, row) in enumerate(zip(cases, rows, strict=True)):
         kind, wall = Kind.of(case), float(str(row["wall_s"]))
         count, total = seconds[kind]
         seconds[kind] = count + 1, total + wall
-        if row["method"] not in STATIC:
+        if k in simulated:
             tally.simulated += 1
             tally.simulated_s += wall
         elif case.band and row["error"] is None:

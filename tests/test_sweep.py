@@ -1,0 +1,462 @@
+"""Sweeps ask what they are told to, answer as the single questions do, and lose no row."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+import blocksim.sweep.answers
+import blocksim.sweep.run
+from blocksim import Arch, bracket, check
+from blocksim.errors import InputError
+from blocksim.sweep import Case, Design, load_design, read_rows, sweep
+from blocksim.sweep.answers import Answered, Asked, answer
+from blocksim.sweep.shards import identities
+
+GRID = """
+alpha_deg = { low = 60, high = 150, steps = 4 }
+mu = [0.5, 0.9, inf]
+voussoirs = [9, 12]
+eta = [0.05, 0.1]
+weight = ["centreline", "sector"]
+method = ["theory", "limit"]
+"""
+SIMULATED = """
+alpha_deg = { low = 60, high = 150 }
+mu = { low = 0.4, high = 2, log = true }
+voussoirs = { low = 7, high = 12 }
+eta = { low = 0.05, high = 0.2 }
+method = ["limit", "direct"]
+[random]
+count = 40
+seed = 7
+"""
+Rows = dict[str, dict[str, object]]
+
+
+def design_of(folder: Path, text: str) -> Design:
+    path = folder / "design.toml"
+    path.write_text(text)
+    return load_design(path)
+
+
+def rows_of(folder: Path) -> Rows:
+    """Rows by identity without their times; none may be there twice."""
+    rows = list(read_rows(folder))
+    found = {str(row["id"]): {**row, "wall_s": None} for row in rows}
+    assert len(found) == len(rows)
+    return found
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
+    folder = tmp_path_factory.mktemp("uninterrupted")
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(folder, SIMULATED), folder, executor=executor)
+    rows = rows_of(folder)
+    assert len(rows) == 80
+    assert all(row["error"] is None for row in rows.values())
+    return rows
+
+
+def test_a_grid_takes_every_combination(tmp_path: Path) -> None:
+    design = design_of(tmp_path, GRID)
+    cases = list(design.cases())
+    assert len(cases) == design.size == 4 * 3 * 2 * 2 * 2 * 2
+    assert len(set(cases)) == len(cases)
+    assert {case.alpha_deg for case in cases} == {60.0, 90.0, 120.0, 150.0}
+    assert {case.mu for case in cases} == {0.5, 0.9, math.inf}
+
+
+def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
+    few = list(design_of(tmp_path, SIMULATED).cases())
+    assert few == list(design_of(tmp_path, SIMULATED).cases())
+    more = list(design_of(tmp_path, SIMULATED.replace("40", "5000")).cases())
+    assert more[: len(few)] == few
+    assert len(more) == 10_000
+    assert few != list(design_of(tmp_path, SIMULATED.replace("seed = 7", "seed = 8")).cases())
+    assert all(60 <= case.alpha_deg <= 150 and 0.4 <= case.mu <= 2 for case in more)
+    # Even over the whole numbers, ends included: 833 of each in 5000, +-5 standard errors.
+    counts = Counter(case.voussoirs for case in more)
+    assert sorted(counts) == [7, 8, 9, 10, 11, 12]
+    assert all(abs(count / 2 - 833) < 132 for count in counts.values())
+    # Log-uniform: half of the draws lie below the geometric mean.
+    below = sum(case.mu < math.sqrt(0.8) for case in more) / len(more)
+    assert abs(below - 0.5) < 0.036
+
+
+def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
+    case = Case(90.0, 0.7, 27, "centreline", 0.1, None, "limit", 0.0, 0.0)
+    same = Case(*case)
+    assert case.identity("1") == same.identity("1")
+    assert case.identity("1") != case.identity("2")
+    others = [case._replace(mu=0.70001), case._replace(eta=None, ratio=0.1)]
+    assert len({each.identity("1") for each in (case, *others)}) == 3
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("alpha_deg = {", "alpha = {"), "alpha = "),
+        (("high = 150", "high = 180"), "alpha_deg = 180.0: must be above 0 and below 180"),
+        (("low = 60", "low = 0"), "alpha_deg = 0.0: must be above 0"),
+        (("high = 150", "high = 50"), "alpha_deg.high = 50.0: must be above low = 60.0"),
+        ((", steps = 4", ""), "alpha_deg.steps is missing"),
+        (("steps = 4", "steps = 1"), "alpha_deg.steps = 1"),
+        (("low = 60,", ""), "alpha_deg.low is missing"),
+        (("[0.5, 0.9, inf]", "[]"), "mu = []"),
+        (("[0.5, 0.9, inf]", '["rough"]'), "mu.values.0 = 'rough'"),
+        (("[0.5, 0.9, inf]", "nan"), "mu = nan"),
+        (("[9, 12]", "[9.5]"), "voussoirs = 9.5: must be a whole number from 3 to 1000"),
+        (("[9, 12]", "2"), "voussoirs = 2.0"),
+        (("[9, 12]", "{ low = 3, high = 1000, steps = 3 }"), "voussoirs = 501.5"),
+        (("0.1]", "2.1]"), "eta = 2.1: must be above 0 and at most 2"),
+        (("eta =", "ratio = 1\neta ="), "ratio = 'given': must be left out where eta is given"),
+        (('"sector"', '"stone"'), "weight = 'stone': must be one of centreline, sector"),
+        (('"limit"', '"guess"'), "method = 'guess': must be one of auto"),
+        (("method =", "band = -1\nmethod ="), "band = -1.0"),
+        (("method =", "tol = 0\nmethod ="), "tol = 0.0"),
+        (("steps = 4", "steps = 1000000"), "design = '48000000 cases'"),
+        (("mu =", "mu = ="), "must be valid TOML"),
+    ],
+)
+def test_wrong_designs_are_told_in_one_line(
+    tmp_path: Path, change: tuple[str, str], said: str
+) -> None:
+    assert change[0] in GRID
+    with pytest.raises(InputError) as error:
+        design_of(tmp_path, GRID.replace(*change, 1))
+    message = str(error.value)
+    assert said in message
+    assert message.startswith(str(tmp_path / "design.toml"))
+    assert "\n" not in message
+
+
+def test_the_command_keeps_the_contract(tmp_path: Path) -> None:
+    (tmp_path / "design.toml").write_text(GRID.replace("0.1]", "3]"))
+    done = command(tmp_path, tmp_path / "out")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+    done = command(tmp_path, tmp_path / "out", "--scheduler", "nonsense")
+    assert done.returncode == 2
+    (tmp_path / "design.toml").write_text(GRID)
+    done = command(tmp_path, tmp_path / "out", "--workers", "1", "--json")
+    summary = json.loads(done.stdout)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (summary["cases"], summary["rows"], summary["failed"]) == (192, 192, 0)
+    done = command(tmp_path, tmp_path / "out", "--workers", "1")
+    assert "192 cases: 192 were there, 0 rows added" in done.stdout
+
+
+def test_statics_in_bulk_answer_as_single_questions_do(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(tmp_path, GRID), tmp_path, executor=executor)
+    rows = rows_of(tmp_path).values()
+    assert {row["verdict"] for row in rows} == {"stands", "collapses"}
+    for row in rows:
+        arch, mu = arch_of(row, float(str(row["eta"]))), float(str(row["mu"]))
+        single = check(arch, mu=mu, method=str(row["asked"]))
+        assert row["verdict"] == single.verdict
+        least = row["eta_theory"]
+        assert (least is None) == (single.eta_theory is None)
+        assert least is None or math.isclose(least, single.eta_theory, rel_tol=1e-12)
+        if row["asked"] == "theory":
+            assert row["mode"] == single.mode
+
+
+def test_without_a_thickness_the_least_one_is_asked_for(tmp_path: Path) -> None:
+    text = GRID.replace("eta = [0.05, 0.1]", "").replace('"limit"', '"limit", "auto"')
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    for row in rows_of(tmp_path).values():
+        single = bracket(
+            half_angle=math.radians(float(str(row["alpha_deg"]))),
+            mu=float(str(row["mu"])),
+            voussoirs=int(str(row["voussoirs"])),
+            weight=row["weight"],
+            method=str(row["asked"]),
+        )
+        for end, exact in (("eta_low", single.eta_low), ("eta_high", single.eta_high)):
+            assert (row[end] is None) == (exact is None)
+            assert exact is None or math.isclose(float(str(row[end])), exact, rel_tol=1e-9)
+
+
+def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path) -> None:
+    near = "alpha_deg = 90\nmu = 0.7\nvoussoirs = 9\nratio = [0.5, 0.97, 0.995, 1.005, 1.03]\n"
+    widths = {"band = 0.01": 2, "band = 0.04": 4, "band = inf": 5, "": 5}
+    for text, simulated in widths.items():
+        folder = tmp_path / (text or "none")
+        folder.mkdir()
+        with ThreadPoolExecutor(1) as executor:
+            done = sweep(
+                design_of(folder, f'{near}{text}\nmethod = "direct"'), folder, executor=executor
+            )
+        assert done.tally.simulated == simulated
+        assert done.tally.spared == 5 - simulated
+        assert (done.saved_s or 0) == pytest.approx(
+            done.tally.spared * done.tally.simulated_s / simulated
+        )
+        for row in rows_of(folder).values():
+            stands = float(str(row["ratio"])) > 1
+            assert row["verdict"] == ("stands" if stands else "collapses")
+    auto = design_of(tmp_path, f"{near.replace('[', '[0.9995, ')}")
+    with ThreadPoolExecutor(1) as executor:
+        done = sweep(auto, tmp_path, executor=executor)
+    assert (done.tally.simulated, done.tally.spared) == (1, 5)
+    methods = {row["ratio"]: row["method"] for row in read_rows(tmp_path)}
+    assert [each for each, method in methods.items() if method == "direct"] == [0.9995]
+
+
+def test_a_failing_case_becomes_a_row_that_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(arch: Arch, **_: object) -> None:
+        raise RuntimeError(f"out of\nluck with {arch.voussoirs}")
+
+    monkeypatch.setattr(blocksim.sweep.answers, "check", fails)
+    text = 'alpha_deg = 90\nmu = [0.1, 0.7]\nratio = [1, 60]\nmethod = ["limit", "direct"]'
+    with ThreadPoolExecutor(1) as executor:
+        done = sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    errors = {
+        (row["mu"], row["ratio"], row["asked"]): row["error"]
+        for row in rows_of(tmp_path).values()
+    }
+    assert len(errors) == 8
+    assert done.tally.failed == 7
+    assert errors[0.7, 1.0, "limit"] is None
+    assert errors[0.7, 1.0, "direct"] == "RuntimeError: out of luck with 27"
+    assert "must be above 0 and at most 2" in str(errors[0.7, 60.0, "limit"])
+    assert "no thickness up to eta = 2 stands" in str(errors[0.1, 1.0, "limit"])
+
+
+class Fragile(Executor):
+    """Processes, as far as a sweep can tell, of which a poisonous case breaks all."""
+
+    def __init__(self, poison: Callable[[Case], bool], error: type[Exception]) -> None:
+        self._poison = poison
+        self._error = error
+
+    def submit(
+        self, fn: Callable[..., Answered], /, *args: Sequence[Asked], **_: object
+    ) -> Future[Answered]:
+        future: Future[Answered] = Future()
+        if any(self._poison(each.case) for each in args[0]):
+            future.set_exception(self._error("died"))
+        else:
+            future.set_result(fn(*args))
+        return future
+
+
+@pytest.mark.parametrize("error", [BrokenExecutor, MemoryError])
+def test_a_case_that_kills_its_process_becomes_a_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: type[Exception]
+) -> None:
+    def poison(case: Case) -> bool:
+        return case.mu == 0.9 and case.voussoirs == 12 and case.alpha_deg == 90
+
+    made: list[Executor] = []
+
+    def processes(_: object) -> Executor:
+        made.append(Fragile(poison, error))
+        return made[-1]
+
+    monkeypatch.setattr(blocksim.sweep.run._Hands, "_processes", processes)
+    done = sweep(design_of(tmp_path, GRID), tmp_path)
+    rows = rows_of(tmp_path)
+    lost = [row for row in rows.values() if row["error"] is not None]
+    assert len(rows) == 192
+    assert done.tally.failed == len(lost) == 8
+    assert all((row["mu"], row["voussoirs"], row["alpha_deg"]) == (0.9, 12, 90) for row in lost)
+    assert (len(made) > 1) == (error is BrokenExecutor)
+
+
+def test_an_executor_that_breaks_is_not_ours_to_replace(tmp_path: Path) -> None:
+    design = design_of(tmp_path, GRID)
+    with pytest.raises(BrokenExecutor):
+        sweep(design, tmp_path, executor=Fragile(lambda case: case.mu > 1, BrokenExecutor))
+    with ThreadPoolExecutor(1) as executor:
+        assert sweep(design, tmp_path, executor=executor).cases == 192
+
+
+def test_chunks_change_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, uninterrupted: Rows
+) -> None:
+    monkeypatch.setattr(blocksim.sweep.run, "LARGEST_CHUNK", 7)
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(tmp_path, SIMULATED), tmp_path, executor=executor, in_flight=1)
+    assert rows_of(tmp_path) == uninterrupted
+
+
+def test_what_occurs_twice_is_asked_once_and_a_larger_design_reuses_rows(
+    tmp_path: Path,
+) -> None:
+    with ThreadPoolExecutor(1) as executor:
+        twice = GRID.replace("0.5, 0.9", "0.5, 0.5, 0.9")
+        done = sweep(design_of(tmp_path, twice), tmp_path, executor=executor)
+        assert (done.cases, done.tally.rows) == (192, 192)
+        larger = design_of(tmp_path, GRID.replace("0.5, 0.9", "0.5, 0.7, 0.9"))
+        done = sweep(larger, tmp_path, executor=executor)
+    assert (done.cases, done.found, done.tally.rows) == (256, 192, 64)
+
+
+def test_a_write_that_was_interrupted_loses_nothing(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    design = design_of(tmp_path, SIMULATED)
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design, tmp_path, executor=executor)
+        shards = sorted(tmp_path.glob("rows-*.jsonl"), key=lambda path: path.stat().st_size)
+        whole = shards[-1].read_bytes()
+        (tmp_path / f".{shards[-1].name}.part").write_bytes(whole[:100])
+        shards[-1].write_bytes(whole[:-30])
+        shards[0].write_bytes(b'{"id": "0a')
+        done = sweep(design, tmp_path, executor=executor)
+    assert 0 < done.tally.rows < 80
+    assert rows_of(tmp_path) == uninterrupted
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_what_is_no_row_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "rows-x.jsonl").write_text("something else\n")
+    with pytest.raises(InputError, match=r"rows-x.jsonl: line 1 = 'something else"):
+        identities(tmp_path)
+
+
+def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    (tmp_path / "design.toml").write_text(SIMULATED)
+
+    def small() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
+
+    done = command(tmp_path, tmp_path / "out", "--workers", "1", before=small)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "must be writable" in done.stderr
+    assert not list((tmp_path / "out").glob(".*"))
+    assert len(rows_of(tmp_path / "out")) < 80
+    assert command(tmp_path, tmp_path / "out", "--workers", "1").returncode == 0
+    assert rows_of(tmp_path / "out") == uninterrupted
+
+
+def test_killed_drivers_leave_no_process_and_lose_no_row(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    (tmp_path / "design.toml").write_text(SIMULATED)
+    out = tmp_path / "out"
+    there = 0
+    for _ in range(2):
+        with started(tmp_path, out) as driver:
+            until(lambda: len(list(out.glob("rows-*"))) > there, driver)  # noqa: B023
+            workers = children(driver.pid)
+            assert workers
+            driver.kill()
+        there = len(list(out.glob("rows-*")))
+        until(lambda: not any(alive(pid) for pid in workers))  # noqa: B023
+    rows = rows_of(out)
+    assert 0 < len(rows) < 80
+    assert command(tmp_path, out, "--workers", "1").returncode == 0
+    assert rows_of(out) == uninterrupted
+
+
+def test_a_killed_worker_is_replaced(tmp_path: Path, uninterrupted: Rows) -> None:
+    (tmp_path / "design.toml").write_text(SIMULATED)
+    out = tmp_path / "out"
+    with started(tmp_path, out) as driver:
+        until(lambda: len(list(out.glob("rows-*"))) > 1, driver)
+        workers = children(driver.pid)
+        assert workers
+        for pid in workers:
+            os.kill(pid, signal.SIGKILL)
+        assert driver.wait() == 0
+    assert rows_of(out) == uninterrupted
+
+
+def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows) -> None:
+    distributed = pytest.importorskip("distributed")
+    (tmp_path / "design.toml").write_text(SIMULATED)
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        done = command(tmp_path, tmp_path / "out", "--scheduler", address, "--json")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["rows"] == 80
+    assert rows_of(tmp_path / "out") == uninterrupted
+
+
+def test_a_worker_of_another_version_is_refused() -> None:
+    case = Case(90.0, 0.7, 27, "centreline", 0.1, None, "limit", 0.0, 0.0)
+    with pytest.raises(blocksim.MissingPart, match="install the same"):
+        answer([Asked(case.identity("x"), case)], {"limit": "x"})
+
+
+def arch_of(row: dict[str, object], eta: float) -> Arch:
+    return Arch(
+        half_angle=math.radians(float(str(row["alpha_deg"]))),
+        eta=eta,
+        voussoirs=int(str(row["voussoirs"])),
+        weight=row["weight"],
+    )
+
+
+def arguments(folder: Path, out: Path) -> list[str]:
+    design = str(folder / "design.toml")
+    return [sys.executable, "-m", "blocksim", "sweep", design, "--out", str(out)]
+
+
+def command(
+    folder: Path, out: Path, *options: str, before: Callable[[], None] | None = None
+) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*arguments(folder, out), *options],
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=before,
+    )
+
+
+def started(folder: Path, out: Path) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        [*arguments(folder, out), "--workers", "1"], stdout=subprocess.DEVNULL
+    )
+
+
+def until(true: Callable[[], bool], driver: subprocess.Popen[bytes] | None = None) -> None:
+    deadline = time.monotonic() + 60
+    while not true():
+        assert driver is None or driver.poll() is None, "ended too soon"
+        assert time.monotonic() < deadline
+        time.sleep(0.002)
+
+
+def children(pid: int) -> list[int]:
+    """Workers of a driver."""
+    listed = Path(f"/proc/{pid}/task").glob("*/children")
+    pids = [int(word) for path in listed for word in path.read_text().split()]
+    return [
+        each for each in pids if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
+    ]
+
+
+def alive(pid: int) -> bool:
+    path = Path(f"/proc/{pid}/stat")
+    try:
+        return path.read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
