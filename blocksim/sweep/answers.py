@@ -27,6 +27,7 @@ from blocksim.theory.arrays import least_thicknesses
 from blocksim.verdict import Verdict
 
 Row = dict[str, object]
+_ENCODER = json.JSONEncoder(allow_nan=False, check_circular=False)
 
 
 class Asked(NamedTuple):
@@ -165,7 +166,7 @@ def failed(asked: Asked, versions: dict[str, str], why: str) -> Answered:
 
 def encoded(row: Row) -> bytes:
     """Return a row as one line of JSON."""
-    return json.dumps(row, allow_nan=False).encode() + b"\n"
+    return _ENCODER.encode(row).encode() + b"\n"
 
 
 def _question(asked: Asked, version: str) -> Row:
