@@ -150,6 +150,7 @@ class _Bodies:
         # Bullet keeps at most a thousand spaces open.
         weakref.finalize(self, bullet.disconnect, self._client)
         reach = float(assembly.reach.max()) / assembly.size + float(assembly.depths.max()) / 2
+        self._breaking = min(MOST_BREAKING, BREAKING * assembly.shortest / reach)
         self._set(
             numSubSteps=0,
             contactSlop=OVERLAP,
@@ -158,7 +159,6 @@ class _Bodies:
             warmStartingFactor=1,
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
-            contactBreakingThreshold=min(MOST_BREAKING, BREAKING * assembly.shortest / reach),
         )
         self._friction = math.sqrt(min(mu, MOST_FRICTION))
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
@@ -179,7 +179,12 @@ class _Bodies:
         )
 
     def _set(self, **parameters: float) -> None:
-        bullet.setPhysicsEngineParameter(**parameters, physicsClientId=self._client)
+        # All spaces share one breaking threshold: each sets its own before it steps.
+        bullet.setPhysicsEngineParameter(
+            **parameters,
+            contactBreakingThreshold=self._breaking,
+            physicsClientId=self._client,
+        )
 
     def _block(self, index: int, faces: list[Joint]) -> int:
         """Create a body that is a thin box on each of its block's faces."""
