@@ -19,7 +19,7 @@ from blocksim.files import write_whole
 from blocksim.progress import Progress as Report
 from blocksim.report.answers import ratio
 from blocksim.validate import Row, numbered
-from blocksim.workprec import Point, front
+from blocksim.workprec import Point, on_front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -83,11 +83,7 @@ def chart_table(points: list[Point]) -> Table:
     for heading in ("arch", "method", "tol", "error", "s", "contact solves", ""):
         side = "left" if heading in {"arch", "method", ""} else "right"
         table.add_column(heading, justify=side, no_wrap=True)
-    best = {
-        point
-        for name in dict.fromkeys(point.case for point in points)
-        for point in front([p for p in points if p.case == name])
-    }
+    best = on_front(points)
     for point in points:
         error = f"{point.error:.1e}" if math.isfinite(point.error) else "none"
         table.add_row(
