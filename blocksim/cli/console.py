@@ -18,7 +18,7 @@ from blocksim.arch import require
 from blocksim.files import write_whole
 from blocksim.progress import Progress as Report
 from blocksim.report.answers import ratio
-from blocksim.validate import Row, numbered
+from blocksim.validate import Row, disagreements, numbered
 from blocksim.workprec import Point, on_front
 
 if TYPE_CHECKING:
@@ -77,6 +77,19 @@ def validation_table(rows: list[Row]) -> Table:
     return table
 
 
+def validation_lines(rows: list[Row]) -> list[str]:
+    """Return how many rows agree, what does not, and where engines differ, in words."""
+    misses = [row for row in rows if row.miss]
+    right = f"{len(rows) - len(misses)} of {len(rows)}"
+    lines = [f"{right} agree with the exact answer in every respect"]
+    lines += [f"  {row.scenario}, {row.engine}: {row.miss} ({row.note})" for row in misses]
+    if len({row.engine for row in rows}) > 1:
+        apart = disagreements(rows)
+        lines.append(f"the engines disagree in {len(apart)} places")
+        lines += [f"  {each}" for each in apart]
+    return lines
+
+
 def chart_table(points: list[Point]) -> Table:
     """Lay out what was measured for the chart, one line a bracket."""
     table = Table(box=None, header_style="bold", pad_edge=False)
@@ -106,7 +119,7 @@ def _answer(row: Row | None) -> str:
     return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
 
 
-def picture_kind(out: Path, kinds: tuple[str, ...] = ("svg", "png")) -> str:
+def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
     """Return the kind of a picture, by the file's ending."""
     kind = out.suffix.removeprefix(".")
     *most, last = (f".{each}" for each in kinds)
