@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from blocksim import limit, theory
@@ -12,14 +10,9 @@ from blocksim.arch import Arch, Weight, is_number, require, require_friction
 from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
+from blocksim.search import ETA_MAX, Answer, Search
 from blocksim.trial import Held, conclude, hold
 from blocksim.verdict import Verdict
-
-ETA_MAX = 2.0
-FIRST_STEP = 0.01
-"""First guess of the bracket's half-width, relative; doubled until it holds."""
-THINNEST = 1e-6
-"""Search below this ratio is given up."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,11 +179,11 @@ def _by_simulation(
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     ends: dict[Verdict, Held] = {}
 
-    def judge(eta: float) -> Verdict:
+    def judge(eta: float) -> Answer:
         held = hold(replace(arch, eta=eta), answer.mu, answer.method)
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = held
-        return held.onset.verdict
+        return Answer(held.onset.verdict, held.onset.acceleration)
 
     search = Search(judge, progress)
     search.expand(ETA_MAX if guess is None else guess)
@@ -218,95 +211,3 @@ def _by_simulation(
         undecided=search.undecided,
         reason=f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs",
     )
-
-
-class Search:
-    """Bisection on a judge that may answer `undecided`.
-
-    Parameters
-    ----------
-    judge : callable
-        Ratio to verdict.
-    progress : Progress, optional
-
-    Attributes
-    ----------
-    low, high : float or None
-        Largest ratio that collapsed, smallest that stood.
-    runs, undecided : int
-        Ratios tried, and those without an answer.
-    """
-
-    def __init__(self, judge: Callable[[float], Verdict], progress: Progress = silent) -> None:
-        self._judge = judge
-        self._progress = progress
-        self._dark: list[float] = []
-        self.low: float | None = None
-        self.high: float | None = None
-        self.runs = 0
-
-    @property
-    def undecided(self) -> int:
-        """Ratios without an answer."""
-        return len(self._dark)
-
-    def probe(self, eta: float) -> Verdict:
-        """Ask the judge and keep its answer."""
-        verdict = self._judge(eta)
-        self.runs += 1
-        if verdict is Verdict.COLLAPSES:
-            self.low = eta if self.low is None else max(self.low, eta)
-        elif verdict is Verdict.STANDS:
-            self.high = eta if self.high is None else min(self.high, eta)
-        else:
-            self._dark.append(eta)
-        return verdict
-
-    def expand(self, guess: float) -> None:
-        """Step away from a guess, ever farther, until both answers have been had."""
-        step = FIRST_STEP
-        eta = min(guess * (1 + step), ETA_MAX)
-        self._progress(0.0, f"trying eta = {eta:.6g}")
-        self.probe(eta)
-        while self.high is None and eta < ETA_MAX:
-            step *= 2
-            eta = min(eta * (1 + step), ETA_MAX)
-            self.probe(eta)
-        if self._ceiling() is None:
-            return
-        step, eta = FIRST_STEP, guess
-        while self.low is None and eta > THINNEST:
-            eta *= 1 - min(step, 0.5)
-            step *= 2
-            self.probe(eta)
-
-    def bisect(self, tol: float) -> None:
-        """Halve the bracket until its relative width is `tol` or darkness fills it."""
-        start = self._width()
-        while (width := self._width()) > tol:
-            middle = self._next(tol)
-            if middle is None:
-                return
-            share = math.log(start / width) / math.log(start / tol)
-            self._progress(0.9 * share, f"trying eta = {middle:.6g}")
-            self.probe(middle)
-
-    def _ceiling(self) -> float | None:
-        """Upper end of the search: what stood, or the thickest arch if it is undecided."""
-        return ETA_MAX if self.high is None and ETA_MAX in self._dark else self.high
-
-    def _width(self) -> float:
-        """Relative width of the bracket, 0 while there is none."""
-        high = self._ceiling()
-        return 0.0 if self.low is None or high is None else 1 - self.low / high
-
-    def _next(self, tol: float) -> float | None:
-        """Middle of the wider end part; nothing is to be learnt between undecided ratios."""
-        floor, ceiling = self.low, self._ceiling()
-        if floor is None or ceiling is None:
-            return None
-        dark = [eta for eta in self._dark if floor < eta < ceiling]
-        below, above = min(dark, default=ceiling), max(dark, default=floor)
-        parts = ((floor, below), (above, ceiling))
-        low, high = max(parts, key=lambda part: part[1] - part[0])
-        return (low + high) / 2 if high - low > tol * ceiling / 4 else None

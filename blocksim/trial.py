@@ -111,7 +111,7 @@ def hold(
     """Do the first part of a trial: put the arch into the engine, and the onset test."""
     setup = Setup.of(arch, mu, engine, tilt=tilt, plane_lock=plane_lock)
     world = setup.world()
-    first = onset(world, setup.assembly, setup.settings, progress)
+    first = onset(world, setup.assembly, mu, setup.settings, progress)
     return Held(setup=setup, world=world, onset=first)
 
 

@@ -16,11 +16,10 @@ from statistics import median
 
 from blocksim import limit
 from blocksim.arch import Arch
-from blocksim.bracket import Search
 from blocksim.engines import remedy
 from blocksim.progress import Progress, silent
+from blocksim.search import Answer, Search
 from blocksim.trial import trial
-from blocksim.verdict import Verdict
 
 TOLERANCES = {
     "direct": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
@@ -173,12 +172,12 @@ def _measured(case: Case, method: str, tol: float, repeats: int) -> Point:
         raise ValueError(message)
     work = 0.0
 
-    def judge(eta: float) -> Verdict:
+    def judge(eta: float) -> Answer:
         nonlocal work
         arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
         seen = trial(arch, case.mu, method, moving=False)
         work += 2.0 * (case.voussoirs + 1) * seen.onset.sweeps
-        return seen.verdict
+        return Answer(seen.verdict, seen.onset.acceleration)
 
     seconds: list[float] = []
     search = Search(judge)

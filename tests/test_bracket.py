@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 
 from blocksim import limit, theory
 from blocksim.arch import Arch
-from blocksim.bracket import ETA_MAX, Search, bracket
+from blocksim.bracket import bracket
 from blocksim.errors import InputError
 from blocksim.modes import Mode
+from blocksim.search import ETA_MAX, Answer, Search
 from blocksim.trial import Held, hold
 from blocksim.verdict import Verdict
 
@@ -30,9 +31,9 @@ guesses = st.floats(0.2, 5.0)
 def run(judge, guess: float, tol: float) -> tuple[Search, list[float]]:
     asked: list[float] = []
 
-    def listening(eta: float) -> Verdict:
+    def listening(eta: float) -> Answer:
         asked.append(eta)
-        return judge(eta)
+        return Answer(judge(eta), math.nan)
 
     search = Search(judge=listening)
     search.expand(min(guess, ETA_MAX))
@@ -54,6 +55,42 @@ def test_threshold_is_bracketed(threshold: float, guess: float, tol: float) -> N
     # Doubling steps, then halves: logarithmic in what is asked for.
     assert search.runs <= 14 + math.log2(1 / tol) + 4 * abs(math.log2(guess))
     assert all(0 < eta <= ETA_MAX for eta in asked)
+
+
+@given(thresholds, guesses, st.floats(1e-8, 0.1), st.floats(-0.9, 3.0), st.floats(0.1, 10.0))
+def test_accelerations_shorten_the_search(
+    threshold: float, guess: float, tol: float, bend: float, slope: float
+) -> None:
+    """An acceleration that vanishes at the threshold, in a straight line or a bent one."""
+
+    def judge(eta: float) -> Answer:
+        short = 1 - eta / threshold
+        if short <= 0:
+            return Answer(Verdict.STANDS, 0.0)
+        return Answer(Verdict.COLLAPSES, slope * short * (1 + bend * short))
+
+    search = Search(judge)
+    search.expand(min(threshold * guess, ETA_MAX))
+    before = search.runs
+    search.bisect(tol)
+    assert search.low < threshold <= search.high
+    assert 1 - search.low / search.high <= tol
+    # Halving alone takes up to 24.
+    assert search.runs - before <= 14
+
+
+@given(thresholds, st.floats(1e-6, 0.1), st.randoms(use_true_random=False))
+def test_senseless_accelerations_do_no_harm(threshold: float, tol: float, random) -> None:
+    search = Search(
+        lambda eta: Answer(
+            Verdict.STANDS if eta >= threshold else Verdict.COLLAPSES, random.uniform(0, 1)
+        )
+    )
+    search.expand(threshold)
+    search.bisect(tol)
+    assert search.low < threshold <= search.high
+    assert 1 - search.low / search.high <= tol
+    assert search.runs <= 14 + 3 * math.log2(1 / tol)
 
 
 @given(thresholds, st.floats(0.97, 1.03), tolerances, st.floats(1e-4, 0.05))

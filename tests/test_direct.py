@@ -8,12 +8,12 @@ import pytest
 
 from blocksim import limit
 from blocksim.arch import Arch
-from blocksim.bracket import Search
 from blocksim.engines.base import trusted
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.joints import joint_motion
 from blocksim.onset import onset
 from blocksim.recording import load_recording
+from blocksim.search import Answer, Search
 from blocksim.setup import Setup
 from blocksim.trial import simulate, trial
 from blocksim.verdict import Verdict
@@ -58,7 +58,7 @@ def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight)
 
 def test_bisection_from_far_away_ends_at_the_limit():
     arch = built(125, 0.9, 26)
-    search = Search(lambda eta: held(replace(arch, eta=eta), 0.9))
+    search = Search(lambda eta: Answer(held(replace(arch, eta=eta), 0.9), math.nan))
     search.expand(2 * arch.eta)
     search.bisect(1e-9)
     assert search.undecided == 0
@@ -138,7 +138,7 @@ def test_over_its_residual_the_answer_is_undecided():
     setup = Setup.of(built(90, 0.9, 20, ratio=0.9), 0.9, "direct")
     settings = replace(setup.settings, residual=0.0)
     world = replace(setup, settings=settings).world()
-    assert onset(world, setup.assembly, settings).verdict is Verdict.UNDECIDED
+    assert onset(world, setup.assembly, 0.9, settings).verdict is Verdict.UNDECIDED
     assert not trusted(world, settings)
 
 

@@ -35,7 +35,7 @@ class Settings:
     sweeps : int
         Sweeps over all contacts in each step of a moving run.
     hold_sweeps : int
-        Most sweeps the onset test may spend.
+        Most sweeps the onset test may spend; thrice that where joints slide.
     still : float
         Acceleration below which an arch held at rest counts as at rest [g].
     rest : float
@@ -96,6 +96,24 @@ class World(Protocol):
         -------
         (blocks, 3 or 6) float
             Accelerations [g] and [g/size] the blocks would start with, columns as poses.
+        """
+        ...
+
+    def stick(self, sweeps: int) -> int:
+        """Begin anew, with the impulses of blocks that cannot slide.
+
+        Coulomb's law may allow both rest and motion, and which of them is found depends on
+        where the search for impulses begins.
+
+        Parameters
+        ----------
+        sweeps : int
+            Sweeps over all contacts to find those impulses with.
+
+        Returns
+        -------
+        int
+            Sweeps spent; 0 from an engine whose answer does not depend on a beginning.
         """
         ...
 

@@ -38,8 +38,9 @@ CLEARANCE = 6.0
 LONGEST_STEP = 1 / 100
 THICK = 0.8
 """Joint length from which the longest step will do [size]."""
-SWEEP_RATE = 5e4
-"""Sweeps of a moving run per unit of time."""
+SWEEPS = 100
+"""Sweeps of a moving run per unit of time, for each block."""
+LEAST_SWEEPS = 5
 SUPPORT_BIT = 1 << 31
 
 
@@ -64,7 +65,7 @@ class Chipmunk:
         step = LONGEST_STEP * min(1.0, math.sqrt(assembly.shortest / THICK))
         return Settings(
             step=step,
-            sweeps=max(20, round(SWEEP_RATE * step)),
+            sweeps=max(LEAST_SWEEPS, round(SWEEPS * len(assembly.blocks) * step)),
             hold_sweeps=max(50_000, 4000 * len(assembly.blocks) ** 2),
         )
 
@@ -77,34 +78,37 @@ class _Space:
     """A pymunk space with one body for each block."""
 
     def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
-        self._settings = settings
-        self._space = pymunk.Space()
-        self._space.gravity = (0.0, -1.0)
+        self._assembly, self._settings = assembly, settings
         self._inset = min(INSET, INSET_SHARE * assembly.shortest)
-        self._space.collision_slop = self._inset
-        self._space.collision_persistence = 1
         self._friction = math.sqrt(min(mu, FRICTION_CAP))
-        mass = float(np.mean([block.mass for block in assembly.blocks]))
+        self._space, self._bodies = self._build()
+
+    def _build(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
+        """Put the blocks into a new space, without impulses."""
+        assembly, size = self._assembly, self._assembly.size
+        space = pymunk.Space()
+        space.gravity = (0.0, -1.0)
+        space.collision_slop = self._inset
+        space.collision_persistence = 1
         faces = faces_of(assembly)
-        self._bodies: list[pymunk.Body] = []
+        bodies: list[pymunk.Body] = []
         for index, block in enumerate(assembly.blocks):
-            inertia = block.inertia / mass / assembly.size**2
-            body = pymunk.Body(block.mass / mass, inertia)
-            centre = block.centre / assembly.size
+            mass, _, inertia = assembly.masses[index].tolist()
+            body = pymunk.Body(mass, inertia)
+            centre = block.centre / size
             body.position = (float(centre[0]), float(centre[1]))
-            outline = _outline(block.vertices, index, faces[index], assembly.size, self._inset)
+            outline = _outline(block.vertices, index, faces[index], size, self._inset)
             shape = self._shape(body, outline - centre)
             bits = [k for k, joint in enumerate(assembly.springings) if index == joint.bears]
             shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
-            self._space.add(body, shape)
-            self._bodies.append(body)
+            space.add(body, shape)
+            bodies.append(body)
         for k, joint in enumerate(assembly.springings):
-            shape = self._shape(
-                self._space.static_body, _footing(joint, assembly.size, self._inset)
-            )
+            shape = self._shape(space.static_body, _footing(joint, size, self._inset))
             # A support touches only the block that stands on it.
             shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
-            self._space.add(shape)
+            space.add(shape)
+        return space, bodies
 
     def _shape(self, body: pymunk.Body, outline: Array) -> pymunk.Poly:
         corners = [(float(x), float(y)) for x, y in outline]
@@ -122,6 +126,16 @@ class _Space:
             body.velocity = (0.0, 0.0)
             body.angular_velocity = 0.0
         return np.array(rates) / self._settings.step
+
+    def stick(self, sweeps: int) -> int:
+        """Begin anew, with the impulses of blocks that cannot slide."""
+        self._space, self._bodies = self._build()
+        for shape in self._space.shapes:
+            shape.friction = math.sqrt(FRICTION_CAP)
+        self.hold(sweeps)
+        for shape in self._space.shapes:
+            shape.friction = self._friction
+        return sweeps
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
