@@ -59,3 +59,15 @@ def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:
     assert result.false == result.unsure == 0
     assert result.worst_error < 1e-8
     assert (tmp_path / "direct_arches.png").stat().st_size > 0
+
+
+def test_the_map_by_simulation_goes_on_where_it_was(tmp_path: Path) -> None:
+    module = study("mode_sweep")
+    first = module.main(tmp_path, quick=True)
+    shards = sorted(tmp_path.glob("direct/rows-*"))
+    assert first.arches == 6 == first.as_published
+    assert first.failed == 0
+    assert first.worst_error < 0.002
+    assert module.main(tmp_path, quick=True) == first
+    assert sorted(tmp_path.glob("direct/rows-*")) == shards
+    assert (tmp_path / "mode_sweep.png").stat().st_size > 0

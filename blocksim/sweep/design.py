@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from hashlib import blake2b
 from pathlib import Path
-from typing import Annotated, ClassVar, NamedTuple, cast
+from typing import Annotated, ClassVar, NamedTuple, Protocol, cast
 
 import numpy as np
 from pydantic import BeforeValidator, Field
@@ -75,6 +75,24 @@ class Case(NamedTuple):
     def identity(self, version: str) -> bytes:
         """Hash of what is asked and of the version of the method that answers."""
         return blake2b(f"{tuple(self)!r} {version}".encode(), digest_size=12).digest()
+
+
+class Questions(Protocol):
+    """What a sweep asks: a `Design`, or anything else with these three."""
+
+    @property
+    def method(self) -> tuple[str, ...]:
+        """Methods that occur."""
+        ...
+
+    @property
+    def size(self) -> int:
+        """Number of cases, by which progress is told."""
+        ...
+
+    def cases(self) -> Iterator[Case]:
+        """Give the cases, always in the same order."""
+        ...
 
 
 def _as_table(written: object) -> object:

@@ -35,7 +35,7 @@ from blocksim.sweep.answers import (
     reason_of,
     version_of,
 )
-from blocksim.sweep.design import Case, Design
+from blocksim.sweep.design import Case, Questions
 from blocksim.sweep.shards import identities, write_shard
 
 SHARE = 0.05
@@ -81,7 +81,7 @@ class Summary:
 
 
 def sweep(
-    design: Design,
+    design: Questions,
     folder: Path,
     *,
     executor: Executor | None = None,
@@ -93,7 +93,7 @@ def sweep(
 
     Parameters
     ----------
-    design : Design
+    design : Design or Questions
     folder : Path
         For the rows, made if need be; `read_rows` reads them. Not for two sweeps at once.
     executor : Executor, optional
@@ -165,7 +165,7 @@ class _Todo:
         Cases passed over because their rows are there.
     """
 
-    def __init__(self, design: Design, versions: dict[str, str], done: set[bytes]) -> None:
+    def __init__(self, design: Questions, versions: dict[str, str], done: set[bytes]) -> None:
         self._cases = design.cases()
         self._versions = versions
         self._done = done
