@@ -1,30 +1,44 @@
 """The whole map by simulation, resumable.
 
-Question: do arches in motion collapse in the mode that the closed form publishes for them,
-and at its thickness, all over the map? Arches are drawn over half-angle and friction, half
-of them with little more friction than the least with which any thickness stands, where the
-mixed modes are. Each is bracketed by an engine; its mode is the one observed at the lower end.
-The map is of the continuous arch, simulated are 20 to 40 voussoirs: where the modes differ,
-limit analysis of those voussoirs tells whether that is the reason.
+Question: do arches collapse in motion in the mode that the closed form publishes for them,
+and at its thickness, all over the map?
 
-Far below the friction with which anything stands, several modes are overcome at once at
-eta = 2, and what is observed may be none of the seven: it is counted as none.
+The draw. Of ten arches five lie anywhere: half-angle even from 30 to 159 deg, friction
+log-uniform from what lets any thickness stand to 4, the right edge of the map. Four have one
+of the mixed modes each (srr, rrs, rsr, rs), which have little room: they are drawn in the same
+way until one comes that has it. All of these stand at some thickness, and their least one is
+bracketed, so that they are near critical. The tenth lies on the line where purely sliding
+arches are published, and is 1.1 to 3 times as thick as the least there: its thickness is
+not critical but its friction is, so it is put to the engine with 0.5 % less and 0.5 % more
+friction than the voussoirs need. Purely overturning arches (r) need boundless friction, of
+which engines take 1000: they are left out. Voussoirs are 20 to 40, weight is on the centreline.
 
-Run `python -m analysis.mode_sweep FOLDER [ARCHES [ENGINE]]`; rows are kept in FOLDER/ENGINE,
-and the same command goes on after an interruption.
+What is compared. An engine brackets the least thickness, to 0.1 % (`direct`: 1e-8), and lets
+the arch go at both ends; that is about half of the time, and what makes it evidence. The mode is
+the one seen in motion at the lower end. The map is of the continuous arch: where the mode
+is another one, limit analysis of the same voussoirs tells whether they are the reason.
+An arch is called near a line if its published mode changes as mu or alpha changes by 0.3 %:
+no more, in 99 of 100, does the least thickness of the voussoirs differ from the map's, if that
+is counted in alpha.
 
-Expected: the mode of the map, or that of limit analysis of the same voussoirs; brackets
-centred within 0.2 % of limit analysis.
+Expected: away from the lines the published mode, near them that or the mode of limit analysis;
+brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; purely sliding
+arches fall and stand as they should.
+
+Run: python -m analysis.mode_sweep OUT [ARCHES [ENGINE ...]]. Rows are kept in OUT/rows; the same
+command goes on after an interruption, and a larger number begins with the same arches.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import matplotlib as mpl
@@ -32,201 +46,338 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
+from blocksim.assembly import Array
+from blocksim.bracket import ETA_MAX
 from blocksim.limit import least_thickness
+from blocksim.limit.bulk import which_stand
 from blocksim.modes import Mode
 from blocksim.sweep import Case, read_rows, sweep
-from blocksim.theory.critical import thrust_interval
+from blocksim.sweep.answers import version_of
+from blocksim.theory.arrays import least_thicknesses
+from blocksim.theory.map import divide_friction
+from blocksim.theory.regions import at_inner_sliding, first_sliding
 from blocksim.view.mapfigure import draw_regions
-from blocksim.view.style import FONT, MODES
+from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
 SEED = 2024
-ARCHES = 2000
-ENGINE = "pymunk"
-TOL = 0.001
-UNNAMED = "none"
+ARCHES = 2300
+ENGINES = ("pymunk", "direct")
+TOL = {"pymunk": 1e-3, "direct": 1e-8, "pybullet": 4e-3}
+ANYWHERE = None
+TURNS = (ANYWHERE, Mode.SRR, ANYWHERE, Mode.RRS, ANYWHERE, Mode.RSR, ANYWHERE, Mode.RS)
+TURNS += (ANYWHERE, Mode.SS)
+"""What ten arches in a row are drawn from."""
+NARROWEST, WIDEST, MOST_FRICTION = 30.0, 159.0, 4.0
+BLOCK = 4096
+"""Arches drawn together."""
+ASIDE = 0.005
+"""Share of the friction that purely sliding arches are put beside what they need."""
+NEAR = 0.003
+"""Share of alpha or mu within which the mode changes, near a line."""
+NO_MODE = "none"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """An arch; `eta` where friction is critical, not thickness, with that friction in `mu`."""
+
+    alpha_deg: float
+    mu: float
+    voussoirs: int
+    published: Mode
+    near: bool
+    eta: float | None = None
+
+    def cases(self, engine: str) -> list[Case]:
+        """Ask an engine: a bracket, or with less and with more friction than is needed."""
+        arch = self.voussoirs, "centreline", self.eta, None, engine
+        if self.eta is None:
+            return [Case(self.alpha_deg, self.mu, *arch, 0.0, TOL[engine])]
+        factors = 1 - ASIDE, 1 + ASIDE
+        return [Case(self.alpha_deg, self.mu * f, *arch, math.inf, 0.0) for f in factors]
 
 
 @dataclass(frozen=True)
 class Draws:
-    """Arches all over the map; more of them begin with the same."""
+    """The cases of a number of arches; more of them begin with the same."""
 
-    size: int
-    engine: str
+    arches: int
+    method: tuple[str, ...]
 
     @property
-    def method(self) -> tuple[str, ...]:
-        """The engine alone."""
-        return (self.engine,)
+    def size(self) -> int:
+        """Number of cases, about."""
+        return len(self.method) * self.arches
 
     def cases(self) -> Iterator[Case]:
         """Draw the arches."""
-        random = np.random.default_rng(SEED)
-        for _ in range(self.size):
-            alpha_deg = random.uniform(30, 155)
-            mu = math.exp(random.uniform(math.log(0.35), math.log(3)))
-            above = random.uniform(1.0, 1.15)
-            if random.random() < 0.5:
-                alpha_deg = random.uniform(90, 155)
-                mu = _divide(math.radians(alpha_deg)) * above
-            voussoirs = int(random.integers(20, 41))
-            yield Case(
-                alpha_deg, mu, voussoirs, "centreline", None, None, self.engine, 0.0, TOL
-            )
+        for drawn in itertools.islice(draw(), self.arches):
+            for engine in self.method:
+                yield from drawn.cases(engine)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """An arch as an engine saw it; `error` of the bracket's centre, nan where there is none."""
+
+    drawn: Drawn
+    eta: float
+    observed: str
+    built: str
+    right: bool
+    error: float
+
+    @property
+    def as_published(self) -> bool:
+        """Whether the mode is the published one."""
+        return self.observed == self.drawn.published
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether it is not that of limit analysis either."""
+        return self.observed not in {self.drawn.published.value, self.built}
 
 
 @dataclass(frozen=True)
 class Result:
-    """Headline numbers.
+    """Headline numbers of one engine.
 
-    `as_published` and `as_built` count the modes observed that are those of the map, and of
-    the others those that limit analysis gives the same voussoirs; `never` the arches that
-    neither stand at any thickness by limit analysis nor in motion; `failed` those that have
-    no bracket for another reason.
+    `right` counts brackets confirmed by moving runs at both ends, and purely sliding arches
+    that fall and stand as they should; `unanswered` arches without a bracket. Of the modes,
+    `as_published` are those of the map, `as_built` others that limit analysis finds, and
+    `elsewise` neither; `clear_` counts arches that are not near a line.
     """
 
+    engine: str
     arches: int
+    right: int
+    unanswered: int
     as_published: int
     as_built: int
-    confirmed: int
-    never: int
-    failed: int
+    elsewise: int
+    clear: int
+    clear_published: int
+    clear_elsewise: int
     worst_error: float
     median_error: float
     confusion: dict[tuple[str, str], int]
 
 
-@dataclass(frozen=True)
-class Seen:
-    """One row: the arch, its modes, the centre of its bracket and the error of that."""
-
-    alpha_deg: float
-    mu: float
-    published: str
-    observed: str
-    built: str
-    confirmed: bool
-    never: bool
-    eta: float
-    error: float
+def draw() -> Iterator[Drawn]:
+    """Draw arches, without end."""
+    streams = {turn: _stream(turn) for turn in TURNS}
+    for turn in itertools.cycle(TURNS):
+        yield next(streams[turn])
 
 
-def _divide(half_angle: float) -> float:
-    """Friction below which no thickness stands."""
-    low, high = 0.01, 100.0
+def _stream(turn: Mode | None) -> Iterator[Drawn]:
+    """Draw arches of one kind, independently of the others."""
+    random = np.random.default_rng([SEED, TURNS.index(turn)])
+    while True:
+        alpha_deg = random.uniform(NARROWEST, WIDEST, BLOCK)
+        least = np.interp(alpha_deg, *_divide())
+        mu = least * (MOST_FRICTION / least) ** random.random(BLOCK)
+        voussoirs = random.integers(20, 41, BLOCK)
+        thicker = random.uniform(1.1, 3.0, BLOCK)
+        if turn is Mode.SS:
+            yield from map(_on_divide, alpha_deg, voussoirs, thicker)
+        else:
+            yield from _critical(turn, alpha_deg, mu, voussoirs)
+
+
+@cache
+def _divide() -> tuple[Array, Array]:
+    """Half-angles [deg] and the friction below which no thickness stands."""
+    angles = np.linspace(NARROWEST, WIDEST, 200)
+    return angles, np.array([divide_friction(math.radians(angle)) for angle in angles])
+
+
+def _critical(
+    turn: Mode | None, alpha_deg: Array, mu: Array, voussoirs: Array
+) -> Iterator[Drawn]:
+    """Those that stand at some thickness and have the mode asked for."""
+    there = least_thicknesses(np.radians(alpha_deg), mu)
+    wanted = np.isfinite(there.eta) & ((there.mode == turn) | (turn is ANYWHERE))
+    for k in np.flatnonzero(wanted):
+        mode, half_angle = Mode(str(there.mode[k])), math.radians(alpha_deg[k])
+        # As far to either side as the mode may not change.
+        alphas = half_angle * np.array([1 - NEAR, 1 + NEAR, 1.0, 1.0])
+        mus = mu[k] * np.array([1.0, 1.0, 1 - NEAR, 1 + NEAR])
+        near = bool((least_thicknesses(alphas, mus).mode != mode).any())
+        yield Drawn(float(alpha_deg[k]), float(mu[k]), int(voussoirs[k]), mode, near)
+
+
+def _on_divide(alpha_deg: float, voussoirs: int, thicker: float) -> Drawn:
+    """An arch on the line of purely sliding ones, and the friction its voussoirs need."""
+    half_angle, count = math.radians(alpha_deg), int(voussoirs)
+    mu = divide_friction(half_angle)
+    least, _ = at_inner_sliding(mu, half_angle, "centreline")
+    eta = float(min(thicker * least, ETA_MAX))
+    low, high = mu / 2, mu * 2
     for _ in range(40):
         middle = (low + high) / 2
-        least, most = thrust_interval(half_angle, middle)
-        low, high = (middle, high) if least > most else (low, middle)
-    return high
+        stands = bool(which_stand(half_angle, eta, middle, count))
+        low, high = (low, middle) if stands else (middle, high)
+    return Drawn(float(alpha_deg), high, count, Mode.SS, False, eta)
 
 
-def _seen(case: Case, row: dict[str, object]) -> Seen:
-    built = least_thickness(math.radians(case.alpha_deg), case.mu, case.voussoirs)
-    low, high = row["eta_low"], row["eta_high"]
+def _seen(drawn: Drawn, rows: Sequence[dict[str, object]]) -> Seen:
+    """Read what an engine said of an arch: of one case, or of two."""
+    below, above = rows[0], rows[-1]
+    alpha, mode = math.radians(drawn.alpha_deg), str(below["mode"] or NO_MODE)
+    built = least_thickness(alpha, float(str(below["mu"])), drawn.voussoirs)
+    if drawn.eta is not None:
+        right = (below["verdict"], above["verdict"]) == ("collapses", "stands")
+        return Seen(drawn, drawn.eta, mode, str(built.mode), right, math.nan)
+    low, high = below["eta_low"], below["eta_high"]
     eta = math.nan if low is None or high is None else (float(str(low)) + float(str(high))) / 2
-    return Seen(
-        alpha_deg=case.alpha_deg,
-        mu=case.mu,
-        published=str(row["mode_theory"]),
-        observed=str(row["mode"] or UNNAMED),
-        built=str(built.mode or UNNAMED),
-        confirmed=row["confirmed"] is True,
-        never=built.eta is None and low is not None and high is None,
-        eta=eta,
-        error=math.nan if built.eta is None else eta / built.eta - 1,
-    )
+    error = math.nan if built.eta is None else eta / built.eta - 1
+    return Seen(drawn, eta, mode, str(built.mode), below["confirmed"] is True, error)
 
 
 def main(
-    out: Path, *, quick: bool = False, arches: int = ARCHES, engine: str = ENGINE
-) -> Result:
-    """Run the study or go on with it, write its figure and return its numbers."""
-    draws = Draws(6 if quick else arches, "direct" if quick else engine)
-    folder = out / draws.engine
+    out: Path,
+    *,
+    quick: bool = False,
+    arches: int = ARCHES,
+    engines: tuple[str, ...] = ENGINES,
+) -> tuple[Result, ...]:
+    """Run the study or go on with it, write a figure an engine and return their numbers."""
+    draws = Draws(10, ("direct",)) if quick else Draws(arches, engines)
+    folder = out / "rows"
     if quick:
         with ThreadPoolExecutor(1) as executor:
             sweep(draws, folder, executor=executor)
     else:
         sweep(draws, folder, workers=2, progress=_tell)
-    rows = {(row["alpha_deg"], row["mu"]): row for row in read_rows(folder)}
-    asked = [(case, rows[case.alpha_deg, case.mu]) for case in draws.cases()]
-    every = [_seen(case, row) for case, row in asked if row["error"] is None]
+    rows = {row["id"]: row for row in read_rows(folder)}
+    return tuple(_result(engine, draws.arches, rows, out) for engine in draws.method)
+
+
+def _result(
+    engine: str, arches: int, rows: dict[object, dict[str, object]], out: Path
+) -> Result:
+    version = version_of(engine)
+    every = [
+        _seen(drawn, [rows[case.identity(version).hex()] for case in drawn.cases(engine)])
+        for drawn in itertools.islice(draw(), arches)
+    ]
     errors = np.abs([each.error for each in every if not math.isnan(each.error)])
-    _figure(every, out / "mode_sweep.png", draws.engine)
+    clear = [each for each in every if not each.drawn.near]
+    _figure(every, out / f"mode_sweep_{engine}.png", engine)
     return Result(
-        arches=draws.size,
-        as_published=sum(each.observed == each.published for each in every),
-        as_built=sum(each.published != each.observed == each.built for each in every),
-        confirmed=sum(each.confirmed for each in every),
-        never=sum(each.never for each in every),
-        failed=draws.size - errors.size - sum(each.never for each in every),
+        engine=engine,
+        arches=len(every),
+        right=sum(each.right for each in every),
+        unanswered=sum(each.observed == NO_MODE or math.isnan(each.eta) for each in every),
+        as_published=sum(each.as_published for each in every),
+        as_built=sum(not each.as_published and not each.unexplained for each in every),
+        elsewise=sum(each.unexplained for each in every),
+        clear=len(clear),
+        clear_published=sum(each.as_published for each in clear),
+        clear_elsewise=sum(each.unexplained for each in clear),
         worst_error=float(errors.max()),
         median_error=float(np.median(errors)),
-        confusion=dict(Counter((each.published, each.observed) for each in every)),
+        confusion=dict(_counts(every)),
     )
 
 
+def _counts(every: Sequence[Seen]) -> Counter[tuple[str, str]]:
+    return Counter((each.drawn.published.value, each.observed) for each in every)
+
+
 def _tell(share: float, what: str) -> None:
-    print(f"{share:6.1%}  {what}", file=sys.stderr)  # noqa: T201
+    sys.stderr.write(f"{share:6.1%}  {what}\n")
 
 
-def _figure(every: list[Seen], path: Path, engine: str) -> None:
+def _figure(every: Sequence[Seen], path: Path, engine: str) -> None:
     with mpl.rc_context(FONT):
-        figure = Figure(figsize=(14, 4.6), layout="constrained")
-        over_map, matrix, errors = figure.subplots(1, 3, width_ratios=(1.3, 1, 1.2))
-        draw_regions(over_map)
-        for mode in Mode:
-            own = [each for each in every if each.observed == mode]
-            over_map.plot(
-                [each.mu for each in own],
-                [each.eta for each in own],
-                MODES[mode].marker,
-                mfc=MODES[mode].colour,
-                mec="white",
-                mew=0.5,
-                ms=6,
-                ls="none",
-                label=mode.value if own else "",
-            )
-        over_map.legend(loc="upper left", title="observed")
-        over_map.set_title(f"Least thickness and mode by {engine}")
-        _confusion(matrix, every)
-        points = errors.scatter(
-            [each.alpha_deg for each in every],
-            [each.mu for each in every],
-            c=[max(abs(each.error), 1e-6) for each in every],
-            norm=LogNorm(1e-6, 1e-2),
-            s=16,
-        )
-        errors.set_yscale("log")
-        errors.set_xlabel("half-angle of embrace [deg]")
-        errors.set_ylabel(r"friction coefficient $\mu$")
-        errors.set_title("Error of least thickness")
-        figure.colorbar(points, ax=errors, label="centre of bracket over exact, less 1")
+        figure = Figure(figsize=(15, 7.6), layout="constrained")
+        grid = figure.add_gridspec(2, 2, width_ratios=(1.5, 1))
+        _over_map(figure.add_subplot(grid[:, 0]), every, engine)
+        _confusion(figure.add_subplot(grid[0, 1]), every)
+        _errors(figure, figure.add_subplot(grid[1, 1]), every)
         figure.savefig(path, dpi=150)
 
 
-def _confusion(axes: Axes, every: list[Seen]) -> None:
-    """Draw how often each mode is observed where each is published."""
-    counts = Counter((each.published, each.observed) for each in every)
+def _over_map(axes: Axes, every: Sequence[Seen], engine: str) -> None:
+    """Draw the modes observed over those published (Fig. 9)."""
+    draw_regions(axes)
+    handles: list[Line2D] = []
+    for mode in (*Mode, None):
+        style = MODES[mode] if mode else UNNAMED
+        own = [each for each in every if each.observed == (mode or NO_MODE)]
+        look = {"marker": style.marker, "mfc": style.colour, "mec": "white", "mew": 0.4}
+        for each in own:
+            axes.plot(each.drawn.mu, each.eta, ms=4.5, zorder=5, **look)
+        if own:
+            words = f"{mode.value if mode else 'none of the seven'}  {len(own)}"
+            handles.append(Line2D([], [], ls="", ms=7, label=words, **look))
+    for marked, colour, words in (
+        ([e for e in every if not e.as_published and not e.unexplained], INK, "as limit says"),
+        ([e for e in every if e.unexplained], MISS, "as neither says"),
+    ):
+        ring = {"marker": "o", "mfc": "none", "mec": colour, "mew": 0.9, "ls": ""}
+        axes.plot([e.drawn.mu for e in marked], [e.eta for e in marked], ms=9, zorder=6, **ring)
+        if marked:
+            words = f"not as published,\n{words}  {len(marked)}"
+            handles.append(Line2D([], [], ms=9, label=words, **ring))
+    axes.legend(handles=handles, loc="upper left", title="observed", fontsize=8)
+    axes.set_title(f"{len(every)} arches by {engine}, over the published modes")
+
+
+def _confusion(axes: Axes, every: Sequence[Seen]) -> None:
+    """Draw how often each mode is observed where each is published, in brackets off lines."""
+    counts, clear = _counts(every), _counts([e for e in every if not e.drawn.near])
     published = [mode.value for mode in Mode if any(row == mode for row, _ in counts)]
-    names = [*(mode.value for mode in Mode), UNNAMED]
+    names = [*(mode.value for mode in Mode), NO_MODE]
     observed = [name for name in names if any(column == name for _, column in counts)]
     table = np.array([[counts[row, column] for column in observed] for row in published])
-    axes.imshow(table / table.sum(axis=1, keepdims=True), cmap="Blues", vmin=0, vmax=1.6)
+    axes.imshow(
+        table / table.sum(axis=1, keepdims=True), cmap="Blues", vmin=0, vmax=1.6, aspect="auto"
+    )
     for (row, column), count in np.ndenumerate(table):
         if count:
-            axes.text(column, row, str(count), ha="center", va="center")
+            off = clear[published[row], observed[column]]
+            axes.text(column, row, f"{count} ({off})", ha="center", va="center")
     axes.set_xticks(range(len(observed)), observed)
     axes.set_yticks(range(len(published)), published)
     axes.set_xlabel("mode observed")
     axes.set_ylabel("mode published")
-    axes.set_title("Modes")
+    axes.spines[:].set_visible(False)
+    axes.set_title("Modes: all arches (those away from lines of the map)")
+
+
+def _errors(figure: Figure, axes: Axes, every: Sequence[Seen]) -> None:
+    """Draw the error over half-angle and friction, where thin arches have room."""
+    known = [each for each in every if not math.isnan(each.error)]
+    sizes = np.maximum(np.abs([each.error for each in known]), 1e-12)
+    points = axes.scatter(
+        [each.drawn.alpha_deg for each in known],
+        [each.drawn.mu for each in known],
+        c=100 * sizes,
+        norm=LogNorm(),
+        cmap="viridis",
+        s=9,
+    )
+    angles, divide = _divide()
+    first = first_sliding(np.radians(angles[angles < 151]))
+    axes.plot(angles, divide, color=INK, lw=1.1)
+    axes.plot(angles[angles < 151], first.mu, color=INK, lw=1.1)
+    axes.set_yscale("log")
+    axes.set_ylim(0.8 * divide[0], 1.1 * MOST_FRICTION)
+    axes.set_yticks((0.03, 0.1, 0.3, 1, 3), ("0.03", "0.1", "0.3", "1", "3"))
+    axes.minorticks_off()
+    axes.set_xlabel("half-angle of embrace [deg]")
+    axes.set_ylabel(r"friction coefficient $\mu$")
+    axes.set_title("Error of least thickness")
+    figure.colorbar(points, ax=axes, label="bracket's centre off limit analysis [%]")
 
 
 if __name__ == "__main__":
-    chosen = Path(sys.argv[1])
     number = int(sys.argv[2]) if len(sys.argv) > 2 else ARCHES
-    name = sys.argv[3] if len(sys.argv) > 3 else ENGINE
-    print(main(chosen, arches=number, engine=name))  # noqa: T201
+    chosen = tuple(sys.argv[3:]) or ENGINES
+    for result in main(Path(sys.argv[1]), arches=number, engines=chosen):
+        sys.stdout.write(f"{result}\n")

@@ -23,7 +23,7 @@ from blocksim import Arch, bracket, check
 from blocksim.errors import InputError
 from blocksim.sweep import Case, Design, load_design, read_rows, sweep
 from blocksim.sweep.answers import Answered, Asked, answer
-from blocksim.sweep.shards import identities
+from blocksim.sweep.shards import LOCK, identities, locked
 
 GRID = """
 alpha_deg = { low = 60, high = 150, steps = 4 }
@@ -326,7 +326,39 @@ def test_a_write_that_was_interrupted_loses_nothing(
         done = sweep(design, tmp_path, executor=executor)
     assert 0 < done.tally.rows < 80
     assert rows_of(tmp_path) == uninterrupted
-    assert not list(tmp_path.glob(".*"))
+    assert not list(tmp_path.glob(".rows-*"))
+
+
+def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
+    (tmp_path / "design.toml").write_text(GRID)
+    out = tmp_path / "out"
+    out.mkdir()
+    part = out / ".rows-x.jsonl.part"
+    part.write_text("what the other is writing")
+    with locked(out):
+        done = command(tmp_path, out, "--workers", "1")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert f"--out = '{out}': must be a folder no other sweep is at work in" in done.stderr
+    assert part.exists()
+    assert not list(out.glob("rows-*"))
+
+
+def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
+    holder = [
+        "from blocksim.sweep.shards import locked",
+        "from pathlib import Path",
+        f"with locked(Path({str(tmp_path)!r})): print('held', flush=True); input()",
+    ]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", "\n".join(holder)], **pipes) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"held\n"
+        with pytest.raises(InputError, match="no other sweep"), locked(tmp_path):
+            pass
+        process.kill()
+    with locked(tmp_path):
+        assert (tmp_path / LOCK).exists()
 
 
 def test_what_is_no_row_is_refused(tmp_path: Path) -> None:
@@ -347,7 +379,7 @@ def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "must be writable" in done.stderr
-    assert not list((tmp_path / "out").glob(".*"))
+    assert not list((tmp_path / "out").glob(".rows-*"))
     assert len(rows_of(tmp_path / "out")) < 80
     assert command(tmp_path, tmp_path / "out", "--workers", "1").returncode == 0
     assert rows_of(tmp_path / "out") == uninterrupted
