@@ -14,8 +14,8 @@ friction than the voussoirs need. Purely overturning arches (r) need boundless f
 which engines take 1000: they are left out. Voussoirs are 20 to 40, weight is on the centreline.
 
 What is compared. An engine brackets the least thickness, to 0.1 % (`direct`: 1e-8), and lets
-the arch go at both ends; that is about half of the time, and what makes it evidence. The mode is
-the one seen in motion at the lower end. The map is of the continuous arch: where the mode
+the arch go at both ends; that is about half of the time, and what makes it evidence. The mode
+is the one seen in motion at the lower end. The map is of the continuous arch: where the mode
 is another one, limit analysis of the same voussoirs tells whether they are the reason.
 An arch is called near a line if its published mode changes as mu or alpha changes by 0.3 %:
 no more, in 99 of 100, does the least thickness of the voussoirs differ from the map's, if that
@@ -25,8 +25,8 @@ Expected: away from the lines the published mode, near them that or the mode of 
 brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; purely sliding
 arches fall and stand as they should.
 
-Run: python -m analysis.mode_sweep OUT [ARCHES [ENGINE ...]]. Rows are kept in OUT/rows; the same
-command goes on after an interruption, and a larger number begins with the same arches.
+Run: python -m analysis.mode_sweep OUT [ARCHES [ENGINE ...]]. Rows are kept in OUT/rows; the
+same command goes on after an interruption, and a larger number begins with the same arches.
 """
 
 from __future__ import annotations
@@ -210,7 +210,7 @@ def _critical(
 
 
 def _on_divide(alpha_deg: float, voussoirs: int, thicker: float) -> Drawn:
-    """An arch on the line of purely sliding ones, and the friction its voussoirs need."""
+    """Draw an arch on the line of purely sliding ones, and the friction its voussoirs need."""
     half_angle, count = math.radians(alpha_deg), int(voussoirs)
     mu = divide_friction(half_angle)
     least, _ = at_inner_sliding(mu, half_angle, "centreline")
@@ -322,8 +322,8 @@ def _over_map(axes: Axes, every: Sequence[Seen], engine: str) -> None:
         ring = {"marker": "o", "mfc": "none", "mec": colour, "mew": 0.9, "ls": ""}
         axes.plot([e.drawn.mu for e in marked], [e.eta for e in marked], ms=9, zorder=6, **ring)
         if marked:
-            words = f"not as published,\n{words}  {len(marked)}"
-            handles.append(Line2D([], [], ms=9, label=words, **ring))
+            label = f"not as published,\n{words}  {len(marked)}"
+            handles.append(Line2D([], [], ms=9, label=label, **ring))
     axes.legend(handles=handles, loc="upper left", title="observed", fontsize=8)
     axes.set_title(f"{len(every)} arches by {engine}, over the published modes")
 

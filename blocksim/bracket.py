@@ -6,13 +6,15 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from blocksim import limit, theory
 from blocksim.arch import Arch, Weight, is_number, require, require_friction
 from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
-from blocksim.trial import trial
+from blocksim.setup import BY_RULE, Overrides, given_words
+from blocksim.trial import Trial, trial
 from blocksim.verdict import Verdict
 
 ETA_MAX = 2.0
@@ -93,6 +95,7 @@ def bracket(
     method: str = "auto",
     tol: float = 0.005,
     confirm: bool = True,
+    settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
@@ -114,6 +117,8 @@ def bracket(
         Relative width at which to end, above 0 and at most 0.5.
     confirm : bool
         Let the arch go at both ends; without, an engine answers by the onset test alone.
+    settings : mapping of str to float
+        Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns
@@ -131,7 +136,7 @@ def bracket(
     require_friction(mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    rung = choose(method, tol)
+    rung = choose(method, tol, settings=settings)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
     answer = Bracket(
@@ -172,8 +177,12 @@ def bracket(
             reason="static limit analysis of the voussoirs as built",
         )
     else:
-        answer = _by_simulation(arch, answer, continuous.eta, progress, confirm=confirm)
-    return replace(answer, wall_s=time.perf_counter() - started)
+        attempt = partial(trial, mu=mu, engine=rung.name, settings=settings)
+        answer = _by_simulation(
+            arch, answer, continuous.eta, attempt, progress, confirm=confirm
+        )
+    reason = answer.reason + given_words(settings)
+    return replace(answer, reason=reason, wall_s=time.perf_counter() - started)
 
 
 def _inner(angles: tuple[float, ...]) -> float | None:
@@ -181,13 +190,17 @@ def _inner(angles: tuple[float, ...]) -> float | None:
 
 
 def _by_simulation(
-    arch: Arch, answer: Bracket, guess: float | None, progress: Progress, *, confirm: bool
+    arch: Arch,
+    answer: Bracket,
+    guess: float | None,
+    attempt: Callable[..., Trial],
+    progress: Progress,
+    *,
+    confirm: bool,
 ) -> Bracket:
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     search = Search(
-        judge=lambda eta: (
-            trial(replace(arch, eta=eta), answer.mu, answer.method, moving=False).verdict
-        ),
+        judge=lambda eta: attempt(replace(arch, eta=eta), moving=False).verdict,
         progress=progress,
     )
     search.expand(ETA_MAX if guess is None else guess)
@@ -198,7 +211,7 @@ def _by_simulation(
         # The lower end tells the mode, too.
         if eta is not None and (confirm or expected is Verdict.COLLAPSES):
             progress(0.95, f"moving run at {eta:.6g}")
-            ended = trial(replace(arch, eta=eta), answer.mu, answer.method, moving=confirm)
+            ended = attempt(replace(arch, eta=eta), moving=confirm)
             verdicts.append(ended.verdict is expected)
             mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None

@@ -43,6 +43,8 @@ method = ["limit", "direct"]
 count = 40
 seed = 7
 """
+DIRECT = 'alpha_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
+PYMUNK = DIRECT.replace("direct", "pymunk")
 Rows = dict[str, dict[str, object]]
 
 
@@ -128,6 +130,12 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
         (('"limit"', '"guess"'), "method = 'guess': must be one of auto"),
         (("method =", "band = -1\nmethod ="), "band = -1.0"),
         (("method =", "tol = 0\nmethod ="), "tol = 0.0"),
+        ((GRID, f"{DIRECT}step = 0.5"), "settings.step = 0.5: must be a number from 1e-06"),
+        ((GRID, f"{DIRECT}sweeps = 5"), "settings.sweeps = 'given': must be left out: no"),
+        ((GRID, f"{DIRECT}pace = 5"), "settings.pace = 5: must be left out"),
+        ((GRID, f"{DIRECT}still = []"), "settings.still = []: must be a value, a list"),
+        ((GRID, f"{PYMUNK}sweeps = [9, 9.5]"), "settings.sweeps = 9.5: must be a whole number"),
+        (('"limit"]', '"limit"]\n[settings]\nstep = 0.1'), "settings.step = 'given'"),
         (("steps = 4", "steps = 1000000"), "design = '48000000 cases'"),
         (("mu =", "mu = ="), "must be valid TOML"),
     ],
@@ -218,6 +226,27 @@ def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path)
     assert (done.tally.simulated, done.tally.spared) == (1, 5)
     methods = {row["ratio"]: row["method"] for row in read_rows(tmp_path)}
     assert [each for each, method in methods.items() if method == "direct"] == [0.9995]
+
+
+def test_settings_are_axes_like_any_other_and_part_of_the_question(tmp_path: Path) -> None:
+    text = PYMUNK.replace('"pymunk"', '["limit", "pymunk", "direct"]')
+    text += "hold_sweeps = [1000, 1_000_000]\nstep = 0.005\n"
+    with ThreadPoolExecutor(1) as executor:
+        done = sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    # `limit` is run with none of them, and `direct` with no sweeps: asked once each.
+    assert (done.cases, done.tally.rows) == (4, 4)
+    rows = rows_of(tmp_path).values()
+    seen = {(row["asked"], json.dumps(row["settings"])): row["verdict"] for row in rows}
+    assert seen == {
+        ("limit", "null"): "collapses",
+        ("direct", '{"step": 0.005}'): "collapses",
+        ("pymunk", '{"step": 0.005, "hold_sweeps": 1000}'): "undecided",
+        ("pymunk", '{"step": 0.005, "hold_sweeps": 1000000}'): "collapses",
+    }
+    drawn = f"{PYMUNK}sweeps = {{ low = 10, high = 12 }}\n[random]\ncount = 200\nseed = 1"
+    given = Counter(case.settings for case in design_of(tmp_path, drawn).cases())
+    assert set(given) == {(("sweeps", sweeps),) for sweeps in (10, 11, 12)}
+    assert min(given.values()) > 40
 
 
 def test_a_failing_case_becomes_a_row_that_says_so(

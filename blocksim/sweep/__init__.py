@@ -1,8 +1,8 @@
 """Many arches: a design of cases, asked of any executor, with rows that survive a kill."""
 
-from blocksim.sweep.design import Case as Case
+from blocksim.sweep.case import Case as Case
+from blocksim.sweep.case import Questions as Questions
 from blocksim.sweep.design import Design as Design
-from blocksim.sweep.design import Questions as Questions
 from blocksim.sweep.design import load_design as load_design
 from blocksim.sweep.run import Summary as Summary
 from blocksim.sweep.run import sweep as sweep

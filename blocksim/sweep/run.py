@@ -35,7 +35,7 @@ from blocksim.sweep.answers import (
     reason_of,
     version_of,
 )
-from blocksim.sweep.design import Case, Questions
+from blocksim.sweep.case import Case, Questions
 from blocksim.sweep.shards import identities, locked, write_shard
 
 SHARE = 0.05

@@ -96,8 +96,8 @@ def read_rows(folder: Path) -> Iterator[dict[str, object]]:
     ------
     dict
         The question (`alpha_deg`, `mu`, `voussoirs`, `weight`, `eta`, `ratio`,
-        `asked`), `method` that answered and its `version`, and the answer; `error`
-        is None unless there is none. Infinite friction is the text "inf".
+        `asked`, `settings`), `method` that answered and its `version`, and the answer;
+        `error` is None unless there is none. Infinite friction is the text "inf".
 
     Raises
     ------
