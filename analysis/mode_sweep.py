@@ -6,24 +6,26 @@ and at its thickness, all over the map?
 The draw. Of ten arches five lie anywhere: half-angle even from 30 to 159 deg, friction
 log-uniform from what lets any thickness stand to 4, the right edge of the map. Four have one
 of the mixed modes each (srr, rrs, rsr, rs), which have little room: they are drawn in the same
-way until one comes that has it. All of these stand at some thickness, and their least one is
-bracketed, so that they are near critical. The tenth lies on the line where purely sliding
-arches are published, and is 1.1 to 3 times as thick as the least there: its thickness is
-not critical but its friction is, so it is put to the engine with 0.5 % less and 0.5 % more
-friction than the voussoirs need. Purely overturning arches (r) need boundless friction, of
-which engines take 1000: they are left out. Voussoirs are 20 to 40, weight is on the centreline.
+way until one comes that has it. All of these stand at some thickness, and are put to
+the engine 0.5 % below and 0.5 % above the least thickness of their voussoirs. The tenth lies on
+the line where purely sliding arches are published, and is 1.1 to 3 times as thick as the
+least there: not its thickness is critical but its friction, which is 0.5 % less and 0.5 % more
+than the voussoirs need. Purely overturning arches (r) need boundless friction, of which engines
+take 1000: they are left out. Voussoirs are 20 to 40, weight is on the centreline.
 
-What is compared. An engine brackets the least thickness, to 0.1 % (`direct`: 1e-8), and lets
-the arch go at both ends; that is about half of the time, and what makes it evidence. The mode
-is the one seen in motion at the lower end. The map is of the continuous arch: where the mode
-is another one, limit analysis of the same voussoirs tells whether they are the reason.
-An arch is called near a line if its published mode changes as mu or alpha changes by 0.3 %:
-no more, in 99 of 100, does the least thickness of the voussoirs differ from the map's, if that
-is counted in alpha.
+What is compared. The mode is the one seen in motion 0.5 % below: closer, mixed modes start too
+slowly for an engine of impulses (in a first run, 0.05 % below, pymunk could not tell 6 of 107),
+and far below more than the weakest mode is overcome. The map is of the continuous arch: where
+the mode is another one, limit analysis of the same voussoirs tells whether they are the reason.
+The least thickness is bracketed by the onset test alone, to 0.1 % (`direct`: 1e-8); the runs at
+0.5 % confirm it, and moving runs at the bracket's ends would take most of the time. The mode at
+the lower end of that bracket is counted, too. An arch is called near a line if its published
+mode changes as mu or alpha changes by 0.3 %: no more, in 99 of 100, does the least thickness of
+the voussoirs differ from the map's, if that is counted in alpha.
 
 Expected: away from the lines the published mode, near them that or the mode of limit analysis;
-brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; purely sliding
-arches fall and stand as they should.
+brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; all fall below and
+stand above.
 
 Run: python -m analysis.mode_sweep OUT [ARCHES [ENGINE ...]]. Rows are kept in OUT/rows; the
 same command goes on after an interruption, and a larger number begins with the same arches.
@@ -58,6 +60,7 @@ from blocksim.sweep.answers import version_of
 from blocksim.theory.arrays import least_thicknesses
 from blocksim.theory.map import divide_friction
 from blocksim.theory.regions import at_inner_sliding, first_sliding
+from blocksim.verdict import Verdict
 from blocksim.view.mapfigure import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
@@ -73,7 +76,7 @@ NARROWEST, WIDEST, MOST_FRICTION = 30.0, 159.0, 4.0
 BLOCK = 4096
 """Arches drawn together."""
 ASIDE = 0.005
-"""Share of the friction that purely sliding arches are put beside what they need."""
+"""Share of the critical thickness, or friction, that arches let go have less or more."""
 NEAR = 0.003
 """Share of alpha or mu within which the mode changes, near a line."""
 NO_MODE = "none"
@@ -91,12 +94,14 @@ class Drawn:
     eta: float | None = None
 
     def cases(self, engine: str) -> list[Case]:
-        """Ask an engine: a bracket, or with less and with more friction than is needed."""
-        arch = self.voussoirs, "centreline", self.eta, None, engine
-        if self.eta is None:
-            return [Case(self.alpha_deg, self.mu, *arch, 0.0, TOL[engine])]
-        factors = 1 - ASIDE, 1 + ASIDE
-        return [Case(self.alpha_deg, self.mu * f, *arch, math.inf, 0.0) for f in factors]
+        """Ask an engine: with less, with more than is critical, and for a bracket."""
+        start, factors = (self.voussoirs, "centreline"), (1 - ASIDE, 1 + ASIDE)
+        if self.eta is not None:
+            rest = *start, self.eta, None, engine, math.inf, 0.0
+            return [Case(self.alpha_deg, self.mu * factor, *rest) for factor in factors]
+        arch = self.alpha_deg, self.mu, *start, None
+        beside = [Case(*arch, factor, engine, math.inf, 0.0) for factor in factors]
+        return [*beside, Case(*arch, None, engine, 0.0, TOL[engine], confirm=False)]
 
 
 @dataclass(frozen=True)
@@ -108,8 +113,9 @@ class Draws:
 
     @property
     def size(self) -> int:
-        """Number of cases, about."""
-        return len(self.method) * self.arches
+        """Number of cases: purely sliding arches are not bracketed."""
+        purely_sliding = self.arches // len(TURNS)
+        return len(self.method) * (3 * self.arches - purely_sliding)
 
     def cases(self) -> Iterator[Case]:
         """Draw the arches."""
@@ -120,13 +126,19 @@ class Draws:
 
 @dataclass(frozen=True)
 class Seen:
-    """An arch as an engine saw it; `error` of the bracket's centre, nan where there is none."""
+    """An arch as an engine saw it.
+
+    Verdicts `below` and `above` what is critical; modes in motion, at the onset, and by limit
+    analysis; the bracket's centre and its error, nan where there is none.
+    """
 
     drawn: Drawn
-    eta: float
+    below: Verdict
+    above: Verdict
     observed: str
+    at_onset: str
     built: str
-    right: bool
+    eta: float
     error: float
 
     @property
@@ -137,29 +149,35 @@ class Seen:
     @property
     def unexplained(self) -> bool:
         """Whether it is not that of limit analysis either."""
-        return self.observed not in {self.drawn.published.value, self.built}
+        return self.observed not in self.explained
+
+    @property
+    def explained(self) -> set[str]:
+        """Modes as published and as limit analysis says."""
+        return {self.drawn.published.value, self.built}
 
 
 @dataclass(frozen=True)
 class Result:
     """Headline numbers of one engine.
 
-    `right` counts brackets confirmed by moving runs at both ends, and purely sliding arches
-    that fall and stand as they should; `unanswered` arches without a bracket. Of the modes,
-    `as_published` are those of the map, `as_built` others that limit analysis finds, and
-    `elsewise` neither; `clear_` counts arches that are not near a line.
+    `false` counts wrong verdicts below and above, `unsure` undecided ones. Of the modes in
+    motion, `as_published` are those of the map, `as_built` others that limit analysis finds,
+    and `elsewise` neither; `clear_` counts arches that are not near a line. `onset_elsewise` is
+    `elsewise` of the modes at the onset.
     """
 
     engine: str
     arches: int
-    right: int
-    unanswered: int
+    false: int
+    unsure: int
     as_published: int
     as_built: int
     elsewise: int
     clear: int
     clear_published: int
     clear_elsewise: int
+    onset_elsewise: int
     worst_error: float
     median_error: float
     confusion: dict[tuple[str, str], int]
@@ -199,7 +217,7 @@ def _critical(
 ) -> Iterator[Drawn]:
     """Those that stand at some thickness and have the mode asked for."""
     there = least_thicknesses(np.radians(alpha_deg), mu)
-    wanted = np.isfinite(there.eta) & ((there.mode == turn) | (turn is ANYWHERE))
+    wanted = (there.eta < ETA_MAX / (1 + ASIDE)) & ((there.mode == turn) | (turn is ANYWHERE))
     for k in np.flatnonzero(wanted):
         mode, half_angle = Mode(str(there.mode[k])), math.radians(alpha_deg[k])
         # As far to either side as the mode may not change.
@@ -224,17 +242,27 @@ def _on_divide(alpha_deg: float, voussoirs: int, thicker: float) -> Drawn:
 
 
 def _seen(drawn: Drawn, rows: Sequence[dict[str, object]]) -> Seen:
-    """Read what an engine said of an arch: of one case, or of two."""
-    below, above = rows[0], rows[-1]
-    alpha, mode = math.radians(drawn.alpha_deg), str(below["mode"] or NO_MODE)
-    built = least_thickness(alpha, float(str(below["mu"])), drawn.voussoirs)
-    if drawn.eta is not None:
-        right = (below["verdict"], above["verdict"]) == ("collapses", "stands")
-        return Seen(drawn, drawn.eta, mode, str(built.mode), right, math.nan)
-    low, high = below["eta_low"], below["eta_high"]
-    eta = math.nan if low is None or high is None else (float(str(low)) + float(str(high))) / 2
-    error = math.nan if built.eta is None else eta / built.eta - 1
-    return Seen(drawn, eta, mode, str(built.mode), below["confirmed"] is True, error)
+    """Read what an engine said of an arch: less, more, and perhaps a bracket."""
+    below, above, *brackets = rows
+    alpha, mu = math.radians(drawn.alpha_deg), float(str(below["mu"]))
+    built = least_thickness(alpha, mu, drawn.voussoirs)
+    eta, error, at_onset = drawn.eta or math.nan, math.nan, NO_MODE
+    for row in brackets:
+        at_onset = str(row["mode"] or NO_MODE)
+        low, high = row["eta_low"], row["eta_high"]
+        if low is not None and high is not None and built.eta is not None:
+            eta = (float(str(low)) + float(str(high))) / 2
+            error = eta / built.eta - 1
+    return Seen(
+        drawn=drawn,
+        below=Verdict(str(below["verdict"])),
+        above=Verdict(str(above["verdict"])),
+        observed=str(below["mode"] or NO_MODE),
+        at_onset=at_onset,
+        built=str(built.mode or NO_MODE),
+        eta=eta,
+        error=error,
+    )
 
 
 def main(
@@ -270,14 +298,19 @@ def _result(
     return Result(
         engine=engine,
         arches=len(every),
-        right=sum(each.right for each in every),
-        unanswered=sum(each.observed == NO_MODE or math.isnan(each.eta) for each in every),
+        false=sum(
+            (each.below is Verdict.STANDS) + (each.above is Verdict.COLLAPSES) for each in every
+        ),
+        unsure=sum((e.below, e.above).count(Verdict.UNDECIDED) for e in every),
         as_published=sum(each.as_published for each in every),
         as_built=sum(not each.as_published and not each.unexplained for each in every),
         elsewise=sum(each.unexplained for each in every),
         clear=len(clear),
         clear_published=sum(each.as_published for each in clear),
         clear_elsewise=sum(each.unexplained for each in clear),
+        onset_elsewise=sum(
+            each.drawn.eta is None and each.at_onset not in each.explained for each in every
+        ),
         worst_error=float(errors.max()),
         median_error=float(np.median(errors)),
         confusion=dict(_counts(every)),

@@ -70,8 +70,8 @@ def test_the_map_by_simulation_goes_on_where_it_was(tmp_path: Path) -> None:
     module = study("mode_sweep")
     (first,) = module.main(tmp_path, quick=True)
     shards = sorted(tmp_path.glob("rows/rows-*"))
-    assert first.arches == first.right == 10
-    assert first.clear_elsewise == first.unanswered == 0
+    assert first.arches == 10
+    assert first.false == first.unsure == first.clear_elsewise == 0
     assert first.worst_error < 1e-8
     assert {row for row, _ in first.confusion} == {"rrr", "ss", "srr", "rrs", "rsr", "rs"}
     assert module.main(tmp_path, quick=True) == (first,)

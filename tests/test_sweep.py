@@ -19,9 +19,10 @@ import pytest
 
 import blocksim.sweep.answers
 import blocksim.sweep.run
+import blocksim.sweep.table
 from blocksim import Arch, bracket, check
 from blocksim.errors import InputError
-from blocksim.sweep import Case, Design, load_design, read_rows, sweep
+from blocksim.sweep import Case, Design, load_design, read_rows, sweep, write_parquet
 from blocksim.sweep.answers import Answered, Asked, answer
 from blocksim.sweep.shards import LOCK, identities, locked
 
@@ -249,6 +250,17 @@ def test_settings_are_axes_like_any_other_and_part_of_the_question(tmp_path: Pat
     assert min(given.values()) > 40
 
 
+def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
+    text = 'alpha_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
+    for confirm in ("true", "false"):
+        with ThreadPoolExecutor(1) as executor:
+            sweep(design_of(tmp_path, text + confirm), tmp_path, executor=executor)
+    rows = rows_of(tmp_path).values()
+    assert [row["confirmed"] for row in rows if row["asked"] == "limit"] == [None]
+    assert {row["confirmed"] for row in rows if row["asked"] == "direct"} == {True, None}
+    assert {row["mode"] for row in rows if row["asked"] == "direct"} == {"rrr"}
+
+
 def test_a_failing_case_becomes_a_row_that_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -358,6 +370,47 @@ def test_a_write_that_was_interrupted_loses_nothing(
     assert not list(tmp_path.glob(".rows-*"))
 
 
+def test_a_parquet_table_holds_the_same_rows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    monkeypatch.setattr(blocksim.sweep.table, "ROWS_AT_ONCE", 50)
+    out = tmp_path / "out"
+    given = f"{PYMUNK}hold_sweeps = 1000"
+    for text in (GRID, given, GRID.replace("eta = [0.05, 0.1]", "ratio = [0.9, 60.0]")):
+        with ThreadPoolExecutor(1) as executor:
+            sweep(design_of(tmp_path, text), out, executor=executor)
+    write_parquet(out, out / "rows.parquet")
+    rows = list(read_rows(out))
+    table = parquet.read_table(out / "rows.parquet").to_pylist()
+    assert len(table) == len(rows) == 192 + 1 + 192
+    for row, held in zip(rows, table, strict=True):
+        assert list(held) == list(row)
+        settings = held["settings"]
+        if settings is not None:
+            held["settings"] = {k: value for k, value in settings.items() if value is not None}
+        assert held == {**row, "mu": float(str(row["mu"]))}
+
+
+def test_a_table_is_written_where_it_can_be(tmp_path: Path) -> None:
+    (tmp_path / "design.toml").write_text(GRID)
+    without = "import sys; sys.modules['pyarrow'] = None; from blocksim.cli import main; main()"
+    asked = ["sweep", str(tmp_path / "design.toml"), "--out", str(tmp_path / "out")]
+    done = subprocess.run(
+        [sys.executable, "-c", without, *asked, "--parquet"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.endswith("not available here: pip install 'blocksim[parquet]'\n")
+    assert not (tmp_path / "out").exists()
+    pytest.importorskip("pyarrow")
+    done = command(tmp_path, tmp_path / "out", "--workers", "1", "--parquet")
+    assert done.returncode == 0
+    assert (tmp_path / "out/rows.parquet").read_bytes()[:4] == b"PAR1"
+
+
 def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
     (tmp_path / "design.toml").write_text(GRID)
     out = tmp_path / "out"
@@ -460,6 +513,25 @@ def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows)
     assert rows_of(tmp_path / "out") == uninterrupted
 
 
+@pytest.mark.long
+def test_a_killed_worker_of_a_dask_cluster_loses_nothing(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    (tmp_path / "design.toml").write_text(SIMULATED)
+    out = tmp_path / "out"
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        with started(tmp_path, out, "--scheduler", address) as driver:
+            until(lambda: len(list(out.glob("rows-*"))) > 1, driver)
+            os.kill(cluster.workers[0].process.pid, signal.SIGKILL)
+            assert len(rows_of(out)) < 80
+            assert driver.wait() == 0
+    assert rows_of(out) == uninterrupted
+
+
 def test_a_worker_of_another_version_is_refused() -> None:
     case = Case(90.0, 0.7, 27, "centreline", 0.1, None, "limit", 0.0, 0.0)
     with pytest.raises(blocksim.MissingPart, match="install the same"):
@@ -492,10 +564,9 @@ def command(
     )
 
 
-def started(folder: Path, out: Path) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(
-        [*arguments(folder, out), "--workers", "1"], stdout=subprocess.DEVNULL
-    )
+def started(folder: Path, out: Path, *options: str) -> subprocess.Popen[bytes]:
+    options = options or ("--workers", "1")
+    return subprocess.Popen([*arguments(folder, out), *options], stdout=subprocess.DEVNULL)
 
 
 def until(true: Callable[[], bool], driver: subprocess.Popen[bytes] | None = None) -> None:

@@ -278,10 +278,13 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a dask scheduler, instead of processes.")
     ] = None,
+    parquet: Annotated[
+        bool, typer.Option("--parquet", help="Write all rows as a table, too: rows.parquet.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Ask about many arches; a kill at any moment loses nothing that was done."""
-    run_sweep(design, out, workers, scheduler, as_json=as_json)
+    run_sweep(design, out, workers, scheduler, parquet=parquet, as_json=as_json)
 
 
 @app.command(name="map")

@@ -7,3 +7,4 @@ from blocksim.sweep.design import load_design as load_design
 from blocksim.sweep.run import Summary as Summary
 from blocksim.sweep.run import sweep as sweep
 from blocksim.sweep.shards import read_rows as read_rows
+from blocksim.sweep.table import write_parquet as write_parquet

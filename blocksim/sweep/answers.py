@@ -313,6 +313,7 @@ def _by_simulation(case: Case, row: Row) -> None:
                 weight=case.weight,
                 method=case.engine,
                 tol=case.tol,
+                confirm=case.confirm,
                 settings=dict(case.settings),
             )
             row.update(

@@ -34,6 +34,8 @@ class Case(NamedTuple):
         An engine simulates arches within this share of their least thickness.
     tol : float
         Relative width of the bracket of an engine; 0 where nothing is bracketed.
+    confirm : bool
+        Let the arch go at both ends of an engine's bracket.
     settings : tuple of (str, float)
         Given to the engine instead of what its rule says.
     """
@@ -47,6 +49,7 @@ class Case(NamedTuple):
     method: str
     band: float
     tol: float
+    confirm: bool = True
     settings: Given = ()
 
     @property

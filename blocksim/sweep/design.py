@@ -147,6 +147,9 @@ class Design:
         those within 0.001, with `direct`.
     tol : float
         Relative width of an engine's bracket.
+    confirm : bool
+        Let the arch go at both ends of an engine's bracket; without, the onset test alone
+        answers, in about half of the time.
     settings : SettingsTable
         Axes like any other; a method is given those it is run with.
     random : RandomTable, optional
@@ -163,6 +166,7 @@ class Design:
     method: Words = ("auto",)
     band: Number | None = None
     tol: Number = 0.005
+    confirm: Annotated[bool, Field(strict=True)] = True
     settings: SettingsTable = SettingsTable()
     random: RandomTable | None = None
 
@@ -187,7 +191,8 @@ class Design:
             arch = alpha, mu, round(voussoirs), weight, eta, ratio
             for band, tol, taken, method in free:
                 own = tuple(each for each in given if each[0] in taken)
-                yield Case(*arch, method, band, tol, own)
+                # Where there is no bracket by an engine, there are no ends to confirm.
+                yield Case(*arch, method, band, tol, self.confirm or not tol, own)
 
     def taken(self, method: str) -> tuple[str, ...]:
         """Names of the settings that change an answer of a method here."""
