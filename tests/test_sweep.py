@@ -487,6 +487,20 @@ def test_killed_drivers_leave_no_process_and_lose_no_row(
     assert rows_of(out) == uninterrupted
 
 
+def test_a_terminated_sweep_ends_without_a_word(tmp_path: Path) -> None:
+    (tmp_path / "design.toml").write_text(SIMULATED)
+    out = tmp_path / "out"
+    with started(tmp_path, out) as driver:
+        until(lambda: len(list(out.glob("rows-*"))) > 0, driver)
+        workers = children(driver.pid)
+        driver.terminate()
+        assert driver.stderr is not None
+        assert driver.stderr.read() == b""
+        assert driver.wait() == 143
+    until(lambda: not any(alive(pid) for pid in workers))
+    assert 0 < len(rows_of(out)) < 80
+
+
 def test_a_killed_worker_is_replaced(tmp_path: Path, uninterrupted: Rows) -> None:
     (tmp_path / "design.toml").write_text(SIMULATED)
     out = tmp_path / "out"
@@ -566,7 +580,9 @@ def command(
 
 def started(folder: Path, out: Path, *options: str) -> subprocess.Popen[bytes]:
     options = options or ("--workers", "1")
-    return subprocess.Popen([*arguments(folder, out), *options], stdout=subprocess.DEVNULL)
+    return subprocess.Popen(
+        [*arguments(folder, out), *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
 
 
 def until(true: Callable[[], bool], driver: subprocess.Popen[bytes] | None = None) -> None:

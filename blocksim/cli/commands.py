@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -84,13 +85,14 @@ app = typer.Typer(
 
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 WRONG_INPUT = 2
-INTERRUPTED = 130
+INTERRUPTED, TERMINATED = 130, 143
 LONGEST_RECORDING = 600.0
 """Seconds."""
 
 
 def main() -> None:
     """Run the command line; wrong input is one line and exit code 2."""
+    signal.signal(signal.SIGTERM, _terminate)
     try:
         code = app(standalone_mode=False)
     except BlocksimError as error:
@@ -105,6 +107,12 @@ def main() -> None:
         _fail(" ".join(str(message()).split()))
     else:
         sys.exit(code or 0)
+
+
+def _terminate(*_: object) -> NoReturn:
+    """End as an interrupt does: the default would leave the semaphores of processes behind."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # `timeout` sends it twice
+    sys.exit(TERMINATED)
 
 
 def _fail(message: str) -> NoReturn:
