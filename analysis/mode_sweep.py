@@ -349,13 +349,17 @@ def _over_map(axes: Axes, every: Sequence[Seen], engine: str) -> None:
             words = f"{mode.value if mode else 'none of the seven'}  {len(own)}"
             handles.append(Line2D([], [], ls="", ms=7, label=words, **look))
     for marked, colour, words in (
-        ([e for e in every if not e.as_published and not e.unexplained], INK, "as limit says"),
-        ([e for e in every if e.unexplained], MISS, "as neither says"),
+        (
+            [e for e in every if not e.as_published and not e.unexplained],
+            INK,
+            "not as published,\nbut as limit says",
+        ),
+        ([e for e in every if e.unexplained], MISS, "neither as published\nnor as limit says"),
     ):
         ring = {"marker": "o", "mfc": "none", "mec": colour, "mew": 0.9, "ls": ""}
         axes.plot([e.drawn.mu for e in marked], [e.eta for e in marked], ms=9, zorder=6, **ring)
         if marked:
-            label = f"not as published,\n{words}  {len(marked)}"
+            label = f"{words}  {len(marked)}"
             handles.append(Line2D([], [], ms=9, label=label, **ring))
     axes.legend(handles=handles, loc="upper left", title="observed", fontsize=8)
     axes.set_title(f"{len(every)} arches by {engine}, over the published modes")
