@@ -14,7 +14,7 @@ from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
 from blocksim.setup import BY_RULE, Overrides, given_words
-from blocksim.trial import Trial, trial
+from blocksim.trial import Held, conclude, hold
 from blocksim.verdict import Verdict
 
 ETA_MAX = 2.0
@@ -177,10 +177,8 @@ def bracket(
             reason="static limit analysis of the voussoirs as built",
         )
     else:
-        attempt = partial(trial, mu=mu, engine=rung.name, settings=settings)
-        answer = _by_simulation(
-            arch, answer, continuous.eta, attempt, progress, confirm=confirm
-        )
+        held = partial(hold, mu=mu, engine=rung.name, settings=settings)
+        answer = _by_simulation(arch, answer, continuous.eta, held, progress, confirm=confirm)
     reason = answer.reason + given_words(settings)
     return replace(answer, reason=reason, wall_s=time.perf_counter() - started)
 
@@ -193,25 +191,32 @@ def _by_simulation(
     arch: Arch,
     answer: Bracket,
     guess: float | None,
-    attempt: Callable[..., Trial],
+    held_at: Callable[[Arch], Held],
     progress: Progress,
     *,
     confirm: bool,
 ) -> Bracket:
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
-    search = Search(
-        judge=lambda eta: attempt(replace(arch, eta=eta), moving=False).verdict,
-        progress=progress,
-    )
+    ends: dict[Verdict, Held] = {}
+
+    def judge(eta: float) -> Verdict:
+        held = held_at(replace(arch, eta=eta))
+        # Every answer narrows the bracket: the last of each kind is that of its end.
+        ends[held.onset.verdict] = held
+        return held.onset.verdict
+
+    search = Search(judge, progress)
     search.expand(ETA_MAX if guess is None else guess)
     search.bisect(answer.tol)
     verdicts: list[bool] = []
     mode = None
-    for eta, expected in ((search.low, Verdict.COLLAPSES), (search.high, Verdict.STANDS)):
+    for expected in (Verdict.COLLAPSES, Verdict.STANDS):
         # The lower end tells the mode, too.
-        if eta is not None and (confirm or expected is Verdict.COLLAPSES):
-            progress(0.95, f"moving run at {eta:.6g}")
-            ended = attempt(replace(arch, eta=eta), moving=confirm)
+        if expected in ends and (confirm or expected is Verdict.COLLAPSES):
+            held = ends[expected]
+            if confirm:
+                progress(0.95, f"moving run at {held.setup.arch.eta:.6g}")
+            ended = conclude(held, moving=confirm)
             verdicts.append(ended.verdict is expected)
             mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -74,12 +74,15 @@ class Setup:
     mu : float
     engine : Engine
     settings : Settings
+    given : mapping of str to float
+        Those settings that do not follow the engine's rule.
     """
 
     arch: Arch
     mu: float
     engine: Engine
     settings: Settings
+    given: Overrides = field(default_factory=dict[str, float])
 
     @classmethod
     def of(
@@ -103,7 +106,7 @@ class Setup:
         }
         chosen = library.settings(arch.assembly())
         chosen = replace(chosen, tilt=tilt, plane_lock=plane_lock, **given)
-        return cls(arch=arch, mu=mu, engine=library, settings=chosen)
+        return cls(arch=arch, mu=mu, engine=library, settings=chosen, given=settings)
 
     @cached_property
     def assembly(self) -> Assembly:

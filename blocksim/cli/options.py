@@ -6,7 +6,6 @@ import math
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -45,7 +44,6 @@ Set = Annotated[
         help=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
     ),
 ]
-Picture = Annotated[Path, typer.Option("--out", help="Picture to write, .svg or .png.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 
