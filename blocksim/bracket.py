@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from blocksim import limit, theory
 from blocksim.arch import Arch, Weight, is_number, require, require_friction
@@ -11,6 +13,7 @@ from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
 from blocksim.search import ETA_MAX, Answer, Search
+from blocksim.setup import BY_RULE, Overrides, given_words
 from blocksim.trial import Held, conclude, hold
 from blocksim.verdict import Verdict
 
@@ -86,6 +89,7 @@ def bracket(
     method: str = "auto",
     tol: float = 0.005,
     confirm: bool = True,
+    settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
@@ -107,6 +111,8 @@ def bracket(
         Relative width at which to end, above 0 and at most 0.5.
     confirm : bool
         Let the arch go at both ends; without, an engine answers by the onset test alone.
+    settings : mapping of str to float
+        Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns
@@ -124,7 +130,7 @@ def bracket(
     require_friction(mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    rung = choose(method, tol)
+    rung = choose(method, tol, settings=settings)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
     answer = Bracket(
@@ -165,8 +171,10 @@ def bracket(
             reason="static limit analysis of the voussoirs as built",
         )
     else:
-        answer = _by_simulation(arch, answer, continuous.eta, progress, confirm=confirm)
-    return replace(answer, wall_s=time.perf_counter() - started)
+        held = partial(hold, mu=mu, engine=rung.name, settings=settings)
+        answer = _by_simulation(arch, answer, continuous.eta, held, progress, confirm=confirm)
+    reason = answer.reason + given_words(settings)
+    return replace(answer, reason=reason, wall_s=time.perf_counter() - started)
 
 
 def _inner(angles: tuple[float, ...]) -> float | None:
@@ -174,13 +182,19 @@ def _inner(angles: tuple[float, ...]) -> float | None:
 
 
 def _by_simulation(
-    arch: Arch, answer: Bracket, guess: float | None, progress: Progress, *, confirm: bool
+    arch: Arch,
+    answer: Bracket,
+    guess: float | None,
+    held_at: Callable[[Arch], Held],
+    progress: Progress,
+    *,
+    confirm: bool,
 ) -> Bracket:
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     ends: dict[Verdict, Held] = {}
 
     def judge(eta: float) -> Answer:
-        held = hold(replace(arch, eta=eta), answer.mu, answer.method)
+        held = held_at(replace(arch, eta=eta))
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = held
         return Answer(held.onset.verdict, held.onset.acceleration)

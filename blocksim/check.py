@@ -12,6 +12,7 @@ from blocksim.joints import JointState, ObservedJoint, closed_joints
 from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
+from blocksim.setup import BY_RULE, Overrides
 from blocksim.trial import trial
 from blocksim.verdict import Verdict
 
@@ -64,6 +65,7 @@ def check(
     method: str = "auto",
     tilt: float = 0.0,
     plane_lock: bool = False,
+    settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Check:
     """Tell whether an arch stands under its own weight.
@@ -80,6 +82,8 @@ def check(
         are those without it.
     plane_lock : bool
         Keep the voussoirs in the plane by large inertias out of it (pybullet).
+    settings : mapping of str to float
+        Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns
@@ -96,7 +100,7 @@ def check(
     started = time.perf_counter()
     require_friction(mu)
     require_tilt(tilt, plane_lock=plane_lock)
-    rung = choose(method, spatial=tilt != 0 or plane_lock)
+    rung = choose(method, spatial=tilt != 0 or plane_lock, settings=settings)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
     closed = closed_joints(arch)
@@ -111,7 +115,15 @@ def check(
         mode = built.mode if falls else None
         joints = _limit_joints(arch, built) if falls else closed
     else:
-        seen = trial(arch, mu, rung.name, tilt=tilt, plane_lock=plane_lock, progress=progress)
+        seen = trial(
+            arch,
+            mu,
+            rung.name,
+            tilt=tilt,
+            plane_lock=plane_lock,
+            settings=settings,
+            progress=progress,
+        )
         verdict, reason, mode, joints = seen.verdict, seen.reason, seen.mode, seen.joints
         simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
         state_hash = seen.motion.recording.state_hash if seen.motion else None

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from blocksim import engines
 from blocksim.errors import InputError
+from blocksim.setup import BY_RULE, SETTINGS, Overrides, require_setting
 
 STATIC = ("theory", "limit")
 SPATIAL = "pybullet"
@@ -25,12 +26,15 @@ class Method:
         Smallest relative width of a bracket it can answer for.
     is_spatial : bool
         Whether it sees motion out of the plane.
+    settings : tuple of str
+        Those of `SETTINGS` it is run with.
     """
 
     name: str
     sees: str
     finest: float
     is_spatial: bool = False
+    settings: tuple[str, ...] = ()
 
     @property
     def is_static(self) -> bool:
@@ -55,17 +59,20 @@ METHODS = {
             name="direct",
             sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
             finest=1e-8,
+            settings=("step", "still", "rest"),
         ),
         Method(
             name="pymunk",
             sees="motion in the plane: onset and collapse with Coulomb friction",
             finest=1e-4,
+            settings=tuple(SETTINGS),
         ),
         Method(
             name="pybullet",
             sees="motion in space: the same, and out of the plane",
             finest=1e-3,
             is_spatial=True,
+            settings=tuple(SETTINGS),
         ),
     )
 }
@@ -73,7 +80,9 @@ METHODS = {
 CHOICES = ("auto", *METHODS)
 
 
-def choose(method: str, tol: float = 0.0, *, spatial: bool = False) -> Method:
+def choose(
+    method: str, tol: float = 0.0, *, spatial: bool = False, settings: Overrides = BY_RULE
+) -> Method:
     """Return the method asked for; for `auto` the cheapest that is exact, `limit`.
 
     Parameters
@@ -85,12 +94,14 @@ def choose(method: str, tol: float = 0.0, *, spatial: bool = False) -> Method:
     spatial : bool
         Whether the question is of motion out of the plane: `auto` is then the method
         that sees it.
+    settings : mapping of str to float
+        Given instead of what the engine's rule says.
 
     Raises
     ------
     InputError
         If there is no such method, or it cannot answer to that tolerance, or does not
-        see out of the plane where that is asked.
+        see out of the plane where that is asked, or knows no such setting.
     """
     if method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
@@ -100,6 +111,12 @@ def choose(method: str, tol: float = 0.0, *, spatial: bool = False) -> Method:
         raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
+    for name, value in settings.items():
+        known = ", ".join(rung.settings)
+        allowed = f"one of {known} for {rung.name}" if known else f"left out for {rung.name}"
+        if name not in rung.settings:
+            raise InputError("settings", name, allowed)
+        require_setting(name, value)
     return rung
 
 

@@ -2,17 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from blocksim.arch import Arch
+from blocksim.arch import Arch, is_number, require
 from blocksim.assembly import Array, Assembly
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.recording import Recording
+
+Overrides = Mapping[str, float]
+"""Fields of an engine's `Settings` by name, given instead of what its rule says."""
+BY_RULE: Overrides = {}
+"""None given."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """Range of a setting that can be given.
+
+    Parameters
+    ----------
+    low, high : float
+        Both allowed.
+    is_whole : bool
+    """
+
+    low: float
+    high: float
+    is_whole: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """The range in words."""
+        return f"a {'whole ' * self.is_whole}number from {self.low:g} to {self.high:g}"
+
+
+SETTINGS = {
+    "step": Setting(low=1e-6, high=0.2),
+    "sweeps": Setting(low=1, high=1e7, is_whole=True),
+    "hold_sweeps": Setting(low=1, high=1e9, is_whole=True),
+    "still": Setting(low=1e-15, high=1e-2),
+    "rest": Setting(low=1e-15, high=1e-2),
+}
+"""Of `engines.base.Settings`, which says what each is."""
+
+
+def require_setting(name: str, value: float) -> None:
+    """Raise `InputError` unless a setting is within its range."""
+    setting = SETTINGS[name]
+    ok = is_number(value, 0, setting.high) and value >= setting.low
+    ok = ok and not (setting.is_whole and value != int(value))
+    require(ok, f"settings.{name}", value, setting.allowed)
+
+
+def given_words(settings: Overrides) -> str:
+    """Say which settings were given, to be added to the reason of an answer."""
+    return "".join(f"; {name} {value:g} as given" for name, value in settings.items())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,12 +74,15 @@ class Setup:
     mu : float
     engine : Engine
     settings : Settings
+    given : mapping of str to float
+        Those settings that do not follow the engine's rule.
     """
 
     arch: Arch
     mu: float
     engine: Engine
     settings: Settings
+    given: Overrides = field(default_factory=dict[str, float])
 
     @classmethod
     def of(
@@ -41,14 +93,20 @@ class Setup:
         *,
         tilt: float = 0.0,
         plane_lock: bool = False,
+        settings: Overrides = BY_RULE,
     ) -> Setup:
-        """Take the settings that the engine chooses for the arch.
+        """Take the settings that the engine chooses for the arch, or those given.
 
         Tilt [rad] and plane lock as in `Settings`, for engines in three dimensions.
         """
         library = get_engine(engine)
-        settings = replace(library.settings(arch.assembly()), tilt=tilt, plane_lock=plane_lock)
-        return cls(arch=arch, mu=mu, engine=library, settings=settings)
+        given = {
+            name: int(value) if SETTINGS[name].is_whole else value
+            for name, value in settings.items()
+        }
+        chosen = library.settings(arch.assembly())
+        chosen = replace(chosen, tilt=tilt, plane_lock=plane_lock, **given)
+        return cls(arch=arch, mu=mu, engine=library, settings=chosen, given=settings)
 
     @cached_property
     def assembly(self) -> Assembly:

@@ -15,7 +15,7 @@ from blocksim.motion import Motion, moving_run
 from blocksim.onset import Onset, onset
 from blocksim.progress import Progress, silent
 from blocksim.recording import Recording
-from blocksim.setup import Setup
+from blocksim.setup import BY_RULE, Overrides, Setup, given_words
 from blocksim.verdict import Verdict
 
 
@@ -75,6 +75,7 @@ def trial(
     moving: bool = True,
     tilt: float = 0.0,
     plane_lock: bool = False,
+    settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Trial:
     """Put an arch into an engine: onset test, then, if asked for, the moving run.
@@ -89,13 +90,23 @@ def trial(
         undecided: unbalanced impulses would throw it.
     tilt, plane_lock : float, bool
         As in `Settings`, for engines in three dimensions.
+    settings : mapping of str to float
+        Given instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns
     -------
     Trial
     """
-    held = hold(arch, mu, engine, tilt=tilt, plane_lock=plane_lock, progress=progress)
+    held = hold(
+        arch,
+        mu,
+        engine,
+        tilt=tilt,
+        plane_lock=plane_lock,
+        settings=settings,
+        progress=progress,
+    )
     return conclude(held, moving=moving, progress=progress)
 
 
@@ -106,10 +117,11 @@ def hold(
     *,
     tilt: float = 0.0,
     plane_lock: bool = False,
+    settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Held:
     """Do the first part of a trial: put the arch into the engine, and the onset test."""
-    setup = Setup.of(arch, mu, engine, tilt=tilt, plane_lock=plane_lock)
+    setup = Setup.of(arch, mu, engine, tilt=tilt, plane_lock=plane_lock, settings=settings)
     world = setup.world()
     first = onset(world, setup.assembly, mu, setup.settings, progress)
     return Held(setup=setup, world=world, onset=first)
@@ -125,7 +137,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         reason = f"onset test: {first.reason}; moving run: {motion.reason}"
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
-    reason += _asides(setup, motion)
+    reason += _asides(setup, motion) + given_words(setup.given)
     joints, mode = closed_joints(arch), None
     if tilt and verdict is Verdict.COLLAPSES:
         joints = ()  # their states are those of motion in the plane
@@ -157,6 +169,7 @@ def simulate(
     duration: float | None = None,
     tilt: float = 0.0,
     plane_lock: bool = False,
+    settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Recording:
     """Let an arch go in an engine, after the onset test, and record it.
@@ -174,6 +187,8 @@ def simulate(
         Angle by which gravity leans out of the plane [rad].
     plane_lock : bool
         Keep the voussoirs in the plane by large inertias out of it.
+    settings : mapping of str to float
+        Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns
@@ -189,7 +204,16 @@ def simulate(
     """
     require_friction(mu)
     require_tilt(tilt, plane_lock=plane_lock)
-    if choose(method, spatial=tilt != 0 or plane_lock).is_static:
+    rung = choose(method, spatial=tilt != 0 or plane_lock, settings=settings)
+    if rung.is_static:
         raise InputError("method", method, f"one of {', '.join(ENGINES)}: others move nothing")
-    held = hold(arch, mu, method, tilt=tilt, plane_lock=plane_lock, progress=progress)
+    held = hold(
+        arch,
+        mu,
+        method,
+        tilt=tilt,
+        plane_lock=plane_lock,
+        settings=settings,
+        progress=progress,
+    )
     return held.release(duration, progress).recording

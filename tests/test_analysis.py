@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
+import math
 import sys
+from collections import Counter
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+
+from blocksim import Arch, limit, theory
 
 STUDIES = Path(__file__).parent.parent / "analysis"
 
@@ -59,3 +64,34 @@ def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:
     assert result.false == result.unsure == 0
     assert result.worst_error < 1e-8
     assert (tmp_path / "direct_arches.png").stat().st_size > 0
+
+
+def test_the_map_by_simulation_goes_on_where_it_was(tmp_path: Path) -> None:
+    module = study("mode_sweep")
+    (first,) = module.main(tmp_path, quick=True)
+    shards = sorted(tmp_path.glob("rows/rows-*"))
+    assert first.arches == 10
+    assert first.false == first.unsure == first.clear_elsewise == 0
+    assert first.worst_error < 1e-8
+    assert {row for row, _ in first.confusion} == {"rrr", "ss", "srr", "rrs", "rsr", "rs"}
+    assert module.main(tmp_path, quick=True) == (first,)
+    assert sorted(tmp_path.glob("rows/rows-*")) == shards
+    assert (tmp_path / "mode_sweep_direct.png").stat().st_size > 0
+
+
+def test_arches_of_the_map_are_drawn_the_same_again_and_near_critical() -> None:
+    module = study("mode_sweep")
+    drawn = list(itertools.islice(module.draw(), 40))
+    assert drawn[:20] == list(itertools.islice(module.draw(), 20))
+    modes = Counter(each.published for each in drawn)
+    assert min(modes[mode] for mode in ("srr", "rrs", "rsr", "rs", "ss")) >= 4
+    for each in drawn:
+        half_angle = math.radians(each.alpha_deg)
+        if each.eta is None:
+            published = theory.least_thickness(half_angle, each.mu)
+            assert published.eta is not None
+            assert published.mode == each.published
+        else:
+            arch = Arch(half_angle=half_angle, eta=each.eta, voussoirs=each.voussoirs)
+            assert limit.stands(arch, each.mu * 1.001)
+            assert not limit.stands(arch, each.mu * 0.999)

@@ -174,9 +174,9 @@ def test_where_nothing_stands(method: str) -> None:
 def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     held: list[float] = []
 
-    def counted(arch: Arch, mu: float, engine: str) -> Held:
+    def counted(arch: Arch, **asked: object) -> Held:
         held.append(arch.eta)
-        return hold(arch, mu, engine)
+        return hold(arch, **asked)
 
     monkeypatch.setattr(sys.modules["blocksim.bracket"], "hold", counted)
     asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}

@@ -184,6 +184,48 @@ def test_pictures_are_written_whole(arguments: tuple[str, ...], tmp_path: Path) 
     assert [path.name for path in tmp_path.iterdir()] == ["picture.png"]
 
 
+def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
+    asked = ("check", *ARCH, "--eta", "0.1", "--method", "pymunk", "--json")
+    # No engine of impulses has converged after so few sweeps.
+    done = blocksim(*asked, "--set", "hold_sweeps=1000")
+    assert done.returncode == 3
+    assert json.loads(done.stdout)["reason"].endswith("; hold_sweeps 1000 as given")
+    done = blocksim("bracket", *ARCH, "--method", "direct", "--set", "step=0.005", "--json")
+    answer = json.loads(done.stdout)
+    assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
+    assert answer["reason"].endswith("; step 0.005 as given")
+    out = tmp_path / "run.npz"
+    blocksim(
+        *("simulate", *ARCH, "--eta", "0.1", "--method", "direct", "--out", str(out)),
+        *("--set", "step=0.005", "--set", "rest=1e-8"),
+    )
+    settings = load_recording(out).settings
+    assert (settings.step, settings.rest, settings.sweeps) == (0.005, 1e-8, 1)
+
+
+@pytest.mark.parametrize(
+    ("method", "given", "said"),
+    [
+        (
+            "pymunk",
+            "step",
+            "= 'step': must be name=value, with a number and one of step, sweeps",
+        ),
+        ("pymunk", "pace=3", "= 'pace=3': must be name=value"),
+        ("pymunk", "step=fast", "= 'step=fast': must be name=value"),
+        ("pymunk", "step=nan", "= 'step=nan': must be a number from 1e-06 to 0.2"),
+        ("pymunk", "sweeps=2.5", "= 'sweeps=2.5': must be a whole number from 1 to 1e+07"),
+        ("direct", "sweeps=5", "= 'sweeps': must be one of step, still, rest for direct"),
+        ("limit", "step=0.01", "= 'step': must be left out for limit"),
+    ],
+)
+def test_a_wrong_setting_is_one_line(method: str, given: str, said: str) -> None:
+    done = blocksim("check", *ARCH, "--eta", "0.1", "--method", method, "--set", given)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert f"--set {said}" in done.stderr
+
+
 def test_direct_answers_and_brackets_finely() -> None:
     done = blocksim("bracket", *ARCH, "--method", "direct", "--tol", "1e-7", "--json")
     answer = json.loads(done.stdout)

@@ -19,11 +19,12 @@ import pytest
 
 import blocksim.sweep.answers
 import blocksim.sweep.run
+import blocksim.sweep.table
 from blocksim import Arch, bracket, check
 from blocksim.errors import InputError
-from blocksim.sweep import Case, Design, load_design, read_rows, sweep
+from blocksim.sweep import Case, Design, load_design, read_rows, sweep, write_parquet
 from blocksim.sweep.answers import Answered, Asked, answer
-from blocksim.sweep.shards import identities
+from blocksim.sweep.shards import LOCK, identities, locked
 
 GRID = """
 alpha_deg = { low = 60, high = 150, steps = 4 }
@@ -43,6 +44,8 @@ method = ["limit", "direct"]
 count = 40
 seed = 7
 """
+DIRECT = 'alpha_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
+PYMUNK = DIRECT.replace("direct", "pymunk")
 Rows = dict[str, dict[str, object]]
 
 
@@ -128,6 +131,12 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
         (('"limit"', '"guess"'), "method = 'guess': must be one of auto"),
         (("method =", "band = -1\nmethod ="), "band = -1.0"),
         (("method =", "tol = 0\nmethod ="), "tol = 0.0"),
+        ((GRID, f"{DIRECT}step = 0.5"), "settings.step = 0.5: must be a number from 1e-06"),
+        ((GRID, f"{DIRECT}sweeps = 5"), "settings.sweeps = 'given': must be left out: no"),
+        ((GRID, f"{DIRECT}pace = 5"), "settings.pace = 5: must be left out"),
+        ((GRID, f"{DIRECT}still = []"), "settings.still = []: must be a value, a list"),
+        ((GRID, f"{PYMUNK}sweeps = [9, 9.5]"), "settings.sweeps = 9.5: must be a whole number"),
+        (('"limit"]', '"limit"]\n[settings]\nstep = 0.1'), "settings.step = 'given'"),
         (("steps = 4", "steps = 1000000"), "design = '48000000 cases'"),
         (("mu =", "mu = ="), "must be valid TOML"),
     ],
@@ -218,6 +227,38 @@ def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path)
     assert (done.tally.simulated, done.tally.spared) == (1, 5)
     methods = {row["ratio"]: row["method"] for row in read_rows(tmp_path)}
     assert [each for each, method in methods.items() if method == "direct"] == [0.9995]
+
+
+def test_settings_are_axes_like_any_other_and_part_of_the_question(tmp_path: Path) -> None:
+    text = PYMUNK.replace('"pymunk"', '["limit", "pymunk", "direct"]')
+    text += "hold_sweeps = [1000, 1_000_000]\nstep = 0.005\n"
+    with ThreadPoolExecutor(1) as executor:
+        done = sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    # `limit` is run with none of them, and `direct` with no sweeps: asked once each.
+    assert (done.cases, done.tally.rows) == (4, 4)
+    rows = rows_of(tmp_path).values()
+    seen = {(row["asked"], json.dumps(row["settings"])): row["verdict"] for row in rows}
+    assert seen == {
+        ("limit", "null"): "collapses",
+        ("direct", '{"step": 0.005}'): "collapses",
+        ("pymunk", '{"step": 0.005, "hold_sweeps": 1000}'): "undecided",
+        ("pymunk", '{"step": 0.005, "hold_sweeps": 1000000}'): "collapses",
+    }
+    drawn = f"{PYMUNK}sweeps = {{ low = 10, high = 12 }}\n[random]\ncount = 200\nseed = 1"
+    given = Counter(case.settings for case in design_of(tmp_path, drawn).cases())
+    assert set(given) == {(("sweeps", sweeps),) for sweeps in (10, 11, 12)}
+    assert min(given.values()) > 40
+
+
+def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
+    text = 'alpha_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
+    for confirm in ("true", "false"):
+        with ThreadPoolExecutor(1) as executor:
+            sweep(design_of(tmp_path, text + confirm), tmp_path, executor=executor)
+    rows = rows_of(tmp_path).values()
+    assert [row["confirmed"] for row in rows if row["asked"] == "limit"] == [None]
+    assert {row["confirmed"] for row in rows if row["asked"] == "direct"} == {True, None}
+    assert {row["mode"] for row in rows if row["asked"] == "direct"} == {"rrr"}
 
 
 def test_a_failing_case_becomes_a_row_that_says_so(
@@ -326,7 +367,80 @@ def test_a_write_that_was_interrupted_loses_nothing(
         done = sweep(design, tmp_path, executor=executor)
     assert 0 < done.tally.rows < 80
     assert rows_of(tmp_path) == uninterrupted
-    assert not list(tmp_path.glob(".*"))
+    assert not list(tmp_path.glob(".rows-*"))
+
+
+def test_a_parquet_table_holds_the_same_rows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    monkeypatch.setattr(blocksim.sweep.table, "ROWS_AT_ONCE", 50)
+    out = tmp_path / "out"
+    given = f"{PYMUNK}hold_sweeps = 1000"
+    for text in (GRID, given, GRID.replace("eta = [0.05, 0.1]", "ratio = [0.9, 60.0]")):
+        with ThreadPoolExecutor(1) as executor:
+            sweep(design_of(tmp_path, text), out, executor=executor)
+    write_parquet(out, out / "rows.parquet")
+    rows = list(read_rows(out))
+    table = parquet.read_table(out / "rows.parquet").to_pylist()
+    assert len(table) == len(rows) == 192 + 1 + 192
+    for row, held in zip(rows, table, strict=True):
+        assert list(held) == list(row)
+        settings = held["settings"]
+        if settings is not None:
+            held["settings"] = {k: value for k, value in settings.items() if value is not None}
+        assert held == {**row, "mu": float(str(row["mu"]))}
+
+
+def test_a_table_is_written_where_it_can_be(tmp_path: Path) -> None:
+    (tmp_path / "design.toml").write_text(GRID)
+    without = "import sys; sys.modules['pyarrow'] = None; from blocksim.cli import main; main()"
+    asked = ["sweep", str(tmp_path / "design.toml"), "--out", str(tmp_path / "out")]
+    done = subprocess.run(
+        [sys.executable, "-c", without, *asked, "--parquet"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.endswith("not available here: pip install 'blocksim[parquet]'\n")
+    assert not (tmp_path / "out").exists()
+    pytest.importorskip("pyarrow")
+    done = command(tmp_path, tmp_path / "out", "--workers", "1", "--parquet")
+    assert done.returncode == 0
+    assert (tmp_path / "out/rows.parquet").read_bytes()[:4] == b"PAR1"
+
+
+def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
+    (tmp_path / "design.toml").write_text(GRID)
+    out = tmp_path / "out"
+    out.mkdir()
+    part = out / ".rows-x.jsonl.part"
+    part.write_text("what the other is writing")
+    with locked(out):
+        done = command(tmp_path, out, "--workers", "1")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert f"--out = '{out}': must be a folder no other sweep is at work in" in done.stderr
+    assert part.exists()
+    assert not list(out.glob("rows-*"))
+
+
+def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
+    holder = [
+        "from blocksim.sweep.shards import locked",
+        "from pathlib import Path",
+        f"with locked(Path({str(tmp_path)!r})): print('held', flush=True); input()",
+    ]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", "\n".join(holder)], **pipes) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"held\n"
+        with pytest.raises(InputError, match="no other sweep"), locked(tmp_path):
+            pass
+        process.kill()
+    with locked(tmp_path):
+        assert (tmp_path / LOCK).exists()
 
 
 def test_what_is_no_row_is_refused(tmp_path: Path) -> None:
@@ -347,7 +461,7 @@ def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "must be writable" in done.stderr
-    assert not list((tmp_path / "out").glob(".*"))
+    assert not list((tmp_path / "out").glob(".rows-*"))
     assert len(rows_of(tmp_path / "out")) < 80
     assert command(tmp_path, tmp_path / "out", "--workers", "1").returncode == 0
     assert rows_of(tmp_path / "out") == uninterrupted
@@ -371,6 +485,20 @@ def test_killed_drivers_leave_no_process_and_lose_no_row(
     assert 0 < len(rows) < 80
     assert command(tmp_path, out, "--workers", "1").returncode == 0
     assert rows_of(out) == uninterrupted
+
+
+def test_a_terminated_sweep_ends_without_a_word(tmp_path: Path) -> None:
+    (tmp_path / "design.toml").write_text(SIMULATED)
+    out = tmp_path / "out"
+    with started(tmp_path, out) as driver:
+        until(lambda: len(list(out.glob("rows-*"))) > 0, driver)
+        workers = children(driver.pid)
+        driver.terminate()
+        assert driver.stderr is not None
+        assert driver.stderr.read() == b""
+        assert driver.wait() == 143
+    until(lambda: not any(alive(pid) for pid in workers))
+    assert 0 < len(rows_of(out)) < 80
 
 
 def test_a_killed_worker_is_replaced(tmp_path: Path, uninterrupted: Rows) -> None:
@@ -397,6 +525,25 @@ def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows)
     assert done.returncode == 0
     assert json.loads(done.stdout)["rows"] == 80
     assert rows_of(tmp_path / "out") == uninterrupted
+
+
+@pytest.mark.long
+def test_a_killed_worker_of_a_dask_cluster_loses_nothing(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    (tmp_path / "design.toml").write_text(SIMULATED)
+    out = tmp_path / "out"
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        with started(tmp_path, out, "--scheduler", address) as driver:
+            until(lambda: len(list(out.glob("rows-*"))) > 1, driver)
+            os.kill(cluster.workers[0].process.pid, signal.SIGKILL)
+            assert len(rows_of(out)) < 80
+            assert driver.wait() == 0
+    assert rows_of(out) == uninterrupted
 
 
 def test_a_worker_of_another_version_is_refused() -> None:
@@ -431,9 +578,10 @@ def command(
     )
 
 
-def started(folder: Path, out: Path) -> subprocess.Popen[bytes]:
+def started(folder: Path, out: Path, *options: str) -> subprocess.Popen[bytes]:
+    options = options or ("--workers", "1")
     return subprocess.Popen(
-        [*arguments(folder, out), "--workers", "1"], stdout=subprocess.DEVNULL
+        [*arguments(folder, out), *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from typing import NoReturn
 
@@ -11,11 +12,12 @@ from blocksim.cli.commands import app
 from blocksim.errors import BlocksimError
 
 WRONG_INPUT = 2
-INTERRUPTED = 130
+INTERRUPTED, TERMINATED = 130, 143
 
 
 def main() -> None:
     """Run the command line; wrong input is one line and exit code 2."""
+    signal.signal(signal.SIGTERM, _terminate)
     try:
         code = app(standalone_mode=False)
     except BlocksimError as error:
@@ -30,6 +32,12 @@ def main() -> None:
         _fail(" ".join(str(message()).split()))
     else:
         sys.exit(code or 0)
+
+
+def _terminate(*_: object) -> NoReturn:
+    """End as an interrupt does: the default would leave the semaphores of processes behind."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # `timeout` sends it twice
+    sys.exit(TERMINATED)
 
 
 def _fail(message: str) -> NoReturn:

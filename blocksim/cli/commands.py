@@ -43,12 +43,14 @@ from blocksim.cli.options import (
     Mu,
     PlaneLock,
     Scene,
+    Set,
     Tilt,
     Voussoirs,
     WeightOption,
     arch_of,
     named_options,
     question,
+    settings_of,
 )
 from blocksim.cli.sweeping import run_sweep
 from blocksim.doctor import examine
@@ -91,6 +93,7 @@ def check(
     method: MethodOption = "auto",
     tilt: Tilt = None,
     plane_lock: PlaneLock = False,
+    settings: Set = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether an arch stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -103,6 +106,7 @@ def check(
             method=method,
             tilt=asked.tilt,
             plane_lock=plane_lock,
+            settings=settings_of(settings),
             progress=report,
         )
     answer_with(check_record(answer), check_lines(answer), as_json=as_json)
@@ -118,6 +122,7 @@ def bracket(
     weight: WeightOption = None,
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
+    settings: Set = None,
     as_json: Json = False,
 ) -> None:
     """Find how thin the arch can be."""
@@ -130,6 +135,7 @@ def bracket(
             weight=asked.weight,
             method=method,
             tol=tol,
+            settings=settings_of(settings),
             progress=report,
         )
     answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)
@@ -150,6 +156,7 @@ def simulate(
     ] = None,
     tilt: Tilt = None,
     plane_lock: PlaneLock = False,
+    settings: Set = None,
 ) -> None:
     """Let an arch go and record its motion."""
     asked = question(scene, alpha, mu, voussoirs, weight, tilt)
@@ -169,6 +176,7 @@ def simulate(
             duration=duration,
             tilt=asked.tilt,
             plane_lock=plane_lock,
+            settings=settings_of(settings),
             progress=report,
         )
     recording.save(out)
@@ -230,10 +238,13 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a dask scheduler, instead of processes.")
     ] = None,
+    parquet: Annotated[
+        bool, typer.Option("--parquet", help="Write all rows as a table, too: rows.parquet.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Ask about many arches; a kill at any moment loses nothing that was done."""
-    run_sweep(design, out, workers, scheduler, as_json=as_json)
+    run_sweep(design, out, workers, scheduler, parquet=parquet, as_json=as_json)
 
 
 @app.command(name="map")

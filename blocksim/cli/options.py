@@ -14,6 +14,7 @@ from blocksim.arch import Arch, is_number, require
 from blocksim.errors import MISSING, InputError
 from blocksim.ladder import CHOICES
 from blocksim.scenario import Scenario, load_scenario
+from blocksim.setup import SETTINGS
 
 Scene = Annotated[str | None, typer.Argument(help="Scenario: a .toml file or a shipped name.")]
 Alpha = Annotated[
@@ -34,6 +35,14 @@ Tilt = Annotated[
 ]
 PlaneLock = Annotated[
     bool, typer.Option("--plane-lock", help="Keep voussoirs in the plane by large inertias.")
+]
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
@@ -97,6 +106,20 @@ def arch_of(asked: Scenario, eta: float | None) -> Arch:
         return asked.arch(ratio_given)
 
 
+def settings_of(given: list[str] | None) -> dict[str, float]:
+    """Read what `--set` gives."""
+    settings: dict[str, float] = {}
+    for each in given or ():
+        name, _, value = each.partition("=")
+        allowed = f"name=value, with a number and one of {', '.join(SETTINGS)}"
+        require(name in SETTINGS, "--set", each, allowed)
+        try:
+            settings[name] = float(value)
+        except ValueError:
+            raise InputError("--set", each, allowed) from None
+    return settings
+
+
 OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "plane_lock"}
 """Fields that are options, too."""
 
@@ -110,4 +133,8 @@ def named_options() -> Generator[None]:
         if error.where is None and error.field in OPTIONS:
             option = error.field.replace("_", "-")
             raise InputError(f"--{option}", error.value, error.allowed) from None
+        if error.where is None and error.field.startswith("settings"):
+            _, _, name = error.field.partition(".")
+            value = f"{name}={error.value:g}" if name else error.value
+            raise InputError("--set", value, error.allowed) from None
         raise

@@ -7,22 +7,33 @@ from dataclasses import asdict
 from pathlib import Path
 
 from blocksim.cli.console import answer_with, progress
-from blocksim.sweep import Summary, load_design
+from blocksim.sweep import Summary, load_design, write_parquet
 from blocksim.sweep import sweep as ask_sweep
 from blocksim.sweep.cluster import cluster
+from blocksim.sweep.table import require_parquet
 
 
 def run_sweep(
-    path: Path, out: Path, workers: int, scheduler: str | None, *, as_json: bool
+    path: Path,
+    out: Path,
+    workers: int,
+    scheduler: str | None,
+    *,
+    parquet: bool,
+    as_json: bool,
 ) -> None:
     """Run a design on processes or on a cluster, and say what was done."""
     design = load_design(path)
+    if parquet:
+        require_parquet()
     with ExitStack() as stack:
         executor = None
         if scheduler is not None:
             executor, workers = stack.enter_context(cluster(scheduler))
         report = stack.enter_context(progress())
         done = ask_sweep(design, out, executor=executor, workers=workers, progress=report)
+        if parquet:
+            write_parquet(out, out / "rows.parquet")
     answer_with(summary_record(done), summary_lines(done, out), as_json=as_json)
 
 

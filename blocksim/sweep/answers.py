@@ -22,7 +22,7 @@ from blocksim.engines import get_engine
 from blocksim.errors import MissingPart
 from blocksim.ladder import STATIC
 from blocksim.limit.bulk import joints_of, least_thickness_of_joints, which_stand
-from blocksim.sweep.design import AUTO_ENGINE, Case
+from blocksim.sweep.case import AUTO_ENGINE, Case, Given
 from blocksim.theory.arrays import least_thicknesses
 from blocksim.verdict import Verdict
 
@@ -43,11 +43,12 @@ class Kind(NamedTuple):
     method: str
     voussoirs: int
     is_bracket: bool
+    settings: Given
 
     @classmethod
     def of(cls, case: Case) -> Kind:
         """Return the kind of a case."""
-        return cls(case.method, case.voussoirs, case.is_bracket)
+        return cls(case.method, case.voussoirs, case.is_bracket, case.settings)
 
 
 @dataclass(kw_only=True)
@@ -181,6 +182,7 @@ def _question(asked: Asked, version: str) -> Row:
         "eta": case.eta,
         "ratio": case.ratio,
         "asked": case.method,
+        "settings": dict(case.settings) or None,
         "method": "limit" if case.method == "auto" else case.method,
         "version": version,
         "verdict": None,
@@ -311,6 +313,8 @@ def _by_simulation(case: Case, row: Row) -> None:
                 weight=case.weight,
                 method=case.engine,
                 tol=case.tol,
+                confirm=case.confirm,
+                settings=dict(case.settings),
             )
             row.update(
                 mode=found.mode,
@@ -327,7 +331,7 @@ def _by_simulation(case: Case, row: Row) -> None:
                 voussoirs=case.voussoirs,
                 weight=case.weight,
             )
-            seen = check(arch, mu=case.mu, method=case.engine)
+            seen = check(arch, mu=case.mu, method=case.engine, settings=dict(case.settings))
             row.update(
                 verdict=seen.verdict.value,
                 mode=seen.mode,

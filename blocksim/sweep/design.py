@@ -6,9 +6,8 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from hashlib import blake2b
 from pathlib import Path
-from typing import Annotated, ClassVar, NamedTuple, cast
+from typing import Annotated, ClassVar, cast
 
 import numpy as np
 from pydantic import BeforeValidator, Field
@@ -18,6 +17,8 @@ from blocksim.bracket import ETA_MAX
 from blocksim.errors import MISSING, InputError
 from blocksim.ladder import CHOICES, METHODS, STATIC
 from blocksim.scenario import read_table
+from blocksim.setup import SETTINGS, require_setting
+from blocksim.sweep.case import AUTO_ENGINE, Case
 
 LARGEST_DESIGN = 20_000_000
 """Cases of one sweep: their identities are held in memory, about 0.1 kB each."""
@@ -25,56 +26,8 @@ DRAWN_AT_ONCE = 4096
 """Arches drawn together; a longer random design begins with those of a shorter one."""
 AUTO_BAND = 0.001
 """Share of the least thickness within which `auto` simulates."""
-AUTO_ENGINE = "direct"
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=True)]
-
-
-class Case(NamedTuple):
-    """One question about one arch.
-
-    Parameters
-    ----------
-    alpha_deg : float
-        Half-angle of embrace [deg].
-    mu : float
-    voussoirs : int
-    weight : str
-    eta : float or None
-        Thickness-to-radius ratio.
-    ratio : float or None
-        Thickness over the least thickness of the voussoirs as built. Where this and
-        `eta` are None, the question is how thin the arch can be.
-    method : str
-    band : float
-        An engine simulates arches within this share of their least thickness.
-    tol : float
-        Relative width of the bracket of an engine; 0 where nothing is bracketed.
-    """
-
-    alpha_deg: float
-    mu: float
-    voussoirs: int
-    weight: Weight
-    eta: float | None
-    ratio: float | None
-    method: str
-    band: float
-    tol: float
-
-    @property
-    def engine(self) -> str:
-        """Method that answers where simulation is worth it; static ones never do."""
-        return AUTO_ENGINE if self.method == "auto" else self.method
-
-    @property
-    def is_bracket(self) -> bool:
-        """Whether the question is how thin the arch can be."""
-        return self.eta is None and self.ratio is None
-
-    def identity(self, version: str) -> bytes:
-        """Hash of what is asked and of the version of the method that answers."""
-        return blake2b(f"{tuple(self)!r} {version}".encode(), digest_size=12).digest()
 
 
 def _as_table(written: object) -> object:
@@ -156,6 +109,25 @@ class RandomTable:
 
 
 @dataclass(frozen=True, kw_only=True)
+class SettingsTable:
+    """Table `[settings]`: of engines, instead of what their rules say; see `Settings`."""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    step: AxisField | None = None
+    sweeps: AxisField | None = None
+    hold_sweeps: AxisField | None = None
+    still: AxisField | None = None
+    rest: AxisField | None = None
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """Those given, by name."""
+        axes = {name: cast("Axis | None", getattr(self, name)) for name in SETTINGS}
+        return {name: axis for name, axis in axes.items() if axis is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
 class Design:
     """Every combination of the values given, or a number of arches drawn from them.
 
@@ -175,6 +147,11 @@ class Design:
         those within 0.001, with `direct`.
     tol : float
         Relative width of an engine's bracket.
+    confirm : bool
+        Let the arch go at both ends of an engine's bracket; without, the onset test alone
+        answers, in about half of the time.
+    settings : SettingsTable
+        Axes like any other; a method is given those it is run with.
     random : RandomTable, optional
     """
 
@@ -189,6 +166,8 @@ class Design:
     method: Words = ("auto",)
     band: Number | None = None
     tol: Number = 0.005
+    confirm: Annotated[bool, Field(strict=True)] = True
+    settings: SettingsTable = SettingsTable()
     random: RandomTable | None = None
 
     @property
@@ -202,13 +181,28 @@ class Design:
     def cases(self) -> Iterator[Case]:
         """Give the cases one after the other, always in the same order."""
         arches = self._grid() if self.random is None else self._drawn(self.random)
-        free = [(*self._width(method), method) for method in self.method]
-        for alpha, mu, voussoirs, weight, eta, ratio in arches:
-            for band, tol, method in free:
-                yield Case(alpha, mu, round(voussoirs), weight, eta, ratio, method, band, tol)
+        names = tuple(self.settings.axes)
+        free = [(*self._width(method), self.taken(method), method) for method in self.method]
+        for (alpha, mu, voussoirs, weight, eta, ratio), values in arches:
+            given = tuple(
+                (name, round(value) if SETTINGS[name].is_whole else value)
+                for name, value in zip(names, values, strict=True)
+            )
+            arch = alpha, mu, round(voussoirs), weight, eta, ratio
+            for band, tol, taken, method in free:
+                own = tuple(each for each in given if each[0] in taken)
+                # Where there is no bracket by an engine, there are no ends to confirm.
+                yield Case(*arch, method, band, tol, self.confirm or not tol, own)
+
+    def taken(self, method: str) -> tuple[str, ...]:
+        """Names of the settings that change an answer of a method here."""
+        if not any(self._width(method)):
+            return ()
+        return METHODS[AUTO_ENGINE if method == "auto" else method].settings
 
     def _axes(self) -> list[Axis]:
-        axes = self.alpha_deg, self.mu, self.voussoirs, self.eta, self.ratio
+        arch = self.alpha_deg, self.mu, self.voussoirs, self.eta, self.ratio
+        axes = *arch, *self.settings.axes.values()
         return [axis for axis in axes if axis is not None]
 
     def _width(self, method: str) -> tuple[float, float]:
@@ -219,8 +213,8 @@ class Design:
         band = AUTO_BAND if method == "auto" else math.inf
         return (0.0, self.tol) if bracketed else (self.band or band, 0.0)
 
-    def _grid(self) -> Iterator[_Arch]:
-        return itertools.product(
+    def _grid(self) -> Iterator[tuple[_Arch, _Values]]:
+        arches = itertools.product(
             self.alpha_deg.every(),
             self.mu.every(),
             self.voussoirs.every(),
@@ -228,12 +222,14 @@ class Design:
             [None] if self.eta is None else self.eta.every(),
             [None] if self.ratio is None else self.ratio.every(),
         )
+        settings = [axis.every() for axis in self.settings.axes.values()]
+        return itertools.product(arches, itertools.product(*settings))
 
-    def _drawn(self, table: RandomTable) -> Iterator[_Arch]:
+    def _drawn(self, table: RandomTable) -> Iterator[tuple[_Arch, _Values]]:
         generator = np.random.default_rng(table.seed)
         nothing = [None] * DRAWN_AT_ONCE
         for start in range(0, table.count, DRAWN_AT_ONCE):
-            block = zip(
+            arches = zip(
                 self.alpha_deg.draw(generator, whole=False),
                 self.mu.draw(generator, whole=False),
                 self.voussoirs.draw(generator, whole=True),
@@ -242,10 +238,19 @@ class Design:
                 nothing if self.ratio is None else self.ratio.draw(generator, whole=False),
                 strict=True,
             )
-            yield from itertools.islice(block, table.count - start)
+            drawn = [
+                axis.draw(generator, whole=SETTINGS[name].is_whole)
+                for name, axis in self.settings.axes.items()
+            ]
+            settings = zip(*drawn, strict=True) if drawn else itertools.repeat(())
+            yield from itertools.islice(
+                zip(arches, settings, strict=False), table.count - start
+            )
 
 
 _Arch = tuple[float, float, float, Weight, float | None, float | None]
+_Values = tuple[float, ...]
+"""Of the settings given."""
 
 
 def load_design(path: Path) -> Design:
@@ -300,6 +305,13 @@ def _require_ranges(design: Design) -> None:
     ):
         for word in words:
             require(word in known, field, word, f"one of {', '.join(known)}")
+    for name, axis in design.settings.axes.items():
+        field = f"settings.{name}"
+        _require_axis(field, axis, spaced)
+        for value in axis.ends if not spaced else axis.every():
+            require_setting(name, value)
+        taken = any(name in design.taken(method) for method in design.method)
+        require(taken, field, "given", "left out: no method asked is run with it")
     both = design.eta is not None and design.ratio is not None
     require(not both, "ratio", "given", "left out where eta is given")
     band_ok = design.band is None or is_number(design.band, 0, math.inf)

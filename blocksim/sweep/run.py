@@ -35,8 +35,8 @@ from blocksim.sweep.answers import (
     reason_of,
     version_of,
 )
-from blocksim.sweep.design import Case, Design
-from blocksim.sweep.shards import identities, write_shard
+from blocksim.sweep.case import Case, Questions
+from blocksim.sweep.shards import identities, locked, write_shard
 
 SHARE = 0.05
 """Time a chunk is meant to take, as a share of that gone by: what a kill loses is small."""
@@ -81,7 +81,7 @@ class Summary:
 
 
 def sweep(
-    design: Design,
+    design: Questions,
     folder: Path,
     *,
     executor: Executor | None = None,
@@ -93,9 +93,9 @@ def sweep(
 
     Parameters
     ----------
-    design : Design
+    design : Design or Questions
     folder : Path
-        For the rows, made if need be; `read_rows` reads them. Not for two sweeps at once.
+        For the rows, made if need be; `read_rows` reads them. One sweep at a time.
     executor : Executor, optional
         Whatever runs the work; by default processes of this machine, replaced where
         one dies.
@@ -113,7 +113,8 @@ def sweep(
     Raises
     ------
     InputError
-        If the folder cannot be written, or holds something else.
+        If the folder cannot be written, holds something else, or another sweep is at work
+        in it.
     MissingPart
         If an engine is not installed, here or at a worker.
     BrokenExecutor
@@ -124,9 +125,8 @@ def sweep(
     require(in_flight is None or in_flight >= 1, "in_flight", in_flight, "at least 1")
     versions = {method: version_of(method) for method in design.method}
     make_folder(folder)
-    done = identities(folder)
-    todo = _Todo(design, versions, done)
     many = in_flight or 2 * workers
+    tally = Tally()
 
     def keep(answered: Answered) -> None:
         write_shard(folder, answered.lines)
@@ -134,15 +134,16 @@ def sweep(
         todo.learn(answered)
         progress((todo.found + tally.rows) / design.size, _said(tally, started))
 
-    tally = Tally()
-    progress(0.0, "")
-    hands = _Hands(executor, workers)
-    try:
-        _work(todo, hands, many, versions, keep)
-    except BaseException:
-        hands.leave()
-        raise
-    hands.leave(wait=True)
+    with locked(folder):
+        todo = _Todo(design, versions, identities(folder))
+        progress(0.0, "")
+        hands = _Hands(executor, workers)
+        try:
+            _work(todo, hands, many, versions, keep)
+        except BaseException:
+            hands.leave()
+            raise
+        hands.leave(wait=True)
     return Summary(
         cases=todo.found + tally.rows,
         found=todo.found,
@@ -165,7 +166,7 @@ class _Todo:
         Cases passed over because their rows are there.
     """
 
-    def __init__(self, design: Design, versions: dict[str, str], done: set[bytes]) -> None:
+    def __init__(self, design: Questions, versions: dict[str, str], done: set[bytes]) -> None:
         self._cases = design.cases()
         self._versions = versions
         self._done = done

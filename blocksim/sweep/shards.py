@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import cast
+
+from filelock import FileLock, Timeout
 
 from blocksim.errors import InputError
 from blocksim.files import write_whole
@@ -16,6 +18,30 @@ HEAD = b'{"id": "'
 ID_LENGTH = 24
 ROW = re.compile(rb'\{"id": "[0-9a-f]{24}", .*\}\n')
 PATTERN = "rows-*.jsonl"
+LOCK = ".sweep.lock"
+
+
+@contextmanager
+def locked(folder: Path) -> Generator[None]:
+    """Keep a folder for one sweep; the system lets go of it however the process ends.
+
+    Raises
+    ------
+    InputError
+        If another sweep is writing there, or nobody can.
+    """
+    lock = FileLock(folder / LOCK, blocking=False)
+    try:
+        lock.acquire()
+    except Timeout:
+        allowed = "a folder no other sweep is at work in (wait until it ends, or name another)"
+        raise InputError("--out", str(folder), allowed) from None
+    except OSError as error:
+        raise InputError("--out", str(folder), f"writable ({error.strerror})") from None
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 def write_shard(folder: Path, lines: list[bytes]) -> None:
@@ -70,8 +96,8 @@ def read_rows(folder: Path) -> Iterator[dict[str, object]]:
     ------
     dict
         The question (`alpha_deg`, `mu`, `voussoirs`, `weight`, `eta`, `ratio`,
-        `asked`), `method` that answered and its `version`, and the answer; `error`
-        is None unless there is none. Infinite friction is the text "inf".
+        `asked`, `settings`), `method` that answered and its `version`, and the answer;
+        `error` is None unless there is none. Infinite friction is the text "inf".
 
     Raises
     ------

@@ -1,0 +1,420 @@
+"""The whole map by simulation, resumable.
+
+Question: do arches collapse in motion in the mode that the closed form publishes for them,
+and at its thickness, all over the map?
+
+The draw. Of ten arches five lie anywhere: half-angle even from 30 to 159 deg, friction
+log-uniform from what lets any thickness stand to 4, the right edge of the map. Four have one
+of the mixed modes each (srr, rrs, rsr, rs), which have little room: they are drawn in the same
+way until one comes that has it. All of these stand at some thickness, and are put to
+the engine 0.5 % below and 0.5 % above the least thickness of their voussoirs. The tenth lies on
+the line where purely sliding arches are published, and is 1.1 to 3 times as thick as the
+least there: not its thickness is critical but its friction, which is 0.5 % less and 0.5 % more
+than the voussoirs need. Purely overturning arches (r) need boundless friction, of which engines
+take 1000: they are left out. Voussoirs are 20 to 40, weight is on the centreline.
+
+What is compared. The mode is the one seen in motion 0.5 % below: closer, mixed modes start too
+slowly for an engine of impulses (in a first run, 0.05 % below, pymunk could not tell 6 of 107),
+and far below more than the weakest mode is overcome. The map is of the continuous arch: where
+the mode is another one, limit analysis of the same voussoirs tells whether they are the reason.
+The least thickness is bracketed by the onset test alone, to 0.1 % (`direct`: 1e-8); the runs at
+0.5 % confirm it, and moving runs at the bracket's ends would take most of the time. The mode at
+the lower end of that bracket is counted, too. An arch is called near a line if its published
+mode changes as mu or alpha changes by 0.3 %: no more, in 99 of 100, does the least thickness of
+the voussoirs differ from the map's, if that is counted in alpha.
+
+Expected: away from the lines the published mode, near them that or the mode of limit analysis;
+brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; all fall below and
+stand above.
+
+Run: python -m analysis.mode_sweep OUT [ARCHES [ENGINE ...]]. Rows are kept in OUT/rows; the
+same command goes on after an interruption, and a larger number begins with the same arches.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from blocksim.assembly import Array
+from blocksim.search import ETA_MAX
+from blocksim.limit import least_thickness
+from blocksim.limit.bulk import which_stand
+from blocksim.modes import Mode
+from blocksim.sweep import Case, read_rows, sweep
+from blocksim.sweep.answers import version_of
+from blocksim.theory.arrays import least_thicknesses
+from blocksim.theory.map import divide_friction
+from blocksim.theory.regions import at_inner_sliding, first_sliding
+from blocksim.verdict import Verdict
+from blocksim.view.mapfigure import draw_regions
+from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
+
+SEED = 2024
+ARCHES = 2300
+ENGINES = ("pymunk", "direct")
+TOL = {"pymunk": 1e-3, "direct": 1e-8, "pybullet": 4e-3}
+ANYWHERE = None
+TURNS = (ANYWHERE, Mode.SRR, ANYWHERE, Mode.RRS, ANYWHERE, Mode.RSR, ANYWHERE, Mode.RS)
+TURNS += (ANYWHERE, Mode.SS)
+"""What ten arches in a row are drawn from."""
+NARROWEST, WIDEST, MOST_FRICTION = 30.0, 159.0, 4.0
+BLOCK = 4096
+"""Arches drawn together."""
+ASIDE = 0.005
+"""Share of the critical thickness, or friction, that arches let go have less or more."""
+NEAR = 0.003
+"""Share of alpha or mu within which the mode changes, near a line."""
+NO_MODE = "none"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """An arch; `eta` where friction is critical, not thickness, with that friction in `mu`."""
+
+    alpha_deg: float
+    mu: float
+    voussoirs: int
+    published: Mode
+    near: bool
+    eta: float | None = None
+
+    def cases(self, engine: str) -> list[Case]:
+        """Ask an engine: with less, with more than is critical, and for a bracket."""
+        start, factors = (self.voussoirs, "centreline"), (1 - ASIDE, 1 + ASIDE)
+        if self.eta is not None:
+            rest = *start, self.eta, None, engine, math.inf, 0.0
+            return [Case(self.alpha_deg, self.mu * factor, *rest) for factor in factors]
+        arch = self.alpha_deg, self.mu, *start, None
+        beside = [Case(*arch, factor, engine, math.inf, 0.0) for factor in factors]
+        return [*beside, Case(*arch, None, engine, 0.0, TOL[engine], confirm=False)]
+
+
+@dataclass(frozen=True)
+class Draws:
+    """The cases of a number of arches; more of them begin with the same."""
+
+    arches: int
+    method: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of cases: purely sliding arches are not bracketed."""
+        purely_sliding = self.arches // len(TURNS)
+        return len(self.method) * (3 * self.arches - purely_sliding)
+
+    def cases(self) -> Iterator[Case]:
+        """Draw the arches."""
+        for drawn in itertools.islice(draw(), self.arches):
+            for engine in self.method:
+                yield from drawn.cases(engine)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """An arch as an engine saw it.
+
+    Verdicts `below` and `above` what is critical; modes in motion, at the onset, and by limit
+    analysis; the bracket's centre and its error, nan where there is none.
+    """
+
+    drawn: Drawn
+    below: Verdict
+    above: Verdict
+    observed: str
+    at_onset: str
+    built: str
+    eta: float
+    error: float
+
+    @property
+    def as_published(self) -> bool:
+        """Whether the mode is the published one."""
+        return self.observed == self.drawn.published
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether it is not that of limit analysis either."""
+        return self.observed not in self.explained
+
+    @property
+    def explained(self) -> set[str]:
+        """Modes as published and as limit analysis says."""
+        return {self.drawn.published.value, self.built}
+
+
+@dataclass(frozen=True)
+class Result:
+    """Headline numbers of one engine.
+
+    `false` counts wrong verdicts below and above, `unsure` undecided ones. Of the modes in
+    motion, `as_published` are those of the map, `as_built` others that limit analysis finds,
+    and `elsewise` neither; `clear_` counts arches that are not near a line. `onset_elsewise` is
+    `elsewise` of the modes at the onset.
+    """
+
+    engine: str
+    arches: int
+    false: int
+    unsure: int
+    as_published: int
+    as_built: int
+    elsewise: int
+    clear: int
+    clear_published: int
+    clear_elsewise: int
+    onset_elsewise: int
+    worst_error: float
+    median_error: float
+    confusion: dict[tuple[str, str], int]
+
+
+def draw() -> Iterator[Drawn]:
+    """Draw arches, without end."""
+    streams = {turn: _stream(turn) for turn in TURNS}
+    for turn in itertools.cycle(TURNS):
+        yield next(streams[turn])
+
+
+def _stream(turn: Mode | None) -> Iterator[Drawn]:
+    """Draw arches of one kind, independently of the others."""
+    random = np.random.default_rng([SEED, TURNS.index(turn)])
+    while True:
+        alpha_deg = random.uniform(NARROWEST, WIDEST, BLOCK)
+        least = np.interp(alpha_deg, *_divide())
+        mu = least * (MOST_FRICTION / least) ** random.random(BLOCK)
+        voussoirs = random.integers(20, 41, BLOCK)
+        thicker = random.uniform(1.1, 3.0, BLOCK)
+        if turn is Mode.SS:
+            yield from map(_on_divide, alpha_deg, voussoirs, thicker)
+        else:
+            yield from _critical(turn, alpha_deg, mu, voussoirs)
+
+
+@cache
+def _divide() -> tuple[Array, Array]:
+    """Half-angles [deg] and the friction below which no thickness stands."""
+    angles = np.linspace(NARROWEST, WIDEST, 200)
+    return angles, np.array([divide_friction(math.radians(angle)) for angle in angles])
+
+
+def _critical(
+    turn: Mode | None, alpha_deg: Array, mu: Array, voussoirs: Array
+) -> Iterator[Drawn]:
+    """Those that stand at some thickness and have the mode asked for."""
+    there = least_thicknesses(np.radians(alpha_deg), mu)
+    wanted = (there.eta < ETA_MAX / (1 + ASIDE)) & ((there.mode == turn) | (turn is ANYWHERE))
+    for k in np.flatnonzero(wanted):
+        mode, half_angle = Mode(str(there.mode[k])), math.radians(alpha_deg[k])
+        # As far to either side as the mode may not change.
+        alphas = half_angle * np.array([1 - NEAR, 1 + NEAR, 1.0, 1.0])
+        mus = mu[k] * np.array([1.0, 1.0, 1 - NEAR, 1 + NEAR])
+        near = bool((least_thicknesses(alphas, mus).mode != mode).any())
+        yield Drawn(float(alpha_deg[k]), float(mu[k]), int(voussoirs[k]), mode, near)
+
+
+def _on_divide(alpha_deg: float, voussoirs: int, thicker: float) -> Drawn:
+    """Draw an arch on the line of purely sliding ones, and the friction its voussoirs need."""
+    half_angle, count = math.radians(alpha_deg), int(voussoirs)
+    mu = divide_friction(half_angle)
+    least, _ = at_inner_sliding(mu, half_angle, "centreline")
+    eta = float(min(thicker * least, ETA_MAX))
+    low, high = mu / 2, mu * 2
+    for _ in range(40):
+        middle = (low + high) / 2
+        stands = bool(which_stand(half_angle, eta, middle, count))
+        low, high = (low, middle) if stands else (middle, high)
+    return Drawn(float(alpha_deg), high, count, Mode.SS, False, eta)
+
+
+def _seen(drawn: Drawn, rows: Sequence[dict[str, object]]) -> Seen:
+    """Read what an engine said of an arch: less, more, and perhaps a bracket."""
+    below, above, *brackets = rows
+    alpha, mu = math.radians(drawn.alpha_deg), float(str(below["mu"]))
+    built = least_thickness(alpha, mu, drawn.voussoirs)
+    eta, error, at_onset = drawn.eta or math.nan, math.nan, NO_MODE
+    for row in brackets:
+        at_onset = str(row["mode"] or NO_MODE)
+        low, high = row["eta_low"], row["eta_high"]
+        if low is not None and high is not None and built.eta is not None:
+            eta = (float(str(low)) + float(str(high))) / 2
+            error = eta / built.eta - 1
+    return Seen(
+        drawn=drawn,
+        below=Verdict(str(below["verdict"])),
+        above=Verdict(str(above["verdict"])),
+        observed=str(below["mode"] or NO_MODE),
+        at_onset=at_onset,
+        built=str(built.mode or NO_MODE),
+        eta=eta,
+        error=error,
+    )
+
+
+def main(
+    out: Path,
+    *,
+    quick: bool = False,
+    arches: int = ARCHES,
+    engines: tuple[str, ...] = ENGINES,
+) -> tuple[Result, ...]:
+    """Run the study or go on with it, write a figure an engine and return their numbers."""
+    draws = Draws(10, ("direct",)) if quick else Draws(arches, engines)
+    folder = out / "rows"
+    if quick:
+        with ThreadPoolExecutor(1) as executor:
+            sweep(draws, folder, executor=executor)
+    else:
+        sweep(draws, folder, workers=2, progress=_tell)
+    rows = {row["id"]: row for row in read_rows(folder)}
+    return tuple(_result(engine, draws.arches, rows, out) for engine in draws.method)
+
+
+def _result(
+    engine: str, arches: int, rows: dict[object, dict[str, object]], out: Path
+) -> Result:
+    version = version_of(engine)
+    every = [
+        _seen(drawn, [rows[case.identity(version).hex()] for case in drawn.cases(engine)])
+        for drawn in itertools.islice(draw(), arches)
+    ]
+    errors = np.abs([each.error for each in every if not math.isnan(each.error)])
+    clear = [each for each in every if not each.drawn.near]
+    _figure(every, out / f"mode_sweep_{engine}.png", engine)
+    return Result(
+        engine=engine,
+        arches=len(every),
+        false=sum(
+            (each.below is Verdict.STANDS) + (each.above is Verdict.COLLAPSES) for each in every
+        ),
+        unsure=sum((e.below, e.above).count(Verdict.UNDECIDED) for e in every),
+        as_published=sum(each.as_published for each in every),
+        as_built=sum(not each.as_published and not each.unexplained for each in every),
+        elsewise=sum(each.unexplained for each in every),
+        clear=len(clear),
+        clear_published=sum(each.as_published for each in clear),
+        clear_elsewise=sum(each.unexplained for each in clear),
+        onset_elsewise=sum(
+            each.drawn.eta is None and each.at_onset not in each.explained for each in every
+        ),
+        worst_error=float(errors.max()),
+        median_error=float(np.median(errors)),
+        confusion=dict(_counts(every)),
+    )
+
+
+def _counts(every: Sequence[Seen]) -> Counter[tuple[str, str]]:
+    return Counter((each.drawn.published.value, each.observed) for each in every)
+
+
+def _tell(share: float, what: str) -> None:
+    sys.stderr.write(f"{share:6.1%}  {what}\n")
+
+
+def _figure(every: Sequence[Seen], path: Path, engine: str) -> None:
+    with mpl.rc_context(FONT):
+        figure = Figure(figsize=(15, 7.6), layout="constrained")
+        grid = figure.add_gridspec(2, 2, width_ratios=(1.5, 1))
+        _over_map(figure.add_subplot(grid[:, 0]), every, engine)
+        _confusion(figure.add_subplot(grid[0, 1]), every)
+        _errors(figure, figure.add_subplot(grid[1, 1]), every)
+        figure.savefig(path, dpi=150)
+
+
+def _over_map(axes: Axes, every: Sequence[Seen], engine: str) -> None:
+    """Draw the modes observed over those published (Fig. 9)."""
+    draw_regions(axes)
+    handles: list[Line2D] = []
+    for mode in (*Mode, None):
+        style = MODES[mode] if mode else UNNAMED
+        own = [each for each in every if each.observed == (mode or NO_MODE)]
+        look = {"marker": style.marker, "mfc": style.colour, "mec": "white", "mew": 0.4}
+        for each in own:
+            axes.plot(each.drawn.mu, each.eta, ms=4.5, zorder=5, **look)
+        if own:
+            words = f"{mode.value if mode else 'none of the seven'}  {len(own)}"
+            handles.append(Line2D([], [], ls="", ms=7, label=words, **look))
+    for marked, colour, words in (
+        (
+            [e for e in every if not e.as_published and not e.unexplained],
+            INK,
+            "not as published,\nbut as limit says",
+        ),
+        ([e for e in every if e.unexplained], MISS, "neither as published\nnor as limit says"),
+    ):
+        ring = {"marker": "o", "mfc": "none", "mec": colour, "mew": 0.9, "ls": ""}
+        axes.plot([e.drawn.mu for e in marked], [e.eta for e in marked], ms=9, zorder=6, **ring)
+        if marked:
+            label = f"{words}  {len(marked)}"
+            handles.append(Line2D([], [], ms=9, label=label, **ring))
+    axes.legend(handles=handles, loc="upper left", title="observed", fontsize=8)
+    axes.set_title(f"{len(every)} arches by {engine}, over the published modes")
+
+
+def _confusion(axes: Axes, every: Sequence[Seen]) -> None:
+    """Draw how often each mode is observed where each is published, in brackets off lines."""
+    counts, clear = _counts(every), _counts([e for e in every if not e.drawn.near])
+    published = [mode.value for mode in Mode if any(row == mode for row, _ in counts)]
+    names = [*(mode.value for mode in Mode), NO_MODE]
+    observed = [name for name in names if any(column == name for _, column in counts)]
+    table = np.array([[counts[row, column] for column in observed] for row in published])
+    axes.imshow(
+        table / table.sum(axis=1, keepdims=True), cmap="Blues", vmin=0, vmax=1.6, aspect="auto"
+    )
+    for (row, column), count in np.ndenumerate(table):
+        if count:
+            off = clear[published[row], observed[column]]
+            axes.text(column, row, f"{count} ({off})", ha="center", va="center")
+    axes.set_xticks(range(len(observed)), observed)
+    axes.set_yticks(range(len(published)), published)
+    axes.set_xlabel("mode observed")
+    axes.set_ylabel("mode published")
+    axes.spines[:].set_visible(False)
+    axes.set_title("Modes: all arches (those away from lines of the map)")
+
+
+def _errors(figure: Figure, axes: Axes, every: Sequence[Seen]) -> None:
+    """Draw the error over half-angle and friction, where thin arches have room."""
+    known = [each for each in every if not math.isnan(each.error)]
+    sizes = np.maximum(np.abs([each.error for each in known]), 1e-12)
+    points = axes.scatter(
+        [each.drawn.alpha_deg for each in known],
+        [each.drawn.mu for each in known],
+        c=100 * sizes,
+        norm=LogNorm(),
+        cmap="viridis",
+        s=9,
+    )
+    angles, divide = _divide()
+    first = first_sliding(np.radians(angles[angles < 151]))
+    axes.plot(angles, divide, color=INK, lw=1.1)
+    axes.plot(angles[angles < 151], first.mu, color=INK, lw=1.1)
+    axes.set_yscale("log")
+    axes.set_ylim(0.8 * divide[0], 1.1 * MOST_FRICTION)
+    axes.set_yticks((0.03, 0.1, 0.3, 1, 3), ("0.03", "0.1", "0.3", "1", "3"))
+    axes.minorticks_off()
+    axes.set_xlabel("half-angle of embrace [deg]")
+    axes.set_ylabel(r"friction coefficient $\mu$")
+    axes.set_title("Error of least thickness")
+    figure.colorbar(points, ax=axes, label="bracket's centre off limit analysis [%]")
+
+
+if __name__ == "__main__":
+    number = int(sys.argv[2]) if len(sys.argv) > 2 else ARCHES
+    chosen = tuple(sys.argv[3:]) or ENGINES
+    for result in main(Path(sys.argv[1]), arches=number, engines=chosen):
+        sys.stdout.write(f"{result}\n")
