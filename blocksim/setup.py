@@ -13,6 +13,7 @@ from blocksim.assembly import Array, Assembly
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.recording import Recording
+from blocksim.reduction import ReducedWorld, Reduction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,12 +26,15 @@ class Setup:
     mu : float
     engine : Engine
     settings : Settings
+    reduction : Reduction or None
+        What the engine is given in place of all voussoirs.
     """
 
     arch: Arch
     mu: float
     engine: Engine
     settings: Settings
+    reduction: Reduction | None = None
 
     @classmethod
     def of(
@@ -41,6 +45,7 @@ class Setup:
         *,
         tilt: float = 0.0,
         plane_lock: bool = False,
+        reduction: Reduction | None = None,
     ) -> Setup:
         """Take the settings that the engine chooses for the arch.
 
@@ -48,7 +53,7 @@ class Setup:
         """
         library = get_engine(engine)
         settings = replace(library.settings(arch.assembly()), tilt=tilt, plane_lock=plane_lock)
-        return cls(arch=arch, mu=mu, engine=library, settings=settings)
+        return cls(arch=arch, mu=mu, engine=library, settings=settings, reduction=reduction)
 
     @cached_property
     def assembly(self) -> Assembly:
@@ -57,6 +62,9 @@ class Setup:
 
     def world(self) -> World:
         """Blocks in the engine, at rest."""
+        if self.reduction:
+            world = self.engine.build(self.reduction.assembly, self.mu, self.settings)
+            return ReducedWorld(world, self.reduction)
         return self.engine.build(self.assembly, self.mu, self.settings)
 
     def finer(self, factor: int) -> Setup:

@@ -24,7 +24,7 @@ from importlib.metadata import version
 import numpy as np
 import pymunk
 
-from blocksim.assembly import Array, Assembly, Joint
+from blocksim.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.faces import crowding, faces_of, ledge, side, springings, stands_on
 
@@ -89,6 +89,7 @@ class _Space:
         mass = float(np.mean([block.mass for block in assembly.blocks]))
         faces = faces_of(assembly)
         self._bodies: list[pymunk.Body] = []
+        self._shapes: list[pymunk.Shape] = []
         for index, block in enumerate(assembly.blocks):
             inertia = block.inertia / mass / assembly.size**2
             body = pymunk.Body(block.mass / mass, inertia)
@@ -102,13 +103,22 @@ class _Space:
             shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
             self._space.add(body, shape)
             self._bodies.append(body)
+            self._shapes.append(shape)
         for k, joint in enumerate(springings(assembly)):
             shape = self._shape(
                 self._space.static_body, _footing(joint, assembly.size, self._inset)
             )
             # A support touches only the block that stands on it.
             shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
+            shape.friction *= not joint.smooth
             self._space.add(shape)
+            self._shapes.append(shape)
+        # Footings come after the blocks, in the order of their joints.
+        names = iter(range(len(self._bodies), len(self._shapes)))
+        self._sides = [
+            tuple(next(names) if side == SUPPORT else side for side in (j.before, j.after))
+            for j in assembly.joints
+        ]
 
     def _shape(self, body: pymunk.Body, outline: Array) -> pymunk.Poly:
         corners = [(float(x), float(y)) for x, y in outline]
@@ -136,6 +146,25 @@ class _Space:
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
         return np.array([(*body.position, body.angle) for body in self._bodies])
+
+    def resultants(self) -> Array:
+        """Add up the impulses of contacts, which pymunk tells only to those who pickle it."""
+        found = np.zeros((len(self._sides), 3))
+        names = {shape: index for index, shape in enumerate(self._shapes)}
+        joints = {sides: index for index, sides in enumerate(self._sides)}
+        for pair in dict(self._space.__getstate__()["special"])["arbiters"]:
+            sides = names[pair["a"]], names[pair["b"]]
+            sign = 1.0 if sides in joints else -1.0
+            joint = joints.get(sides, joints.get(sides[::-1]))
+            x, y = pair["n"]
+            first, second = pair["a"].body.position, pair["b"].body.position
+            for contact in pair["contacts"]:
+                push, drag = sign * contact["jnAcc"], sign * contact["jtAcc"]
+                force = x * push - y * drag, x * drag + y * push
+                # The two shapes overlap: the contact is midway.
+                arm = (first + contact["r1"] + second + contact["r2"]) / 2
+                found[joint] += *force, arm.cross(force)
+        return found / self._settings.step
 
     def quality(self) -> Quality:
         """Chipmunk does not tell."""
