@@ -9,7 +9,7 @@ by onset test and moving run, and its mode is observed below.
 Expected: every centre within 0.2 % in pymunk and 1 % in pybullet, eight of ten within 0.5 %
 there; no false answer; modes as limit analysis says.
 
-    python analysis/random_arches.py OUT [pymunk|pybullet]
+    python -m analysis.random_arches OUT [pymunk|pybullet]
 """
 
 from __future__ import annotations
@@ -28,12 +28,10 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Arch, Mode, Verdict, bracket
-from blocksim.arch import Weight
-from blocksim.limit import least_thickness
-from blocksim.theory.critical import thrust_interval
 from blocksim.trial import trial
-from blocksim.view.style import FONT, MODES
+from blocksim.view.style import FONT
 
 SEED = 2024
 
@@ -51,18 +49,6 @@ PLANS = {
     "pymunk": Plan(arches=48, tol=0.001, aside=0.01),
     "pybullet": Plan(arches=24, tol=0.004, aside=0.02),
 }
-
-
-@dataclass(frozen=True)
-class Draw:
-    """An arch to be asked about: half-angle [rad], friction, voussoirs, weight, exact eta."""
-
-    half_angle: float
-    mu: float
-    voussoirs: int
-    weight: Weight
-    eta: float
-    mode: Mode
 
 
 @dataclass(frozen=True)
@@ -99,34 +85,15 @@ class Result:
     longest_bracket_s: float
 
 
-def draws(count: int) -> Iterator[Draw]:
-    """Draw arches, no mode more often than a third of them."""
-    random = np.random.default_rng(SEED)
+def chosen(count: int) -> Iterator[Draw]:
+    """Choose arches, no mode more often than a third of them."""
     taken: Counter[Mode] = Counter()
-    while taken.total() < count:
-        half_angle = math.radians(random.uniform(60, 150))
-        mu = math.exp(random.uniform(math.log(0.35), math.log(3)))
-        if random.random() < 0.7:
-            # Little more friction than the divide: that is where the mixed modes are.
-            mu = max(0.35, _divide(half_angle) * random.uniform(1.0, 1.15))
-        voussoirs = int(random.integers(20, 41))
-        weight: Weight = "sector" if random.random() < 0.5 else "centreline"
-        state = least_thickness(half_angle, mu, voussoirs, weight)
-        in_range = mu <= 3 and state.eta is not None and state.eta <= 1.96
-        if not in_range or state.mode is None or taken[state.mode] > count / 3.5:
-            continue
-        taken[state.mode] += 1
-        yield Draw(half_angle, mu, voussoirs, weight, state.eta, state.mode)
-
-
-def _divide(half_angle: float) -> float:
-    """Friction below which no thickness stands."""
-    low, high = 0.01, 100.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        least, most = thrust_interval(half_angle, middle)
-        low, high = (middle, high) if least > most else (low, middle)
-    return high
+    for draw in draws(SEED, degrees=(60, 150), counts=(20, 40), near=0.7):
+        if draw.eta <= 1.96 and taken[draw.mode] <= count / 3.5:
+            taken[draw.mode] += 1
+            yield draw
+        if taken.total() == count:
+            return
 
 
 def ask(draw: Draw, engine: str) -> Outcome:
@@ -168,14 +135,14 @@ def ask(draw: Draw, engine: str) -> Outcome:
 
 def main(out: Path, *, quick: bool = False, engine: str = "pymunk") -> Result:
     """Run the study, write its figure and return its numbers."""
-    chosen = list(draws(4 if quick else PLANS[engine].arches))
+    drawn = list(chosen(4 if quick else PLANS[engine].arches))
     asked = partial(ask, engine=engine)
     if quick:
-        outcomes = [asked(draw) for draw in chosen]
+        outcomes = [asked(draw) for draw in drawn]
     else:
         outcomes = []
         with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-            for outcome in pool.map(asked, chosen):
+            for outcome in pool.map(asked, drawn):
                 outcomes.append(outcome)
                 sys.stderr.write(f"{outcome}\n")
     name = "random_arches" if engine == "pymunk" else f"random_arches_{engine}"
@@ -206,25 +173,10 @@ def _figure(outcomes: list[Outcome], engine: str, path: Path) -> None:
         axes = figure.add_subplot()
         axes.axhspan(-width / 2, width / 2, color="#eeeeee", label="half the bracket's width")
         axes.axhline(0, color="#888888", lw=0.8)
-        for mode in Mode:
-            own = [o for o in outcomes if o.draw.mode is mode]
-            style = MODES[mode]
-            for weight, face in (("centreline", style.colour), ("sector", "white")):
-                points = [o for o in own if o.draw.weight == weight]
-                if points:
-                    axes.plot(
-                        [math.degrees(o.draw.half_angle) for o in points],
-                        [100 * o.error for o in points],
-                        style.marker,
-                        mfc=face,
-                        mec=style.colour,
-                        label=f"{mode.value}, {weight}",
-                    )
+        plot_by_mode(axes, [o.draw for o in outcomes], [100 * o.error for o in outcomes])
         axes.set_ylim(-2 * width, 2 * width)
-        axes.set_xlabel("half-angle of embrace [deg]")
         axes.set_ylabel("centre of bracket over exact [%]")
         axes.set_title(f"{engine} against limit analysis: least thickness of random arches")
-        axes.legend(frameon=False, fontsize=7.5, ncols=4, loc="upper left")
         path.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path, dpi=150)
 

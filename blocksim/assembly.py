@@ -104,6 +104,11 @@ class Joint:
         along = self.tangent
         return np.array([along[1], -along[0]])
 
+    @property
+    def bears(self) -> int:
+        """The block that stands on it, where it is one with the support."""
+        return self.before if self.after == SUPPORT else self.after
+
 
 class JointArrays(NamedTuple):
     """All joints of an assembly at once, lengths in units of its size.
@@ -166,11 +171,15 @@ class Assembly:
         The moment of inertia in the plane is shared equally by the two axes in it, to
         which the depth adds its part.
         """
-        depth = np.array([block.depth for block in self.blocks]) / self.size
         mass, inertia = self.masses[:, 0], self.masses[:, 2]
-        across = inertia / 2 + mass * depth**2 / 12
+        across = inertia / 2 + mass * self.depths**2 / 12
         beyond = np.stack([mass, across, across], axis=1)
         return _frozen(np.hstack([self.masses, beyond]), (-1, SPATIAL))
+
+    @cached_property
+    def depths(self) -> Array:
+        """Depth of each block, shape (blocks,), in units of the size."""
+        return _frozen([block.depth / self.size for block in self.blocks], (-1,))
 
     @cached_property
     def reach(self) -> Array:
@@ -196,6 +205,16 @@ class Assembly:
             smooth=np.array([joint.smooth for joint in self.joints]),
         )
 
+    @cached_property
+    def springings(self) -> tuple[Joint, ...]:
+        """The joints with the support."""
+        return tuple(joint for joint in self.joints if SUPPORT in (joint.before, joint.after))
+
+    @property
+    def shortest(self) -> float:
+        """Length of the shortest joint, in units of the size."""
+        return float(self.joint_arrays.length.min())
+
 
 def displacement(moved: Array, assembly: Assembly) -> Array:
     """Bound of the displacement of any corner, from those of the centres.
@@ -215,8 +234,7 @@ def displacement(moved: Array, assembly: Assembly) -> Array:
     square = moved**2
     shift, turn = square[..., 0] + square[..., 1], square[..., 2]
     if moved.shape[-1] == SPATIAL:
-        depth = np.array([block.depth for block in assembly.blocks]) / assembly.size
-        reach = np.hypot(reach, depth / 2)
+        reach = np.hypot(reach, assembly.depths / 2)
         shift = shift + square[..., 3]
         turn = turn + square[..., 4] + square[..., 5]
     return np.sqrt(np.maximum(shift, turn * reach**2)).max(axis=-1)

@@ -12,7 +12,7 @@ from blocksim.arch import Arch, Weight, is_number, require, require_friction
 from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
-from blocksim.trial import trial
+from blocksim.trial import Held, conclude, hold
 from blocksim.verdict import Verdict
 
 ETA_MAX = 2.0
@@ -184,21 +184,26 @@ def _by_simulation(
     arch: Arch, answer: Bracket, guess: float | None, progress: Progress, *, confirm: bool
 ) -> Bracket:
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
-    search = Search(
-        judge=lambda eta: (
-            trial(replace(arch, eta=eta), answer.mu, answer.method, moving=False).verdict
-        ),
-        progress=progress,
-    )
+    ends: dict[Verdict, Held] = {}
+
+    def judge(eta: float) -> Verdict:
+        held = hold(replace(arch, eta=eta), answer.mu, answer.method)
+        # Every answer narrows the bracket: the last of each kind is that of its end.
+        ends[held.onset.verdict] = held
+        return held.onset.verdict
+
+    search = Search(judge, progress)
     search.expand(ETA_MAX if guess is None else guess)
     search.bisect(answer.tol)
     verdicts: list[bool] = []
     mode = None
-    for eta, expected in ((search.low, Verdict.COLLAPSES), (search.high, Verdict.STANDS)):
+    for expected in (Verdict.COLLAPSES, Verdict.STANDS):
         # The lower end tells the mode, too.
-        if eta is not None and (confirm or expected is Verdict.COLLAPSES):
-            progress(0.95, f"moving run at {eta:.6g}")
-            ended = trial(replace(arch, eta=eta), answer.mu, answer.method, moving=confirm)
+        if expected in ends and (confirm or expected is Verdict.COLLAPSES):
+            held = ends[expected]
+            if confirm:
+                progress(0.95, f"moving run at {held.setup.arch.eta:.6g}")
+            ended = conclude(held, moving=confirm)
             verdicts.append(ended.verdict is expected)
             mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None

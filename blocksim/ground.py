@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from blocksim.assembly import SUPPORT, Array, Assembly
+from blocksim.assembly import Array, Assembly
 
 DEPTH = 0.5
 """Level of the ground below the lowest end of a joint to the support [size]."""
@@ -38,8 +38,4 @@ def piers(assembly: Assembly) -> tuple[Array, ...]:
 
 
 def _faces(assembly: Assembly) -> list[tuple[Array, Array]]:
-    return [
-        (joint.inner, joint.outer)
-        for joint in assembly.joints
-        if SUPPORT in (joint.before, joint.after)
-    ]
+    return [(joint.inner, joint.outer) for joint in assembly.springings]

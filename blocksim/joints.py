@@ -117,10 +117,10 @@ def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
     """
     before, after, ends, _, tangent, *_ = assembly.joint_arrays
     middle = ends.mean(axis=1)
-    depth = np.array([block.depth for block in assembly.blocks]) / assembly.size
     centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
     beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])
-    half = np.minimum(*(np.append(depth, np.inf)[side] for side in (before, after))) / 2
+    depths = np.append(assembly.depths, np.inf)
+    half = np.minimum(depths[before], depths[after]) / 2
 
     def across(block: NDArray[np.int64]) -> Array:
         arm = middle - centres[block]

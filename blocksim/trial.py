@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from blocksim.arch import Arch, require_friction, require_tilt
 from blocksim.engines import ENGINES
+from blocksim.engines.base import World
 from blocksim.errors import InputError
 from blocksim.joints import ObservedJoint, classify, closed_joints, observed_mode
 from blocksim.ladder import choose
@@ -16,6 +17,27 @@ from blocksim.progress import Progress, silent
 from blocksim.recording import Recording
 from blocksim.setup import Setup
 from blocksim.verdict import Verdict
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Held:
+    """An arch in an engine after the onset test: at rest, and ready to be let go once.
+
+    Parameters
+    ----------
+    setup : Setup
+    world : World
+    onset : Onset
+    """
+
+    setup: Setup
+    world: World
+    onset: Onset
+
+    def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
+        """Let the arch go; see `moving_run`."""
+        swept = self.onset.sweeps
+        return moving_run(self.setup, self.world, swept, until=until, progress=progress)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,12 +95,33 @@ def trial(
     -------
     Trial
     """
+    held = hold(arch, mu, engine, tilt=tilt, plane_lock=plane_lock, progress=progress)
+    return conclude(held, moving=moving, progress=progress)
+
+
+def hold(
+    arch: Arch,
+    mu: float,
+    engine: str,
+    *,
+    tilt: float = 0.0,
+    plane_lock: bool = False,
+    progress: Progress = silent,
+) -> Held:
+    """Do the first part of a trial: put the arch into the engine, and the onset test."""
     setup = Setup.of(arch, mu, engine, tilt=tilt, plane_lock=plane_lock)
     world = setup.world()
     first = onset(world, setup.assembly, setup.settings, progress)
+    return Held(setup=setup, world=world, onset=first)
+
+
+def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
+    """Do the second part of a trial: the moving run if asked for, and what all of it shows."""
+    setup, first = held.setup, held.onset
+    arch, tilt = setup.arch, setup.settings.tilt
     verdict, reason, motion = first.verdict, first.reason, None
     if moving and verdict is not Verdict.UNDECIDED:
-        motion = moving_run(setup, world, first.sweeps, progress=progress)
+        motion = held.release(progress=progress)
         reason = f"onset test: {first.reason}; moving run: {motion.reason}"
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
@@ -148,7 +191,5 @@ def simulate(
     require_tilt(tilt, plane_lock=plane_lock)
     if choose(method, spatial=tilt != 0 or plane_lock).is_static:
         raise InputError("method", method, f"one of {', '.join(ENGINES)}: others move nothing")
-    setup = Setup.of(arch, mu, method, tilt=tilt, plane_lock=plane_lock)
-    world = setup.world()
-    first = onset(world, setup.assembly, setup.settings, progress)
-    return moving_run(setup, world, first.sweeps, until=duration, progress=progress).recording
+    held = hold(arch, mu, method, tilt=tilt, plane_lock=plane_lock, progress=progress)
+    return held.release(duration, progress).recording

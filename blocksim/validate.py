@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 
 from blocksim import limit
@@ -75,22 +75,22 @@ class Row:
     weight: str
     modes_published: tuple[Mode, ...]
     eta_published: float | None
-    eta_limit: float | None
-    mode_limit: Mode | None
-    eta_low: float | None
-    eta_high: float | None
-    error: float | None
-    mode_observed: Mode | None
-    below: Verdict | None
-    above: Verdict | None
-    verdict_expected: Verdict | None
-    verdict: Verdict | None
-    miss: str
-    note: str
-    wall_s: float
+    eta_limit: float | None = None
+    mode_limit: Mode | None = None
+    eta_low: float | None = None
+    eta_high: float | None = None
+    error: float | None = None
+    mode_observed: Mode | None = None
+    below: Verdict | None = None
+    above: Verdict | None = None
+    verdict_expected: Verdict | None = None
+    verdict: Verdict | None = None
+    miss: str = ""
+    note: str = ""
+    wall_s: float = 0.0
     title: str
     source: str
-    recording: Recording | None
+    recording: Recording | None = None
 
 
 def scenarios(*, quick: bool) -> list[Scenario]:
@@ -184,15 +184,8 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
     if middle is not None and found.eta_limit is not None:
         error = middle / found.eta_limit - 1
     miss = "; ".join(_misses(found, error, mode, below, above))
-    return Row(
-        scenario=scenario.name,
-        engine=engine,
-        half_angle=scenario.half_angle,
-        mu=scenario.mu,
-        voussoirs=scenario.voussoirs,
-        weight=scenario.weight,
-        modes_published=scenario.expected_modes,
-        eta_published=scenario.expected_eta,
+    return replace(
+        _asked(scenario, engine),
         eta_limit=found.eta_limit,
         mode_limit=found.mode_limit,
         eta_low=found.eta_low,
@@ -201,13 +194,9 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         mode_observed=mode,
         below=below,
         above=above,
-        verdict_expected=None,
-        verdict=None,
         miss=miss,
         note=_note(scenario, found, mode),
         wall_s=time.perf_counter() - started,
-        title=scenario.title,
-        source=scenario.source,
         recording=recording,
     )
 
@@ -217,6 +206,19 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
     started = time.perf_counter()
     seen = trial(arch, scenario.mu, engine, tilt=scenario.tilt)
     right = seen.verdict is scenario.expected_verdict
+    return replace(
+        _asked(scenario, engine),
+        mode_observed=seen.mode,
+        verdict_expected=scenario.expected_verdict,
+        verdict=seen.verdict,
+        miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
+        note="" if right else seen.reason,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def _asked(scenario: Scenario, engine: str) -> Row:
+    """Return the row of a scenario that is still to be answered."""
     return Row(
         scenario=scenario.name,
         engine=engine,
@@ -226,22 +228,8 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
         weight=scenario.weight,
         modes_published=scenario.expected_modes,
         eta_published=scenario.expected_eta,
-        eta_limit=None,
-        mode_limit=None,
-        eta_low=None,
-        eta_high=None,
-        error=None,
-        mode_observed=seen.mode,
-        below=None,
-        above=None,
-        verdict_expected=scenario.expected_verdict,
-        verdict=seen.verdict,
-        miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
-        note="" if right else seen.reason,
-        wall_s=time.perf_counter() - started,
         title=scenario.title,
         source=scenario.source,
-        recording=None,
     )
 
 

@@ -153,6 +153,12 @@ def front(points: Sequence[Point]) -> list[Point]:
     return best
 
 
+def on_front(points: Sequence[Point]) -> set[Point]:
+    """Return the points that are on the front of their own arch."""
+    names = {point.case for point in points}
+    return {best for name in names for best in front([p for p in points if p.case == name])}
+
+
 def gain(points: Sequence[Point], method: str, over: str) -> float:
     """Finest error of one method over that of another in the same time or less."""
     finest = min((p for p in points if p.method == over), key=lambda p: p.error)

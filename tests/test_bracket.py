@@ -7,15 +7,18 @@ threshold must leave a bracket that still holds it; one that never stands must s
 from __future__ import annotations
 
 import math
+import sys
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from blocksim import limit, theory
+from blocksim.arch import Arch
 from blocksim.bracket import ETA_MAX, Search, bracket
 from blocksim.errors import InputError
 from blocksim.modes import Mode
+from blocksim.trial import Held, hold
 from blocksim.verdict import Verdict
 
 tolerances = st.floats(1e-4, 0.3)
@@ -128,6 +131,23 @@ def test_where_nothing_stands(method: str) -> None:
     assert found.centre is None
     assert found.mode is Mode.SS
     assert found.eta_theory is None
+
+
+@pytest.mark.parametrize("confirm", [True, False])
+def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    held: list[float] = []
+
+    def counted(arch: Arch, mu: float, engine: str) -> Held:
+        held.append(arch.eta)
+        return hold(arch, mu, engine)
+
+    monkeypatch.setattr(sys.modules["blocksim.bracket"], "hold", counted)
+    asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}
+    found = bracket(**asked, confirm=confirm)
+    assert found.runs == len(held) == len(set(held))
+    assert {found.eta_low, found.eta_high} <= set(held)
+    assert found.mode is Mode.RRR
+    assert found.confirmed is (True if confirm else None)
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from blocksim.errors import InputError
 from blocksim.modes import Mode
 from blocksim.onset import onset
 from blocksim.recording import load_recording
-from blocksim.trial import simulate, trial
+from blocksim.trial import hold, simulate, trial
 from blocksim.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
@@ -227,6 +227,14 @@ def test_planar_methods_take_no_tilt(method: str) -> None:
         check(THIN, mu=0.7, method=method, tilt=0.1)
     assert caught.value.field == "method"
     assert "pybullet" in str(caught.value)
+
+
+def test_other_spaces_do_not_disturb_a_held_one() -> None:
+    """Bullet has settings that all its spaces share."""
+    alone, beside = (hold(THIN, 0.7, "pybullet") for _ in range(2))
+    undisturbed = alone.release(3.0).recording
+    hold(replace(THIN, eta=1.0), 0.7, "pybullet")
+    assert beside.release(3.0).recording.state_hash == undisturbed.state_hash
 
 
 def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:

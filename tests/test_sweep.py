@@ -361,12 +361,12 @@ def test_killed_drivers_leave_no_process_and_lose_no_row(
     there = 0
     for _ in range(2):
         with started(tmp_path, out) as driver:
-            until(lambda: len(list(out.glob("rows-*"))) > there, driver)  # noqa: B023
+            until(lambda seen=there: len(list(out.glob("rows-*"))) > seen, driver)
             workers = children(driver.pid)
             assert workers
             driver.kill()
         there = len(list(out.glob("rows-*")))
-        until(lambda: not any(alive(pid) for pid in workers))  # noqa: B023
+        until(lambda gone=workers: not any(alive(pid) for pid in gone))
     rows = rows_of(out)
     assert 0 < len(rows) < 80
     assert command(tmp_path, out, "--workers", "1").returncode == 0

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import Annotated
 
 import typer
 from rich.table import Table
@@ -18,11 +17,12 @@ from blocksim.cli.console import (
     chart_table,
     picture_kind,
     progress,
-    save_picture,
     say,
     show,
+    validation_lines,
     validation_table,
 )
+from blocksim.cli.drawing import write_arch, write_map
 from blocksim.cli.filming import (
     At,
     Beside,
@@ -53,8 +53,7 @@ from blocksim.cli.options import (
 from blocksim.cli.sweeping import run_sweep
 from blocksim.doctor import examine
 from blocksim.engines import ENGINES
-from blocksim.errors import MISSING, BlocksimError, InputError
-from blocksim.files import make_folder, write_whole
+from blocksim.files import make_folder
 from blocksim.report.answers import (
     bracket_lines,
     bracket_record,
@@ -62,15 +61,11 @@ from blocksim.report.answers import (
     check_record,
 )
 from blocksim.scenario import load_scenario, shipped
-from blocksim.theory import least_thickness
 from blocksim.trial import simulate as record_motion
-from blocksim.validate import disagreements, scenarios
+from blocksim.validate import scenarios
 from blocksim.validate import validate as run_validation
 from blocksim.verdict import Verdict
 from blocksim.workprec import cases, measure
-
-if TYPE_CHECKING:
-    pass
 
 app = typer.Typer(
     name="blocksim",
@@ -81,33 +76,8 @@ app = typer.Typer(
 )
 
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
-WRONG_INPUT = 2
-INTERRUPTED = 130
 LONGEST_RECORDING = 600.0
 """Seconds."""
-
-
-def main() -> None:
-    """Run the command line; wrong input is one line and exit code 2."""
-    try:
-        code = app(standalone_mode=False)
-    except BlocksimError as error:
-        _fail(str(error))
-    except (KeyboardInterrupt, typer.Abort):
-        sys.exit(INTERRUPTED)
-    except Exception as error:
-        # Typer's own complaints about options carry a message for people.
-        message = getattr(error, "format_message", None)
-        if message is None:
-            raise
-        _fail(" ".join(str(message()).split()))
-    else:
-        sys.exit(code or 0)
-
-
-def _fail(message: str) -> NoReturn:
-    typer.echo(f"blocksim: {message}", err=True)
-    sys.exit(WRONG_INPUT)
 
 
 @app.command()
@@ -227,17 +197,7 @@ def validate(
         rows = run_validation(chosen, workers=workers, progress=report)
     paths = write_results(rows, out)
     show(validation_table(rows))
-    misses = [row for row in rows if row.miss]
-    say(
-        f"{len(rows) - len(misses)} of {len(rows)} agree with the exact answer in every respect"
-    )
-    for row in misses:
-        say(f"  {row.scenario}, {row.engine}: {row.miss} ({row.note})")
-    if len({row.engine for row in rows}) > 1:
-        apart = disagreements(rows)
-        say(f"the engines disagree in {len(apart)} places")
-        for each in apart:
-            say(f"  {each}")
+    say("\n".join(validation_lines(rows)))
     say("wrote " + ", ".join(str(path) for path in paths))
 
 
@@ -294,30 +254,7 @@ def draw_map(
     As a page (.html) it can be explored: any point's arch, its lines of thrust and
     friction, and its collapse.
     """
-    page = out.suffix == ".html"
-    ok = page or out.suffix in {".svg", ".png"}
-    require(ok, "--out", str(out), "a file name ending in .svg, .png or .html")
-    if page:
-        from blocksim.view.explorer import explorer_page, read_results
-
-        require(not lines, "--lines", lines, "left out where --out is a page")
-        require(zoom == "whole", "--zoom", zoom, "left out where --out is a page")
-        rows = [] if results is None else read_results(results)
-        html = explorer_page(rows, str(results or ""))
-        write_whole(out, lambda file: file.write(html.encode()))
-        say(f"wrote {out}")
-        return
-    require(results is None, "--results", str(results), "left out unless --out ends in .html")
-    from blocksim.view.linemap import line_map_figure
-    from blocksim.view.mapfigure import map_figure
-
-    zooms = LINE_ZOOMS if lines else {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
-    require(zoom in zooms, "--zoom", zoom, f"one of {', '.join(zooms)}")
-    figure = line_map_figure(zooms[zoom]) if lines else map_figure(central=zoom == "central")
-    save_picture(figure, out, out.suffix[1:])
-
-
-LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
+    write_map(out, zoom, results, lines=lines)
 
 
 @app.command()
@@ -347,26 +284,13 @@ def render(
     1 % below its least thickness where none is given.
     """
     kind = picture_kind(out, ("mp4", "gif", "png", "svg"))
+    given = Given(alpha, eta, mu, voussoirs, weight)
     filmed = kind in {"mp4", "gif"} or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
-        asked_of = RenderOptions(view=view, slow=slow, at=at, height=height)
-        given = Given(alpha, eta, mu, voussoirs, weight)
-        film(out, recordings(scene, given, method, beside), asked_of)
-        return
-    from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
-
-    asked = question(scene, alpha, mu, voussoirs, weight)
-    ratio_given = asked.eta if eta is None else eta
-    with named_options():
-        if ratio_given is not None:
-            pictures = [picture_of_arch(asked.arch(ratio_given), asked.mu)]
-        else:
-            critical = least_thickness(asked.half_angle, asked.mu, asked.weight)
-            if critical.eta is None:
-                raise InputError("eta", MISSING, "given where no thickness stands")
-            arch = asked.half_angle, asked.mu, asked.weight
-            pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
-    save_picture(arch_figure(pictures), out, kind)
+        shown = RenderOptions(view=view, slow=slow, at=at, height=height)
+        film(out, recordings(scene, given, method, beside), shown)
+    else:
+        write_arch(out, kind, scene, given)
 
 
 @app.command(name="scenarios")

@@ -18,8 +18,8 @@ from blocksim.arch import require
 from blocksim.files import write_whole
 from blocksim.progress import Progress as Report
 from blocksim.report.answers import ratio
-from blocksim.validate import Row, numbered
-from blocksim.workprec import Point, front
+from blocksim.validate import Row, disagreements, numbered
+from blocksim.workprec import Point, on_front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -77,17 +77,26 @@ def validation_table(rows: list[Row]) -> Table:
     return table
 
 
+def validation_lines(rows: list[Row]) -> list[str]:
+    """Return how many rows agree, what does not, and where engines differ, in words."""
+    misses = [row for row in rows if row.miss]
+    right = f"{len(rows) - len(misses)} of {len(rows)}"
+    lines = [f"{right} agree with the exact answer in every respect"]
+    lines += [f"  {row.scenario}, {row.engine}: {row.miss} ({row.note})" for row in misses]
+    if len({row.engine for row in rows}) > 1:
+        apart = disagreements(rows)
+        lines.append(f"the engines disagree in {len(apart)} places")
+        lines += [f"  {each}" for each in apart]
+    return lines
+
+
 def chart_table(points: list[Point]) -> Table:
     """Lay out what was measured for the chart, one line a bracket."""
     table = Table(box=None, header_style="bold", pad_edge=False)
     for heading in ("arch", "method", "tol", "error", "s", "contact solves", ""):
         side = "left" if heading in {"arch", "method", ""} else "right"
         table.add_column(heading, justify=side, no_wrap=True)
-    best = {
-        point
-        for name in dict.fromkeys(point.case for point in points)
-        for point in front([p for p in points if p.case == name])
-    }
+    best = on_front(points)
     for point in points:
         error = f"{point.error:.1e}" if math.isfinite(point.error) else "none"
         table.add_row(
@@ -110,7 +119,7 @@ def _answer(row: Row | None) -> str:
     return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
 
 
-def picture_kind(out: Path, kinds: tuple[str, ...] = ("svg", "png")) -> str:
+def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
     """Return the kind of a picture, by the file's ending."""
     kind = out.suffix.removeprefix(".")
     *most, last = (f".{each}" for each in kinds)

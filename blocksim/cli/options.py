@@ -6,7 +6,6 @@ import math
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -36,7 +35,6 @@ Tilt = Annotated[
 PlaneLock = Annotated[
     bool, typer.Option("--plane-lock", help="Keep voussoirs in the plane by large inertias.")
 ]
-Picture = Annotated[Path, typer.Option("--out", help="Picture to write, .svg or .png.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 

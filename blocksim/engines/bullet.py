@@ -40,7 +40,7 @@ import numpy as np
 from blocksim.assembly import SUPPORT, Array, Assembly, Joint, displacement
 from blocksim.engines.base import Quality, Settings, World
 from blocksim.engines.boxes import OVERLAP, Box, Frame, plate
-from blocksim.engines.faces import faces_of, side, springings, stands_on
+from blocksim.engines.faces import faces_of, side
 
 
 @contextmanager
@@ -48,13 +48,14 @@ def _quiet() -> Generator[None]:
     """Keep what a C library writes to standard error from the terminal."""
     sys.stderr.flush()
     kept = os.dup(2)
-    with open(os.devnull, "wb") as nowhere:  # noqa: PTH123
-        os.dup2(nowhere.fileno(), 2)
-        try:
-            yield
-        finally:
-            os.dup2(kept, 2)
-            os.close(kept)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    os.close(nowhere)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
 
 
 with _quiet():  # It announces its build time.
@@ -136,8 +137,7 @@ class Bullet:
 
 def _pairs(assembly: Assembly) -> float:
     """Pairs of bodies, as many more as short joints count for."""
-    shortest = min(joint.length for joint in assembly.joints) / assembly.size
-    return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / shortest)
+    return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / assembly.shortest)
 
 
 class _Bodies:
@@ -149,10 +149,8 @@ class _Bodies:
         self._client = bullet.connect(bullet.DIRECT)
         # Bullet keeps at most a thousand spaces open.
         weakref.finalize(self, bullet.disconnect, self._client)
-        reach = assembly.reach.max() / assembly.size + max(
-            block.depth for block in assembly.blocks
-        ) / (2 * assembly.size)
-        shortest = min(joint.length for joint in assembly.joints) / assembly.size
+        reach = float(assembly.reach.max()) / assembly.size + float(assembly.depths.max()) / 2
+        self._breaking = min(MOST_BREAKING, BREAKING * assembly.shortest / reach)
         self._set(
             numSubSteps=0,
             contactSlop=OVERLAP,
@@ -161,19 +159,18 @@ class _Bodies:
             warmStartingFactor=1,
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
-            contactBreakingThreshold=min(MOST_BREAKING, BREAKING * shortest / reach),
         )
         self._friction = math.sqrt(min(mu, MOST_FRICTION))
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
         faces = faces_of(assembly)
         self._bodies = [self._block(index, faces[index]) for index in range(len(faces))]
         self._footings: list[int] = []
-        for joint in springings(assembly):
+        for joint in assembly.springings:
             footing = self._footing(joint)
             self._footings.append(footing)
             # A support touches only the block that stands on it.
             for index, body in enumerate(self._bodies):
-                if index != stands_on(joint):
+                if index != joint.bears:
                     bullet.setCollisionFilterPair(
                         footing, body, -1, -1, 0, physicsClientId=self._client
                     )
@@ -184,7 +181,12 @@ class _Bodies:
         )
 
     def _set(self, **parameters: float) -> None:
-        bullet.setPhysicsEngineParameter(**parameters, physicsClientId=self._client)
+        # All spaces share one breaking threshold: each sets its own before it steps.
+        bullet.setPhysicsEngineParameter(
+            **parameters,
+            contactBreakingThreshold=self._breaking,
+            physicsClientId=self._client,
+        )
 
     def _block(self, index: int, faces: list[Joint]) -> int:
         """Create a body that is a thin box on each of its block's faces."""
@@ -211,9 +213,9 @@ class _Bodies:
 
     def _footing(self, joint: Joint) -> int:
         """Create a slab under a springing, wider than the joint on all sides."""
-        block, size = self._assembly.blocks[stands_on(joint)], self._assembly.size
+        block, size = self._assembly.blocks[joint.bears], self._assembly.size
         length = joint.length / size
-        into = side(joint, stands_on(joint)) * joint.normal
+        into = side(joint, joint.bears) * joint.normal
         centre = (joint.inner + joint.outer) / 2 / size - into * (length - OVERLAP) / 2
         box = Box.along(joint, [1.5 * length, length / 2, block.depth / size], centre)
         shape = bullet.createCollisionShapeArray(

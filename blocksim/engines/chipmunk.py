@@ -26,7 +26,7 @@ import pymunk
 
 from blocksim.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
-from blocksim.engines.faces import crowding, faces_of, ledge, side, springings, stands_on
+from blocksim.engines.faces import crowding, faces_of, ledge, side
 
 INSET = 1e-6
 """Most a face is set back; no more than `INSET_SHARE` of the shortest joint."""
@@ -61,8 +61,7 @@ class Chipmunk:
         motion (measured), which asks for short steps. Sliding asks for many sweeps in a
         step: at equal work, long steps keep friction converged where short ones do not.
         """
-        shortest = min(joint.length for joint in assembly.joints) / assembly.size
-        step = LONGEST_STEP * min(1.0, math.sqrt(shortest / THICK))
+        step = LONGEST_STEP * min(1.0, math.sqrt(assembly.shortest / THICK))
         return Settings(
             step=step,
             sweeps=max(20, round(SWEEP_RATE * step)),
@@ -81,8 +80,7 @@ class _Space:
         self._settings = settings
         self._space = pymunk.Space()
         self._space.gravity = (0.0, -1.0)
-        shortest = min(joint.length for joint in assembly.joints) / assembly.size
-        self._inset = min(INSET, INSET_SHARE * shortest)
+        self._inset = min(INSET, INSET_SHARE * assembly.shortest)
         self._space.collision_slop = self._inset
         self._space.collision_persistence = 1
         self._friction = math.sqrt(min(mu, FRICTION_CAP))
@@ -97,14 +95,12 @@ class _Space:
             body.position = (float(centre[0]), float(centre[1]))
             outline = _outline(block.vertices, index, faces[index], assembly.size, self._inset)
             shape = self._shape(body, outline - centre)
-            bits = [
-                k for k, j in enumerate(springings(assembly)) if index in (j.before, j.after)
-            ]
+            bits = [k for k, joint in enumerate(assembly.springings) if index == joint.bears]
             shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
             self._space.add(body, shape)
             self._bodies.append(body)
             self._shapes.append(shape)
-        for k, joint in enumerate(springings(assembly)):
+        for k, joint in enumerate(assembly.springings):
             shape = self._shape(
                 self._space.static_body, _footing(joint, assembly.size, self._inset)
             )
@@ -191,7 +187,7 @@ def _on_a_face(vertex: Array, faces: list[Joint]) -> bool:
 
 def _footing(joint: Joint, size: float, inset: float) -> Array:
     """Return a slab under a springing, wider than the joint by its length on both sides."""
-    into = side(joint, stands_on(joint)) * joint.normal
+    into = side(joint, joint.bears) * joint.normal
     span = joint.tangent * joint.length / size
     ends = np.array([joint.inner / size - span, joint.outer / size + span]) - into * inset
     return np.concatenate([ends, ends[::-1] - into * joint.length / size])

@@ -24,16 +24,6 @@ def faces_of(assembly: Assembly) -> list[list[Joint]]:
     return faces
 
 
-def springings(assembly: Assembly) -> list[Joint]:
-    """Return the joints with the support."""
-    return [joint for joint in assembly.joints if SUPPORT in (joint.before, joint.after)]
-
-
-def stands_on(joint: Joint) -> int:
-    """Return the index of the block that stands on a springing."""
-    return joint.before if joint.after == SUPPORT else joint.after
-
-
 def side(joint: Joint, index: int) -> float:
     """Sign of the direction from the joint into the block."""
     return 1.0 if joint.after == index else -1.0

@@ -9,10 +9,10 @@ import math
 import platform
 from collections.abc import Sequence
 from dataclasses import asdict, replace
-from functools import partial
 from importlib.metadata import version
+from operator import methodcaller
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING
 
 import blocksim
 from blocksim.files import make_folder, write_whole
@@ -71,35 +71,41 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
         "rows": records,
         "disagreements": disagreements(rows),
     }
-    text = json.dumps(document, indent=1, allow_nan=False) + "\n"
     sheet = io.StringIO()
     writer = csv.DictWriter(sheet, fieldnames=list(records[0]), lineterminator="\n")
     writer.writeheader()
     for record in records:
         writer.writerow(record)
     figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
-    drawn = {kind: _drawn(figure, kind) for kind in ("png", "svg")}
-    page = report_page(rows, drawn["svg"], machine())
+    drawn = pictures("map", figure)
     contents = {
-        "report.html": page.encode(),
-        "validate.json": text.encode(),
+        "report.html": report_page(rows, drawn["map.svg"], machine()).encode(),
+        "validate.json": as_json(document),
         "validate.csv": sheet.getvalue().encode(),
-        "map.png": drawn["png"],
-        "map.svg": drawn["svg"],
     }
+    return write_contents(folder, {**contents, **drawn})
+
+
+def as_json(document: object) -> bytes:
+    """Return a JSON document as the content of a file."""
+    return f"{json.dumps(document, indent=1, allow_nan=False)}\n".encode()
+
+
+def pictures(name: str, figure: Figure) -> dict[str, bytes]:
+    """Return a figure as the contents of a .png and an .svg file of that name."""
+    drawn: dict[str, bytes] = {}
+    for kind in ("png", "svg"):
+        file = io.BytesIO()
+        save_figure(figure, file, kind)
+        drawn[f"{name}.{kind}"] = file.getvalue()
+    return drawn
+
+
+def write_contents(folder: Path, contents: dict[str, bytes]) -> list[Path]:
+    """Write files, by name, into a folder that is there."""
     for name, content in contents.items():
-        write_whole(folder / name, partial(_write, content=content))
+        write_whole(folder / name, methodcaller("write", content))
     return [folder / name for name in contents]
-
-
-def _drawn(figure: Figure, kind: str) -> bytes:
-    file = io.BytesIO()
-    save_figure(figure, file, kind)
-    return file.getvalue()
-
-
-def _write(file: BinaryIO, content: bytes) -> None:
-    file.write(content)
 
 
 def _points(rows: Sequence[Row]) -> list[MapPoint]:

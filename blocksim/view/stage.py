@@ -77,17 +77,16 @@ class Stage:
         self.recording = recording
         self.assembly = recording.arch.assembly()
         size = self.assembly.size
-        self.depth = max(block.depth for block in self.assembly.blocks) / size
+        self.depth = float(self.assembly.depths.max())
         outlines = [(block.vertices - block.centre) / size for block in self.assembly.blocks]
         sides = max(FEWEST, *(len(outline) for outline in outlines))
         # A triangle (eta = 2) repeats a corner, so that all blocks are one array.
         self._outlines = np.array(
             [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for each in outlines]
         )
-        springings = [j for j in self.assembly.joints if SUPPORT in (j.before, j.after)]
         self.ground = ground_level(self.assembly) / size
         self.footings = tuple(pier / size for pier in piers(self.assembly))
-        self._bearing = [max(joint.before, joint.after) for joint in springings]
+        self._bearing = [joint.bears for joint in self.assembly.springings]
         self.grain = float(np.hypot(*np.diff(self.assembly.centres, axis=0).T).min()) / size
         self._turns = _quaternions(recording)
 

@@ -1,0 +1,71 @@
+"""What the studies of random arches share: the arches drawn, and their places in a figure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from blocksim import Mode
+from blocksim.arch import Weight
+from blocksim.limit import least_thickness
+from blocksim.theory.map import divide_friction
+from blocksim.view.style import MODES
+
+
+@dataclass(frozen=True)
+class Draw:
+    """An arch to be asked about: half-angle [rad], friction, voussoirs, weight, exact eta."""
+
+    half_angle: float
+    mu: float
+    voussoirs: int
+    weight: Weight
+    eta: float
+    mode: Mode
+
+
+def draws(
+    seed: int, degrees: tuple[float, float], counts: tuple[int, int], near: float
+) -> Iterator[Draw]:
+    """Draw arches that some thickness lets stand, without end.
+
+    Half-angles and numbers of voussoirs are between the two given; `near` is the share of
+    arches with little more friction than the divide: that is where the mixed modes are.
+    """
+    random = np.random.default_rng(seed)
+    while True:
+        half_angle = math.radians(random.uniform(*degrees))
+        mu = math.exp(random.uniform(math.log(0.35), math.log(3)))
+        if random.random() < near:
+            mu = max(0.35, divide_friction(half_angle) * random.uniform(1.0, 1.15))
+        voussoirs = int(random.integers(*counts, endpoint=True))
+        weight: Weight = "sector" if random.random() < 0.5 else "centreline"
+        state = least_thickness(half_angle, mu, voussoirs, weight)
+        if mu <= 3 and state.eta is not None and state.mode is not None:
+            yield Draw(half_angle, mu, voussoirs, weight, state.eta, state.mode)
+
+
+def plot_by_mode(axes: Axes, drawn: Sequence[Draw], heights: Sequence[float]) -> None:
+    """Mark one height for each arch over its half-angle, by mode and weight."""
+    for mode in Mode:
+        style = MODES[mode]
+        for weight, face in (("centreline", style.colour), ("sector", "white")):
+            points = [
+                (math.degrees(draw.half_angle), height)
+                for draw, height in zip(drawn, heights, strict=True)
+                if (draw.mode, draw.weight) == (mode, weight)
+            ]
+            if points:
+                axes.plot(
+                    *zip(*points, strict=True),
+                    style.marker,
+                    mfc=face,
+                    mec=style.colour,
+                    label=f"{mode.value}, {weight}",
+                )
+    axes.set_xlabel("half-angle of embrace [deg]")
+    axes.legend(frameon=False, fontsize=7.5, ncols=4, loc="upper left")
