@@ -12,7 +12,8 @@ from blocksim.arch import Arch, Weight, is_number, require, require_friction
 from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
-from blocksim.trial import Held, conclude, hold
+from blocksim.reduction import Reduction
+from blocksim.trial import Held, conclude, hold, reduced_words
 from blocksim.verdict import Verdict
 
 ETA_MAX = 2.0
@@ -49,6 +50,9 @@ class Bracket:
         Whether moving runs at both ends agree; None where there were none.
     runs, undecided : int
         Arches tried, and those without an answer.
+    blocks, splits : int or None
+        Most blocks simulated of any arch, and how many joints in all `reduce` merged and
+        had to split again; None for static methods.
     reason : str
         What the answer rests on.
     wall_s : float
@@ -73,6 +77,8 @@ class Bracket:
     confirmed: bool | None = None
     runs: int = 0
     undecided: int = 0
+    blocks: int | None = None
+    splits: int | None = None
     reason: str = ""
     wall_s: float = 0.0
 
@@ -93,6 +99,7 @@ def bracket(
     method: str = "auto",
     tol: float = 0.005,
     confirm: bool = True,
+    reduce: bool = False,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
@@ -114,6 +121,8 @@ def bracket(
         Relative width at which to end, above 0 and at most 0.5.
     confirm : bool
         Let the arch go at both ends; without, an engine answers by the onset test alone.
+    reduce : bool
+        Simulate no more blocks than it takes (`blocksim.reduction`).
     progress : Progress, optional
 
     Returns
@@ -131,7 +140,7 @@ def bracket(
     require_friction(mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    rung = choose(method, tol)
+    rung = choose(method, tol, reduce=reduce)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
     answer = Bracket(
@@ -172,7 +181,9 @@ def bracket(
             reason="static limit analysis of the voussoirs as built",
         )
     else:
-        answer = _by_simulation(arch, answer, continuous.eta, progress, confirm=confirm)
+        answer = _by_simulation(
+            arch, answer, continuous.eta, progress, confirm=confirm, reduce=reduce
+        )
     return replace(answer, wall_s=time.perf_counter() - started)
 
 
@@ -181,13 +192,30 @@ def _inner(angles: tuple[float, ...]) -> float | None:
 
 
 def _by_simulation(
-    arch: Arch, answer: Bracket, guess: float | None, progress: Progress, *, confirm: bool
+    arch: Arch,
+    answer: Bracket,
+    guess: float | None,
+    progress: Progress,
+    *,
+    confirm: bool,
+    reduce: bool,
 ) -> Bracket:
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     ends: dict[Verdict, Held] = {}
+    reduction: Reduction | None = None
+    blocks = splits = 0
 
     def judge(eta: float) -> Verdict:
-        held = hold(replace(arch, eta=eta), answer.mu, answer.method)
+        nonlocal reduction, blocks, splits
+        built = replace(arch, eta=eta)
+        if reduction:
+            # What moves at one thickness is the best guess for the next.
+            reduction = reduction.at(built)
+        elif reduce:
+            reduction = Reduction.of(built, answer.mu)
+        held = hold(built, answer.mu, answer.method, reduction=reduction)
+        reduction = held.setup.reduction
+        blocks, splits = max(blocks, held.setup.blocks), splits + held.splits
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = held
         return held.onset.verdict
@@ -208,6 +236,9 @@ def _by_simulation(
             mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}
+    reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"
+    if reduction:
+        reason += f"; {reduced_words(blocks, arch.voussoirs, splits)}"
     return replace(
         answer,
         eta_low=search.low,
@@ -216,7 +247,9 @@ def _by_simulation(
         confirmed=confirmed,
         runs=search.runs,
         undecided=search.undecided,
-        reason=f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs",
+        blocks=blocks,
+        splits=splits,
+        reason=reason,
     )
 
 

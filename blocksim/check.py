@@ -39,6 +39,9 @@ class Check:
         Time simulated [sqrt(r/g)]; None for static methods.
     state_hash : str or None
         Fingerprint of the recorded motion.
+    blocks, splits : int or None
+        Blocks simulated, and joints that `reduce` merged and had to split again; None
+        for static methods.
     wall_s : float
         Seconds it took.
     """
@@ -54,6 +57,8 @@ class Check:
     joints: tuple[ObservedJoint, ...]
     simulated: float | None
     state_hash: str | None
+    blocks: int | None
+    splits: int | None
     wall_s: float
 
 
@@ -64,6 +69,7 @@ def check(
     method: str = "auto",
     tilt: float = 0.0,
     plane_lock: bool = False,
+    reduce: bool = False,
     progress: Progress = silent,
 ) -> Check:
     """Tell whether an arch stands under its own weight.
@@ -80,6 +86,8 @@ def check(
         are those without it.
     plane_lock : bool
         Keep the voussoirs in the plane by large inertias out of it (pybullet).
+    reduce : bool
+        Simulate no more blocks than it takes (`blocksim.reduction`).
     progress : Progress, optional
 
     Returns
@@ -96,11 +104,11 @@ def check(
     started = time.perf_counter()
     require_friction(mu)
     require_tilt(tilt, plane_lock=plane_lock)
-    rung = choose(method, spatial=tilt != 0 or plane_lock)
+    rung = choose(method, spatial=tilt != 0 or plane_lock, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
     closed = closed_joints(arch)
-    simulated = state_hash = None
+    simulated = state_hash = blocks = splits = None
     if rung.name == "theory":
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
         mode = continuous.mode if verdict is Verdict.COLLAPSES else None
@@ -111,10 +119,19 @@ def check(
         mode = built.mode if falls else None
         joints = _limit_joints(arch, built) if falls else closed
     else:
-        seen = trial(arch, mu, rung.name, tilt=tilt, plane_lock=plane_lock, progress=progress)
+        seen = trial(
+            arch,
+            mu,
+            rung.name,
+            tilt=tilt,
+            plane_lock=plane_lock,
+            reduce=reduce,
+            progress=progress,
+        )
         verdict, reason, mode, joints = seen.verdict, seen.reason, seen.mode, seen.joints
         simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
         state_hash = seen.motion.recording.state_hash if seen.motion else None
+        blocks, splits = seen.blocks, seen.splits
     return Check(
         method=rung.name,
         verdict=verdict,
@@ -127,6 +144,8 @@ def check(
         joints=joints,
         simulated=simulated,
         state_hash=state_hash,
+        blocks=blocks,
+        splits=splits,
         wall_s=time.perf_counter() - started,
     )
 

@@ -73,7 +73,9 @@ METHODS = {
 CHOICES = ("auto", *METHODS)
 
 
-def choose(method: str, tol: float = 0.0, *, spatial: bool = False) -> Method:
+def choose(
+    method: str, tol: float = 0.0, *, spatial: bool = False, reduce: bool = False
+) -> Method:
     """Return the method asked for; for `auto` the cheapest that is exact, `limit`.
 
     Parameters
@@ -85,12 +87,14 @@ def choose(method: str, tol: float = 0.0, *, spatial: bool = False) -> Method:
     spatial : bool
         Whether the question is of motion out of the plane: `auto` is then the method
         that sees it.
+    reduce : bool
+        Whether no more blocks are to be simulated than it takes.
 
     Raises
     ------
     InputError
         If there is no such method, or it cannot answer to that tolerance, or does not
-        see out of the plane where that is asked.
+        see out of the plane where that is asked; if there is nothing to reduce.
     """
     if method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
@@ -98,6 +102,8 @@ def choose(method: str, tol: float = 0.0, *, spatial: bool = False) -> Method:
     rung = METHODS[(SPATIAL if spatial else "limit") if method == "auto" else method]
     if spatial and not rung.is_spatial:
         raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
+    if reduce and (rung.is_static or spatial):
+        raise InputError("reduce", reduce, "left out but for an engine, in the plane")
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     return rung

@@ -2,8 +2,8 @@
 
 An arch and its weight are symmetric, and so can be what it does at its onset: half of it
 leans on its plane of symmetry, without friction. A joint at the crown lies in that plane
-and opens half as far. A keystone is cut by the plane and cannot turn: its cut face is made
-so long that the contacts at its ends hold it.
+and opens half as far. A keystone is cut by the plane, along which it slides without turning:
+its half has an inertia that nothing turns, and must be pressed against the plane.
 
 Voussoirs between two joints that neither open nor slip move as one block, whose mass, centre
 and inertia are the sums of theirs. Which joints may move is a guess, which limit analysis
@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,7 @@ from blocksim.engines.base import Quality, World
 from blocksim.limit import weakest_joints
 
 UNTURNED = 1e18
-"""Factor on the inertia of what holds a keystone."""
+"""Factor on the inertia of half a keystone."""
 MIRROR = np.array([-1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
 """Factors on a motion that make it the mirror image's, columns as poses."""
 
@@ -59,6 +60,10 @@ class Reduction:
             expected.add(middle)
         return cls(arch.assembly(), tuple(sorted({0, *expected})))
 
+    def at(self, arch: Arch) -> Reduction:
+        """Keep the same joints of an arch that differs in thickness only."""
+        return replace(self, whole=arch.assembly())
+
     def split(self, joints: tuple[int, ...]) -> Reduction:
         """Keep more joints."""
         return replace(self, kept=tuple(sorted({*self.kept, *joints})))
@@ -73,23 +78,28 @@ class Reduction:
     def assembly(self) -> Assembly:
         """The blocks that are simulated; their last joint is the plane of symmetry."""
         joints = [self.whole.joints[k] for k in self.kept]
-        if len(self.whole.blocks) % 2:
-            joints.append(_cut(self.whole.joints[(len(self.whole.blocks) - 1) // 2]))
+        if self._keystone:
+            joints.append(_cut(self.whole.joints[len(self.whole.blocks) // 2]))
         joints = [
             replace(joint, before=index - 1, after=index) for index, joint in enumerate(joints)
         ]
         joints[-1] = replace(joints[-1], after=SUPPORT, smooth=True)
+        ends = pairwise([*self.kept, len(self._shares)] if self._keystone else self.kept)
         blocks = [
-            self._merge(np.flatnonzero(self._owner == index), joint, following)
-            for index, (joint, following) in enumerate(zip(joints, joints[1:], strict=False))
+            self._merge(slice(*voussoirs), *faces)
+            for voussoirs, faces in zip(ends, pairwise(joints), strict=True)
         ]
         return Assembly(tuple(blocks), tuple(joints), self.whole.size)
 
     @cached_property
     def _shares(self) -> Array:
         """How much of each voussoir of the left half lies in it: half of a keystone."""
-        count = len(self.whole.blocks)
-        return np.array([1.0] * (count // 2) + [0.5] * (count % 2))
+        whole = np.ones(len(self.whole.blocks) // 2)
+        return np.append(whole, 0.5) if self._keystone else whole
+
+    @property
+    def _keystone(self) -> bool:
+        return len(self.whole.blocks) % 2 == 1
 
     @cached_property
     def _owner(self) -> NDArray[np.int64]:
@@ -103,15 +113,16 @@ class Reduction:
         part = slice(len(self._shares))
         return (self.whole.centres[part] - self.assembly.centres[self._owner]) / self.whole.size
 
-    def _merge(self, voussoirs: NDArray[np.int64], joint: Joint, following: Joint) -> Block:
+    def _merge(self, voussoirs: slice, joint: Joint, following: Joint) -> Block:
         """One block between two joints; the engines only look at its faces."""
-        blocks = [self.whole.blocks[k] for k in voussoirs]
+        blocks = self.whole.blocks[voussoirs]
         shares = self._shares[voussoirs]
-        mass = shares * [block.mass for block in blocks]
+        mass = shares * np.array([block.mass for block in blocks])
         centres = np.array([block.centre for block in blocks])
         centre = mass @ centres / mass.sum()
-        inertia = shares @ [block.inertia for block in blocks]
-        inertia *= UNTURNED if shares[-1] < 1 else 1.0
+        inertia = shares @ np.array([block.inertia for block in blocks])
+        if shares[-1] < 1:
+            inertia *= UNTURNED
         corners = [joint.inner, following.inner, following.outer, joint.outer]
         if np.array_equal(joint.inner, following.inner):
             corners = corners[1:]
@@ -126,33 +137,32 @@ class Reduction:
     def poses(self, poses: Array) -> Array:
         """Return the poses of all voussoirs from those of the blocks."""
         moved = poses[self._owner]
-        moved[:, :2] += self._carried(moved)[:, :2]
-        if moved.shape[1] > PLANAR:
-            moved[:, PLANAR] += self._carried(moved)[:, 2]
+        spatial = moved.shape[1] > PLANAR
+        turns, offsets = np.zeros((2, len(moved), 3))
+        turns[:, 2] = moved[:, 2]
+        if spatial:
+            turns[:, :2] = moved[:, 4:]
+        offsets[:, :2] = self._offsets
+        carried = Rotation.from_rotvec(turns).apply(offsets)
+        moved[:, :2] += carried[:, :2]
+        if spatial:
+            moved[:, 3] += carried[:, 2]
         return self._mirrored(moved)
 
     def rates(self, rates: Array) -> Array:
-        """Return velocities or accelerations, at rest, of all voussoirs likewise."""
+        """Return the velocities or accelerations at rest of all voussoirs likewise."""
         moved = rates[self._owner]
         x, y = self._offsets.T
         moved[:, 0] -= moved[:, 2] * y
         moved[:, 1] += moved[:, 2] * x
         if moved.shape[1] > PLANAR:
-            moved[:, PLANAR] += moved[:, 4] * y - moved[:, 5] * x
+            moved[:, 3] += moved[:, 4] * y - moved[:, 5] * x
         return self._mirrored(moved)
-
-    def _carried(self, moved: Array) -> Array:
-        """Offsets as the voussoirs' rotations turn them, (half, 3)."""
-        rotations = np.zeros((len(moved), 3))
-        rotations[:, 2] = moved[:, 2]
-        rotations[:, :2] = moved[:, PLANAR + 1 :] if moved.shape[1] > PLANAR else 0.0
-        offsets = np.column_stack([self._offsets, np.zeros(len(moved))])
-        return Rotation.from_rotvec(rotations).apply(offsets)
 
     def _mirrored(self, left: Array) -> Array:
         """Add the right half; a keystone is both its halves' mean."""
         right = left[::-1] * MIRROR[: left.shape[1]]
-        if len(self.whole.blocks) % 2 == 0:
+        if not self._keystone:
             return np.concatenate([left, right])
         middle = (left[-1:] + right[:1]) / 2
         return np.concatenate([left[:-1], middle, right[1:]])
@@ -176,15 +186,16 @@ class Reduction:
         rates = _about(total, blocks.centres / size) / blocks.masses
         rates[:, 1] -= 1.0
         half = len(self._shares)
-        ratio = blocks.blocks[0].mass / blocks.masses[0, 0] / self.whole.blocks[0].mass
-        rates = self.rates(rates)[:half] + [0.0, 1.0, 0.0]
+        # What it takes to accelerate each voussoir so, and to bear its weight.
+        rates = self.rates(rates)[:half]
+        rates[:, 1] += 1.0
         taken = self.whole.masses[:half] * self._shares[:, None] * rates
         taken = _about(taken, -self.whole.centres[:half] / size)
-        found = resultants[0] * ratio - np.vstack([np.zeros(3), np.cumsum(taken, axis=0)])
-        left = found[: (len(self.whole.blocks) + 1) // 2]
-        right = left[::-1] * [1.0, -1.0, 1.0]
-        crown = found[half : half + 1 - len(self.whole.blocks) % 2]
-        return np.concatenate([left, crown, right])
+        springing = resultants[0] * _mean_mass(blocks) / _mean_mass(self.whole)
+        found = springing - np.vstack([np.zeros(3), np.cumsum(taken, axis=0)])
+        left, crown = found[:half], found[half:]
+        right = left[::-1] * np.array([1.0, -1.0, 1.0])
+        return np.concatenate([left, right] if self._keystone else [left, crown, right])
 
     def overstrained(self, resultants: Array, mu: float, allowed: float) -> tuple[int, ...]:
         """Return merged joints that would open or slip, the worst of those side by side.
@@ -206,11 +217,13 @@ class Reduction:
         excess = np.maximum(tipping - pressure, np.abs(shear) - mu * pressure)
         moves = np.flatnonzero(excess > allowed)
         groups = np.split(moves, np.flatnonzero(np.diff(merged[moves]) > 1) + 1)
-        return tuple(int(merged[group[excess[group].argmax()]]) for group in groups if len(group))
+        return tuple(
+            int(merged[group[excess[group].argmax()]]) for group in groups if len(group)
+        )
 
-    def holds_keystone(self, resultants: Array) -> bool:
-        """Tell whether a keystone, if there is one, is pressed against the plane."""
-        return bool(len(self.whole.blocks) % 2 == 0 or resultants[-1, 0] > 0)
+    def parts(self, resultants: Array) -> bool:
+        """Tell whether a keystone, if there is one, is not pressed against the plane."""
+        return self._keystone and bool(resultants[len(self.whole.blocks) // 2, 0] <= 0)
 
 
 class ReducedWorld:
@@ -252,6 +265,11 @@ def _about(forces: Array, points: Array) -> Array:
     turned = forces.copy()
     turned[:, 2] -= points[:, 0] * forces[:, 1] - points[:, 1] * forces[:, 0]
     return turned
+
+
+def _mean_mass(assembly: Assembly) -> float:
+    """Return the unit of forces, whose weight is 1 in the world of an assembly."""
+    return float(np.mean([block.mass for block in assembly.blocks]))
 
 
 def _cut(joint: Joint) -> Joint:

@@ -52,20 +52,26 @@ class Setup:
         Tilt [rad] and plane lock as in `Settings`, for engines in three dimensions.
         """
         library = get_engine(engine)
-        settings = replace(library.settings(arch.assembly()), tilt=tilt, plane_lock=plane_lock)
+        whole = reduction.whole if reduction else arch.assembly()
+        settings = replace(library.settings(whole), tilt=tilt, plane_lock=plane_lock)
         return cls(arch=arch, mu=mu, engine=library, settings=settings, reduction=reduction)
 
     @cached_property
     def assembly(self) -> Assembly:
         """The arch's blocks and joints."""
-        return self.arch.assembly()
+        return self.reduction.whole if self.reduction else self.arch.assembly()
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks the engine is given."""
+        return len((self.reduction or self).assembly.blocks)
 
     def world(self) -> World:
         """Blocks in the engine, at rest."""
-        if self.reduction:
-            world = self.engine.build(self.reduction.assembly, self.mu, self.settings)
-            return ReducedWorld(world, self.reduction)
-        return self.engine.build(self.assembly, self.mu, self.settings)
+        if self.reduction is None:
+            return self.engine.build(self.assembly, self.mu, self.settings)
+        world = self.engine.build(self.reduction.assembly, self.mu, self.settings)
+        return ReducedWorld(world, self.reduction)
 
     def finer(self, factor: int) -> Setup:
         """Return the same with `factor` times the sweeps in each step of a moving run."""

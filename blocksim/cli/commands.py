@@ -42,6 +42,7 @@ from blocksim.cli.options import (
     MethodOption,
     Mu,
     PlaneLock,
+    Reduce,
     Scene,
     Tilt,
     Voussoirs,
@@ -91,6 +92,7 @@ def check(
     method: MethodOption = "auto",
     tilt: Tilt = None,
     plane_lock: PlaneLock = False,
+    reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
     """Tell whether an arch stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -103,6 +105,7 @@ def check(
             method=method,
             tilt=asked.tilt,
             plane_lock=plane_lock,
+            reduce=reduce,
             progress=report,
         )
     answer_with(check_record(answer), check_lines(answer), as_json=as_json)
@@ -118,6 +121,7 @@ def bracket(
     weight: WeightOption = None,
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
+    reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
     """Find how thin the arch can be."""
@@ -130,6 +134,7 @@ def bracket(
             weight=asked.weight,
             method=method,
             tol=tol,
+            reduce=reduce,
             progress=report,
         )
     answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)

@@ -35,6 +35,10 @@ Tilt = Annotated[
 PlaneLock = Annotated[
     bool, typer.Option("--plane-lock", help="Keep voussoirs in the plane by large inertias.")
 ]
+Reduce = Annotated[
+    bool,
+    typer.Option("--reduce", help="Simulate half the arch, in no more blocks than it takes."),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 
@@ -97,7 +101,7 @@ def arch_of(asked: Scenario, eta: float | None) -> Arch:
         return asked.arch(ratio_given)
 
 
-OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "plane_lock"}
+OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "plane_lock", "reduce"}
 """Fields that are options, too."""
 
 

@@ -145,7 +145,7 @@ class _Bodies:
 
     def __init__(self, assembly: Assembly, mu: float, settings: Settings, frame: Frame) -> None:
         self._assembly, self._settings, self._frame = assembly, settings, frame
-        self._pairs = _pairs(assembly)
+        self._pairs = settings.sweeps / SWEEPS
         self._client = bullet.connect(bullet.DIRECT)
         # Bullet keeps at most a thousand spaces open.
         weakref.finalize(self, bullet.disconnect, self._client)

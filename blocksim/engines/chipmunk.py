@@ -106,7 +106,8 @@ class _Space:
             )
             # A support touches only the block that stands on it.
             shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
-            shape.friction *= not joint.smooth
+            if joint.smooth:
+                shape.friction = 0.0
             self._space.add(shape)
             self._shapes.append(shape)
         # Footings come after the blocks, in the order of their joints.

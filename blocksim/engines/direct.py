@@ -88,7 +88,7 @@ class Blocks:
         self._neighbours = Neighbours(assembly)
         self._keys = self._neighbours.keys
         self._problem = self._new_problem()
-        self._joints = assembly.joint_arrays
+        self._joints = len(assembly.joints)
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
         self._velocities = np.zeros_like(self._poses)
         self._gravity = np.zeros_like(self._poses)
@@ -136,17 +136,17 @@ class Blocks:
 
     def resultants(self) -> Array:
         """Return what joints carry; 0 where they have come apart."""
-        joints = self._joints
-        found = np.zeros((len(joints.before), 3))
+        found = np.zeros((self._joints, 3))
         if self._solution is None:
             return found
-        held = np.flatnonzero(self._keys < len(found))
-        pulls = np.einsum("jk,jkd->jd", self._solution.forces[held], self._rows[held])
+        held = np.flatnonzero(self._keys < self._joints)
+        pulls = np.matmul(self._solution.forces[held, None], self._rows[held])[:, 0]
         # What acts on one block acts on the other the opposite way.
-        grounded = self._pairs[held, 1] == SUPPORT
-        force = np.where(grounded[:, None], -pulls[:, :3], pulls[:, 3:])
-        centre = self._looked[np.where(grounded, *self._pairs[held].T), :2]
-        force[:, 2] += centre[:, 0] * force[:, 1] - centre[:, 1] * force[:, 0]
+        before, after = self._pairs[held].T
+        last = after == SUPPORT
+        force: Array = np.where(last[:, None], -pulls[:, :3], pulls[:, 3:])
+        x, y, _ = self._looked[np.where(last, before, after)].T
+        force[:, 2] += x * force[:, 1] - y * force[:, 0]
         found[self._keys[held]] = force
         return found
 

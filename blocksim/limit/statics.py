@@ -184,9 +184,7 @@ def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
     return tuple(sorted(places - {-1}))
 
 
-def _least_share(
-    arch: Arch, mu: float, precision: float
-) -> tuple[float, tuple[Bound, Bound]]:
+def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[Bound, Bound]]:
     """Return the least share of thickness and friction with which an arch stands."""
     angles = half_joints(arch.half_angle, arch.voussoirs)
 
