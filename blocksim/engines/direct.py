@@ -140,12 +140,12 @@ class Blocks:
         if self._solution is None:
             return found
         held = np.flatnonzero(self._keys < self._joints)
-        pulls = np.matmul(self._solution.forces[held, None], self._rows[held])[:, 0]
+        pulls: Array = np.matmul(self._solution.forces[held, None], self._rows[held])[:, 0]
         # What acts on one block acts on the other the opposite way.
         before, after = self._pairs[held].T
-        last = after == SUPPORT
-        force: Array = np.where(last[:, None], -pulls[:, :3], pulls[:, 3:])
-        x, y, _ = self._looked[np.where(last, before, after)].T
+        last = (after == SUPPORT)[:, None]
+        force: Array = np.where(last, -pulls[:, :3], pulls[:, 3:])
+        x, y, _ = self._looked[np.where(last[:, 0], before, after)].T
         force[:, 2] += x * force[:, 1] - y * force[:, 0]
         found[self._keys[held]] = force
         return found
