@@ -52,7 +52,7 @@ class Direct:
         """Version of the linear algebra, the only library in it."""
         return version("scipy")
 
-    def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002 - protocol
+    def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002 - the protocol's
         """Return the same settings for every assembly."""
         return Settings(
             step=STEP,
@@ -96,7 +96,7 @@ class Blocks:
         self._solution: Solution | None = None
         self._residual = self._penetration = 0.0
 
-    def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - protocol
+    def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
         """Solve the contacts of a step from rest; the blocks stay."""
         self._looked = self._poses
         touch = self._touch(self._poses, self._step)
