@@ -12,6 +12,10 @@ carry: between them Newton's law gives the resultant at every other joint. Where
 within the joint and its friction, the same forces and accelerations solve the contact
 problem of all voussoirs. Where it does not, that joint is one that moves, and the question
 is asked again. So no answer rests on the guess.
+
+Joints are looked at while the arch is held; let go, what is merged stays merged, for the
+hundredths of a radius a verdict takes. Where joints slide, Coulomb's law can have several
+solutions, of which all voussoirs may take one that is not symmetric.
 """
 
 from __future__ import annotations
