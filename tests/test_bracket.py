@@ -18,6 +18,7 @@ from blocksim.arch import Arch
 from blocksim.bracket import ETA_MAX, Search, bracket
 from blocksim.errors import InputError
 from blocksim.modes import Mode
+from blocksim.reduction import Reduction
 from blocksim.trial import Held, hold
 from blocksim.verdict import Verdict
 
@@ -137,9 +138,9 @@ def test_where_nothing_stands(method: str) -> None:
 def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     held: list[float] = []
 
-    def counted(arch: Arch, mu: float, engine: str) -> Held:
+    def counted(arch: Arch, mu: float, engine: str, *, reduction: Reduction | None) -> Held:
         held.append(arch.eta)
-        return hold(arch, mu, engine)
+        return hold(arch, mu, engine, reduction=reduction)
 
     monkeypatch.setattr(sys.modules["blocksim.bracket"], "hold", counted)
     asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}
