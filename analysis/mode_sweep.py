@@ -51,10 +51,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from blocksim.assembly import Array
-from blocksim.search import ETA_MAX
 from blocksim.limit import least_thickness
 from blocksim.limit.bulk import which_stand
 from blocksim.modes import Mode
+from blocksim.search import ETA_MAX
 from blocksim.sweep import Case, read_rows, sweep
 from blocksim.sweep.answers import version_of
 from blocksim.theory.arrays import least_thicknesses

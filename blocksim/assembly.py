@@ -73,12 +73,15 @@ class Joint:
     inner, outer : (2,) float
         Its two ends [m]: intrados and extrados for an arch. Seen along the
         direction from `before` to `after`, `inner` lies to the right.
+    smooth : bool
+        Without friction, on the ground: a plane of symmetry.
     """
 
     before: int
     after: int
     inner: Array
     outer: Array
+    smooth: bool = False
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -118,6 +121,7 @@ class JointArrays(NamedTuple):
         Inner and outer end.
     normal, tangent : (joints, 2) float
     length : (joints,) float
+    smooth : (joints,) bool
     """
 
     before: NDArray[np.int64]
@@ -126,6 +130,7 @@ class JointArrays(NamedTuple):
     normal: Array
     tangent: Array
     length: Array
+    smooth: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,6 +202,7 @@ class Assembly:
             normal=_frozen([joint.normal for joint in self.joints], (-1, 2)),
             tangent=_frozen([joint.tangent for joint in self.joints], (-1, 2)),
             length=_frozen([joint.length for joint in self.joints], (-1,)) / self.size,
+            smooth=np.array([joint.smooth for joint in self.joints]),
         )
 
     @cached_property

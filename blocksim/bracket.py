@@ -12,9 +12,10 @@ from blocksim.arch import Arch, Weight, is_number, require, require_friction
 from blocksim.ladder import choose
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
+from blocksim.reduction import Reduction
 from blocksim.search import ETA_MAX, Answer, Search
 from blocksim.setup import BY_RULE, Overrides, given_words
-from blocksim.trial import Held, conclude, hold
+from blocksim.trial import Held, conclude, hold, reduced_words
 from blocksim.verdict import Verdict
 
 
@@ -45,6 +46,9 @@ class Bracket:
         Whether moving runs at both ends agree; None where there were none.
     runs, undecided : int
         Arches tried, and those without an answer.
+    blocks, splits : int or None
+        Most blocks simulated of any arch, and how many joints in all `reduce` merged and
+        had to split again; None for static methods.
     reason : str
         What the answer rests on.
     wall_s : float
@@ -69,6 +73,8 @@ class Bracket:
     confirmed: bool | None = None
     runs: int = 0
     undecided: int = 0
+    blocks: int | None = None
+    splits: int | None = None
     reason: str = ""
     wall_s: float = 0.0
 
@@ -90,6 +96,7 @@ def bracket(
     tol: float = 0.005,
     confirm: bool = True,
     settings: Overrides = BY_RULE,
+    reduce: bool = False,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
@@ -113,6 +120,8 @@ def bracket(
         Let the arch go at both ends; without, an engine answers by the onset test alone.
     settings : mapping of str to float
         Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
+    reduce : bool
+        Simulate no more blocks than it takes (`blocksim.reduction`).
     progress : Progress, optional
 
     Returns
@@ -130,7 +139,7 @@ def bracket(
     require_friction(mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    rung = choose(method, tol, settings=settings)
+    rung = choose(method, tol, settings=settings, reduce=reduce)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
     answer = Bracket(
@@ -172,7 +181,9 @@ def bracket(
         )
     else:
         held = partial(hold, mu=mu, engine=rung.name, settings=settings)
-        answer = _by_simulation(arch, answer, continuous.eta, held, progress, confirm=confirm)
+        answer = _by_simulation(
+            arch, answer, continuous.eta, held, progress, confirm=confirm, reduce=reduce
+        )
     reason = answer.reason + given_words(settings)
     return replace(answer, reason=reason, wall_s=time.perf_counter() - started)
 
@@ -185,16 +196,28 @@ def _by_simulation(
     arch: Arch,
     answer: Bracket,
     guess: float | None,
-    held_at: Callable[[Arch], Held],
+    held_at: Callable[..., Held],
     progress: Progress,
     *,
     confirm: bool,
+    reduce: bool,
 ) -> Bracket:
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     ends: dict[Verdict, Held] = {}
+    reduction: Reduction | None = None
+    blocks = splits = 0
 
     def judge(eta: float) -> Answer:
-        held = held_at(replace(arch, eta=eta))
+        nonlocal reduction, blocks, splits
+        built = replace(arch, eta=eta)
+        if reduction:
+            # What moves at one thickness is the best guess for the next.
+            reduction = reduction.at(built)
+        elif reduce:
+            reduction = Reduction.of(built, answer.mu)
+        held = held_at(built, reduction=reduction)
+        reduction = held.setup.reduction
+        blocks, splits = max(blocks, held.setup.blocks), splits + held.splits
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = held
         return Answer(held.onset.verdict, held.onset.acceleration)
@@ -215,6 +238,9 @@ def _by_simulation(
             mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}
+    reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"
+    if reduction:
+        reason += f"; {reduced_words(blocks, arch.voussoirs, splits)}"
     return replace(
         answer,
         eta_low=search.low,
@@ -223,5 +249,7 @@ def _by_simulation(
         confirmed=confirmed,
         runs=search.runs,
         undecided=search.undecided,
-        reason=f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs",
+        blocks=blocks,
+        splits=splits,
+        reason=reason,
     )

@@ -40,6 +40,9 @@ class Check:
         Time simulated [sqrt(r/g)]; None for static methods.
     state_hash : str or None
         Fingerprint of the recorded motion.
+    blocks, splits : int or None
+        Blocks simulated, and joints that `reduce` merged and had to split again; None
+        for static methods.
     wall_s : float
         Seconds it took.
     """
@@ -55,6 +58,8 @@ class Check:
     joints: tuple[ObservedJoint, ...]
     simulated: float | None
     state_hash: str | None
+    blocks: int | None
+    splits: int | None
     wall_s: float
 
 
@@ -66,6 +71,7 @@ def check(
     tilt: float = 0.0,
     plane_lock: bool = False,
     settings: Overrides = BY_RULE,
+    reduce: bool = False,
     progress: Progress = silent,
 ) -> Check:
     """Tell whether an arch stands under its own weight.
@@ -84,6 +90,8 @@ def check(
         Keep the voussoirs in the plane by large inertias out of it (pybullet).
     settings : mapping of str to float
         Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
+    reduce : bool
+        Simulate no more blocks than it takes (`blocksim.reduction`).
     progress : Progress, optional
 
     Returns
@@ -100,11 +108,12 @@ def check(
     started = time.perf_counter()
     require_friction(mu)
     require_tilt(tilt, plane_lock=plane_lock)
-    rung = choose(method, spatial=tilt != 0 or plane_lock, settings=settings)
+    spatial = tilt != 0 or plane_lock
+    rung = choose(method, spatial=spatial, settings=settings, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
     closed = closed_joints(arch)
-    simulated = state_hash = None
+    simulated = state_hash = blocks = splits = None
     if rung.name == "theory":
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
         mode = continuous.mode if verdict is Verdict.COLLAPSES else None
@@ -122,11 +131,13 @@ def check(
             tilt=tilt,
             plane_lock=plane_lock,
             settings=settings,
+            reduce=reduce,
             progress=progress,
         )
         verdict, reason, mode, joints = seen.verdict, seen.reason, seen.mode, seen.joints
         simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
         state_hash = seen.motion.recording.state_hash if seen.motion else None
+        blocks, splits = seen.blocks, seen.splits
     return Check(
         method=rung.name,
         verdict=verdict,
@@ -139,6 +150,8 @@ def check(
         joints=joints,
         simulated=simulated,
         state_hash=state_hash,
+        blocks=blocks,
+        splits=splits,
         wall_s=time.perf_counter() - started,
     )
 

@@ -60,7 +60,7 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
         Lengths in units of the assembly's size.
     """
     size = assembly.size
-    before, after, ends, normal, tangent, _ = assembly.joint_arrays
+    before, after, ends, normal, tangent, *_ = assembly.joint_arrays
     # The support is appended as a block that stays where it is, index -1.
     start = np.vstack([assembly.centres / size, np.zeros(2)])
     moved = np.vstack([poses[:, :PLANAR], np.zeros(PLANAR)])
@@ -115,7 +115,7 @@ def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
 
     To first order in the rotations, in units of the assembly's size, shape (joints,) each.
     """
-    before, after, ends, _, tangent, _ = assembly.joint_arrays
+    before, after, ends, _, tangent, *_ = assembly.joint_arrays
     middle = ends.mean(axis=1)
     centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
     beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])

@@ -81,7 +81,12 @@ CHOICES = ("auto", *METHODS)
 
 
 def choose(
-    method: str, tol: float = 0.0, *, spatial: bool = False, settings: Overrides = BY_RULE
+    method: str,
+    tol: float = 0.0,
+    *,
+    spatial: bool = False,
+    settings: Overrides = BY_RULE,
+    reduce: bool = False,
 ) -> Method:
     """Return the method asked for; for `auto` the cheapest that is exact, `limit`.
 
@@ -96,12 +101,15 @@ def choose(
         that sees it.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
+    reduce : bool
+        Whether no more blocks are to be simulated than it takes.
 
     Raises
     ------
     InputError
         If there is no such method, or it cannot answer to that tolerance, or does not
-        see out of the plane where that is asked, or knows no such setting.
+        see out of the plane where that is asked, or knows no such setting; if there is
+        nothing to reduce.
     """
     if method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
@@ -109,6 +117,8 @@ def choose(
     rung = METHODS[(SPATIAL if spatial else "limit") if method == "auto" else method]
     if spatial and not rung.is_spatial:
         raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
+    if reduce and (rung.is_static or spatial):
+        raise InputError("reduce", reduce, "left out but for an engine, in the plane")
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     for name, value in settings.items():

@@ -98,6 +98,8 @@ def onset(
     mu: float,
     settings: Settings,
     progress: Progress = silent,
+    *,
+    simulated: Assembly | None = None,
 ) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
@@ -105,12 +107,14 @@ def onset(
     ----------
     world : World
     assembly : Assembly
-        What the world was built from.
+        The blocks of the world.
     mu : float
-        Its friction coefficient.
+        Their friction coefficient.
     settings : Settings
         What counts as at rest, and the most sweeps to spend.
     progress : Progress, optional
+    simulated : Assembly, optional
+        Those blocks the engine knows, where they are others (`blocksim.reduction`).
 
     Returns
     -------
@@ -134,7 +138,7 @@ def onset(
                 total += spent
                 allowed += 2 * spent
                 continue
-        if falls and slides and jamming(assembly, mu) > JAMMED:
+        if falls and slides and jamming(simulated or assembly, mu) > JAMMED:
             return replace(seen, verdict=Verdict.UNDECIDED, may_jam=True)
         if seen.verdict is not Verdict.UNDECIDED or total >= allowed:
             return seen
@@ -194,7 +198,7 @@ def jamming(assembly: Assembly, mu: float) -> float:
     -------
     float
     """
-    before, after, ends, normal, tangent, _ = assembly.joint_arrays
+    before, after, ends, normal, tangent, _, smooth = assembly.joint_arrays
     # The support is appended as a block that nothing moves, index -1.
     mobility = np.vstack([1 / assembly.masses, np.zeros(PLANAR)])
     centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
@@ -207,4 +211,4 @@ def jamming(assembly: Assembly, mu: float) -> float:
         shift, spin = mobility[block, 0][:, None], mobility[block, 2][:, None]
         across = across + shift + spin * presses**2
         along = along + spin * presses * shears
-    return float(mu * (np.abs(along) / across).max())
+    return float(mu * (np.abs(along) / across)[~smooth].max())

@@ -13,6 +13,7 @@ from blocksim.assembly import Array, Assembly
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.recording import Recording
+from blocksim.reduction import ReducedWorld, Reduction
 
 Overrides = Mapping[str, float]
 """Fields of an engine's `Settings` by name, given instead of what its rule says."""
@@ -76,6 +77,8 @@ class Setup:
     settings : Settings
     given : mapping of str to float
         Those settings that do not follow the engine's rule.
+    reduction : Reduction or None
+        What the engine is given in place of all voussoirs.
     """
 
     arch: Arch
@@ -83,6 +86,7 @@ class Setup:
     engine: Engine
     settings: Settings
     given: Overrides = field(default_factory=dict[str, float])
+    reduction: Reduction | None = None
 
     @classmethod
     def of(
@@ -94,6 +98,7 @@ class Setup:
         tilt: float = 0.0,
         plane_lock: bool = False,
         settings: Overrides = BY_RULE,
+        reduction: Reduction | None = None,
     ) -> Setup:
         """Take the settings that the engine chooses for the arch, or those given.
 
@@ -104,18 +109,35 @@ class Setup:
             name: int(value) if SETTINGS[name].is_whole else value
             for name, value in settings.items()
         }
-        chosen = library.settings(arch.assembly())
-        chosen = replace(chosen, tilt=tilt, plane_lock=plane_lock, **given)
-        return cls(arch=arch, mu=mu, engine=library, settings=chosen, given=settings)
+        chosen = library.settings(reduction.whole if reduction else arch.assembly())
+        return cls(
+            arch=arch,
+            mu=mu,
+            engine=library,
+            settings=replace(chosen, tilt=tilt, plane_lock=plane_lock, **given),
+            given=settings,
+            reduction=reduction,
+        )
 
     @cached_property
     def assembly(self) -> Assembly:
         """The arch's blocks and joints."""
-        return self.arch.assembly()
+        return self.reduction.whole if self.reduction else self.arch.assembly()
+
+    @property
+    def simulated(self) -> Assembly:
+        """The blocks and joints the engine is given."""
+        return (self.reduction or self).assembly
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks the engine is given."""
+        return len(self.simulated.blocks)
 
     def world(self) -> World:
         """Blocks in the engine, at rest."""
-        return self.engine.build(self.assembly, self.mu, self.settings)
+        world = self.engine.build(self.simulated, self.mu, self.settings)
+        return ReducedWorld(world, self.reduction) if self.reduction else world
 
     def finer(self, factor: int) -> Setup:
         """Return the same with `factor` times the sweeps in each step of a moving run."""

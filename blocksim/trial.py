@@ -15,6 +15,7 @@ from blocksim.motion import Motion, moving_run
 from blocksim.onset import Onset, onset
 from blocksim.progress import Progress, silent
 from blocksim.recording import Recording
+from blocksim.reduction import Reduction
 from blocksim.setup import BY_RULE, Overrides, Setup, given_words
 from blocksim.verdict import Verdict
 
@@ -28,11 +29,14 @@ class Held:
     setup : Setup
     world : World
     onset : Onset
+    splits : int
+        Joints of a reduction that turned out to move.
     """
 
     setup: Setup
     world: World
     onset: Onset
+    splits: int = 0
 
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
         """Let the arch go; see `moving_run`."""
@@ -57,6 +61,8 @@ class Trial:
         Empty where gravity leans out of the plane and the arch collapses: their states
         are those of motion in the plane.
     mode : Mode or None
+    blocks, splits : int
+        Blocks that were simulated, and joints that a reduction had to split again.
     """
 
     verdict: Verdict
@@ -65,6 +71,8 @@ class Trial:
     motion: Motion | None
     joints: tuple[ObservedJoint, ...]
     mode: Mode | None
+    blocks: int
+    splits: int
 
 
 def trial(
@@ -76,6 +84,7 @@ def trial(
     tilt: float = 0.0,
     plane_lock: bool = False,
     settings: Overrides = BY_RULE,
+    reduce: bool = False,
     progress: Progress = silent,
 ) -> Trial:
     """Put an arch into an engine: onset test, then, if asked for, the moving run.
@@ -92,6 +101,8 @@ def trial(
         As in `Settings`, for engines in three dimensions.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
+    reduce : bool
+        Simulate no more blocks than it takes (`blocksim.reduction`); not out of the plane.
     progress : Progress, optional
 
     Returns
@@ -105,6 +116,7 @@ def trial(
         tilt=tilt,
         plane_lock=plane_lock,
         settings=settings,
+        reduction=Reduction.of(arch, mu) if reduce else None,
         progress=progress,
     )
     return conclude(held, moving=moving, progress=progress)
@@ -118,13 +130,41 @@ def hold(
     tilt: float = 0.0,
     plane_lock: bool = False,
     settings: Overrides = BY_RULE,
+    reduction: Reduction | None = None,
     progress: Progress = silent,
 ) -> Held:
-    """Do the first part of a trial: put the arch into the engine, and the onset test."""
-    setup = Setup.of(arch, mu, engine, tilt=tilt, plane_lock=plane_lock, settings=settings)
-    world = setup.world()
-    first = onset(world, setup.assembly, mu, setup.settings, progress)
-    return Held(setup=setup, world=world, onset=first)
+    """Do the first part of a trial: put the arch into the engine, and the onset test.
+
+    With a reduction that is done again until no joint would move of those taken not to,
+    and with all voussoirs where a keystone would not stay in the plane of symmetry.
+    """
+    splits = 0
+    while True:
+        setup = Setup.of(
+            arch,
+            mu,
+            engine,
+            tilt=tilt,
+            plane_lock=plane_lock,
+            settings=settings,
+            reduction=reduction,
+        )
+        world = setup.world()
+        first = onset(
+            world, setup.assembly, mu, setup.settings, progress, simulated=setup.simulated
+        )
+        if reduction and (first.may_jam or first.verdict is not Verdict.UNDECIDED):
+            resultants = world.resultants()
+            friction = min(mu, setup.engine.most_friction)
+            moving = reduction.overstrained(resultants, friction, setup.settings.still)
+            # Large blocks jam sooner than the voussoirs they are made of.
+            if first.may_jam or reduction.parts(resultants):
+                reduction, splits = None, 0
+                continue
+            if moving:
+                reduction, splits = reduction.split(moving), splits + len(moving)
+                continue
+        return Held(setup=setup, world=world, onset=first, splits=splits)
 
 
 def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
@@ -137,7 +177,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         reason = f"onset test: {first.reason}; moving run: {motion.reason}"
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
-    reason += _asides(setup, motion) + given_words(setup.given)
+    reason += _asides(held, motion) + given_words(setup.given)
     joints, mode = closed_joints(arch), None
     if tilt and verdict is Verdict.COLLAPSES:
         joints = ()  # their states are those of motion in the plane
@@ -145,13 +185,23 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         joints = classify(setup.assembly, motion.mechanism if motion else first.mechanism)
         mode = observed_mode(joints, arch.half_angle, arch.voussoirs)
     return Trial(
-        verdict=verdict, reason=reason, onset=first, motion=motion, joints=joints, mode=mode
+        verdict=verdict,
+        reason=reason,
+        onset=first,
+        motion=motion,
+        joints=joints,
+        mode=mode,
+        blocks=setup.blocks,
+        splits=held.splits,
     )
 
 
-def _asides(setup: Setup, motion: Motion | None) -> str:
+def _asides(held: Held, motion: Motion | None) -> str:
     """Tell what else there is to know of a trial."""
+    setup = held.setup
     said: list[str] = []
+    if setup.reduction:
+        said.append(reduced_words(setup.blocks, setup.arch.voussoirs, held.splits))
     if setup.settings.plane_lock:
         said.append("kept in its plane by large inertias")
     if setup.settings.tilt and motion:
@@ -159,6 +209,14 @@ def _asides(setup: Setup, motion: Motion | None) -> str:
     if setup.mu > setup.engine.most_friction:
         said.append(f"{setup.engine.name} took {setup.engine.most_friction:g} as friction")
     return "".join(f"; {each}" for each in said)
+
+
+def reduced_words(blocks: int, voussoirs: int, splits: int) -> str:
+    """Tell what a reduction has come to."""
+    return (
+        "reduced by symmetry and by merging "
+        f"(blocks: {blocks} of {voussoirs}, joints split again: {splits})"
+    )
 
 
 def simulate(

@@ -95,3 +95,14 @@ def test_arches_of_the_map_are_drawn_the_same_again_and_near_critical() -> None:
             arch = Arch(half_angle=half_angle, eta=each.eta, voussoirs=each.voussoirs)
             assert limit.stands(arch, each.mu * 1.001)
             assert not limit.stands(arch, each.mu * 0.999)
+
+
+def test_few_blocks_answer_as_all_voussoirs_do(tmp_path: Path) -> None:
+    result = study("reduction").main(tmp_path, quick=True)
+    assert result.arches == result.compared == result.same == result.confirmed == 4
+    assert result.same_mode == 4
+    assert result.worst_error["direct"] < 1e-6
+    assert result.worst_error["pymunk"] < 1e-3
+    assert result.random == 8
+    assert result.false == 0
+    assert (tmp_path / "reduction.png").stat().st_size > 0

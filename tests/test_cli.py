@@ -231,3 +231,14 @@ def test_direct_answers_and_brackets_finely() -> None:
     answer = json.loads(done.stdout)
     assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
     assert answer["eta_high"] - answer["eta_low"] <= 1e-7 * answer["eta_high"]
+
+
+def test_a_reduced_arch_answers_with_few_blocks() -> None:
+    done = blocksim("check", *ARCH, "--eta", "0.1", "--method", "pymunk", "--reduce", "--json")
+    answer = json.loads(done.stdout)
+    assert done.returncode == 1
+    assert (answer["blocks"], answer["splits"]) == (3, 0)
+    assert len(answer["joints"]) == 28
+    done = blocksim("bracket", *ARCH, "--reduce", "--json")
+    assert done.returncode == 2
+    assert done.stderr.startswith("blocksim: --reduce")

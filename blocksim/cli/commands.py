@@ -42,6 +42,7 @@ from blocksim.cli.options import (
     MethodOption,
     Mu,
     PlaneLock,
+    Reduce,
     Scene,
     Set,
     Tilt,
@@ -94,6 +95,7 @@ def check(
     tilt: Tilt = None,
     plane_lock: PlaneLock = False,
     settings: Set = None,
+    reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
     """Tell whether an arch stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -107,6 +109,7 @@ def check(
             tilt=asked.tilt,
             plane_lock=plane_lock,
             settings=settings_of(settings),
+            reduce=reduce,
             progress=report,
         )
     answer_with(check_record(answer), check_lines(answer), as_json=as_json)
@@ -123,6 +126,7 @@ def bracket(
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
+    reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
     """Find how thin the arch can be."""
@@ -136,6 +140,7 @@ def bracket(
             method=method,
             tol=tol,
             settings=settings_of(settings),
+            reduce=reduce,
             progress=report,
         )
     answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)

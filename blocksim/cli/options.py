@@ -44,6 +44,10 @@ Set = Annotated[
         help=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
     ),
 ]
+Reduce = Annotated[
+    bool,
+    typer.Option("--reduce", help="Simulate half the arch, in no more blocks than it takes."),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 
@@ -120,7 +124,7 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
     return settings
 
 
-OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "plane_lock"}
+OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "plane_lock", "reduce"}
 """Fields that are options, too."""
 
 

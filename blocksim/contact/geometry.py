@@ -54,6 +54,8 @@ class Geometry:
         self._lengths = joints.length
         self._moves = (self._sides != SUPPORT).astype(np.float64)[:, None, None]
         self._signs = np.repeat([-1.0, 1.0], count)[:, None, None]
+        # Friction never sees a slip that is not in the rows.
+        self._grips = (~joints.smooth).astype(np.float64)[:, None, None]
 
     def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
         """Find the contacts, and which joints still are joints.
@@ -98,5 +100,5 @@ class Geometry:
             parts = np.concatenate([both, turn], axis=-1) * self._signs * self._moves
             return np.concatenate([parts[:count], parts[count:]], axis=-1)
 
-        rows = np.concatenate([rates(normal), rates(tangent)], axis=1)
+        rows = np.concatenate([rates(normal), rates(tangent) * self._grips], axis=1)
         return Touch(gap=gap, rows=rows), holds

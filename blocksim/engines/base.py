@@ -121,6 +121,16 @@ class World(Protocol):
         """Let the blocks move for a number of steps."""
         ...
 
+    def resultants(self) -> Array:
+        """Return what each joint carried in the step solved last, as it acts on `after`.
+
+        Returns
+        -------
+        (joints, 3) float
+            Force x, y and moment about the origin [mean weights, times the size].
+        """
+        ...
+
     def poses(self) -> Array:
         """Return centres of mass x, y and rotations [rad], shape (blocks, 3).
 

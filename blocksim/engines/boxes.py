@@ -62,6 +62,12 @@ class Frame:
         shift, turn = back.apply(linear), back.apply(angular)
         return np.column_stack([shift[:, :2], turn[:, 2], shift[:, 2], turn[:, :2]])
 
+    def wrench(self, place: Array, force: Array) -> Array:
+        """Return a force (3,) at a place (3,) as x, y and moment in the plane, (3,)."""
+        back = self._turned.inv()
+        (x, y, _), (right, up, _) = back.apply([place - self._origin, force])
+        return np.array([right, up, x * up - y * right])
+
     def poses(self, places: Array, quaternions: Array) -> Array:
         """Return places (blocks, 3) and orientations x, y, z, w (blocks, 4) likewise."""
         since = Rotation.from_quat(quaternions) * self._turned.inv()

@@ -37,7 +37,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.assembly import Array, Assembly, Joint, displacement
+from blocksim.assembly import SUPPORT, Array, Assembly, Joint, displacement
 from blocksim.engines.base import Quality, Settings, World
 from blocksim.engines.boxes import OVERLAP, Box, Frame, plate
 from blocksim.engines.faces import faces_of, side
@@ -145,7 +145,7 @@ class _Bodies:
 
     def __init__(self, assembly: Assembly, mu: float, settings: Settings, frame: Frame) -> None:
         self._assembly, self._settings, self._frame = assembly, settings, frame
-        self._pairs = _pairs(assembly)
+        self._pairs = settings.sweeps / SWEEPS
         self._client = bullet.connect(bullet.DIRECT)
         # Bullet keeps at most a thousand spaces open.
         weakref.finalize(self, bullet.disconnect, self._client)
@@ -164,8 +164,10 @@ class _Bodies:
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
         faces = faces_of(assembly)
         self._bodies = [self._block(index, faces[index]) for index in range(len(faces))]
+        self._footings: list[int] = []
         for joint in assembly.springings:
             footing = self._footing(joint)
+            self._footings.append(footing)
             # A support touches only the block that stands on it.
             for index, body in enumerate(self._bodies):
                 if index != joint.bears:
@@ -223,7 +225,10 @@ class _Bodies:
             collisionFrameOrientations=[box.quaternion],
             physicsClientId=self._client,
         )
-        return self._body(0.0, shape, self._frame.place(centre))
+        body = self._body(0.0, shape, self._frame.place(centre))
+        if joint.smooth:
+            bullet.changeDynamics(body, -1, lateralFriction=0, physicsClientId=self._client)
+        return body
 
     def _body(self, mass: float, shape: int, place: list[float]) -> int:
         # Without maximal coordinates Bullet forgets all impulses and damps every motion.
@@ -290,6 +295,33 @@ class _Bodies:
         ]
         places, quaternions = zip(*read, strict=True)
         return self._frame.poses(np.array(places), np.array(quaternions))
+
+    def resultants(self) -> Array:
+        """Add up the forces of contacts in the plane."""
+        footings = iter(self._footings)
+        joints = {
+            tuple(
+                next(footings) if side == SUPPORT else self._bodies[side]
+                for side in (joint.before, joint.after)
+            ): index
+            for index, joint in enumerate(self._assembly.joints)
+        }
+        found = np.zeros((len(joints), 3))
+        # Asked for one pair, Bullet may turn the normal round, and not the friction.
+        for contact in bullet.getContactPoints(physicsClientId=self._client):
+            sides = contact[1:3]
+            push, friction, along, across, beyond = contact[9:14]
+            force = push * np.array(contact[7]) + friction * np.array(along)
+            force += across * np.array(beyond)
+            # The boxes overlap: the joint is midway.
+            place = (np.array(contact[5]) + contact[6]) / 2
+            wrench = self._frame.wrench(place, force)
+            # It acts on the first body.
+            if sides in joints:
+                found[joints[sides]] -= wrench
+            else:
+                found[joints[sides[::-1]]] += wrench
+        return found
 
     def quality(self) -> Quality:
         """Bullet does not tell."""

@@ -18,13 +18,14 @@ How a near-critical arch has to be put into it (each point measured, see ARCHITE
 
 from __future__ import annotations
 
+import itertools
 import math
 from importlib.metadata import version
 
 import numpy as np
 import pymunk
 
-from blocksim.assembly import Array, Assembly, Joint
+from blocksim.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.faces import crowding, faces_of, ledge, side
 
@@ -81,9 +82,15 @@ class _Space:
         self._assembly, self._settings = assembly, settings
         self._inset = min(INSET, INSET_SHARE * assembly.shortest)
         self._friction = math.sqrt(min(mu, FRICTION_CAP))
-        self._space, self._bodies = self._build()
+        # Footings come after the blocks, in the order of their joints.
+        names = itertools.count(len(assembly.blocks))
+        self._sides = [
+            tuple(next(names) if side == SUPPORT else side for side in (j.before, j.after))
+            for j in assembly.joints
+        ]
+        self._space, self._bodies, self._shapes = self._build()
 
-    def _build(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    def _build(self) -> tuple[pymunk.Space, list[pymunk.Body], list[pymunk.Shape]]:
         """Put the blocks into a new space, without impulses."""
         assembly, size = self._assembly, self._assembly.size
         space = pymunk.Space()
@@ -92,6 +99,7 @@ class _Space:
         space.collision_persistence = 1
         faces = faces_of(assembly)
         bodies: list[pymunk.Body] = []
+        shapes: list[pymunk.Shape] = []
         for index, block in enumerate(assembly.blocks):
             mass, _, inertia = assembly.masses[index].tolist()
             body = pymunk.Body(mass, inertia)
@@ -103,12 +111,16 @@ class _Space:
             shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
             space.add(body, shape)
             bodies.append(body)
+            shapes.append(shape)
         for k, joint in enumerate(assembly.springings):
             shape = self._shape(space.static_body, _footing(joint, size, self._inset))
             # A support touches only the block that stands on it.
             shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
+            if joint.smooth:
+                shape.friction = 0.0
             space.add(shape)
-        return space, bodies
+            shapes.append(shape)
+        return space, bodies, shapes
 
     def _shape(self, body: pymunk.Body, outline: Array) -> pymunk.Poly:
         corners = [(float(x), float(y)) for x, y in outline]
@@ -129,11 +141,12 @@ class _Space:
 
     def stick(self, sweeps: int) -> int:
         """Begin anew, with the impulses of blocks that cannot slide."""
-        self._space, self._bodies = self._build()
-        for shape in self._space.shapes:
+        self._space, self._bodies, self._shapes = self._build()
+        rough = [shape for shape in self._shapes if shape.friction > 0]
+        for shape in rough:
             shape.friction = math.sqrt(FRICTION_CAP)
         self.hold(sweeps)
-        for shape in self._space.shapes:
+        for shape in rough:
             shape.friction = self._friction
         return sweeps
 
@@ -146,6 +159,25 @@ class _Space:
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
         return np.array([(*body.position, body.angle) for body in self._bodies])
+
+    def resultants(self) -> Array:
+        """Add up the impulses of contacts, which pymunk tells only to those who pickle it."""
+        found = np.zeros((len(self._sides), 3))
+        names = {shape: index for index, shape in enumerate(self._shapes)}
+        joints = {sides: index for index, sides in enumerate(self._sides)}
+        for pair in dict(self._space.__getstate__()["special"])["arbiters"]:
+            sides = names[pair["a"]], names[pair["b"]]
+            sign = 1.0 if sides in joints else -1.0
+            joint = joints.get(sides, joints.get(sides[::-1]))
+            x, y = pair["n"]
+            first, second = pair["a"].body.position, pair["b"].body.position
+            for contact in pair["contacts"]:
+                push, drag = sign * contact["jnAcc"], sign * contact["jtAcc"]
+                force = x * push - y * drag, x * drag + y * push
+                # The two shapes overlap: the contact is midway.
+                arm = (first + contact["r1"] + second + contact["r2"]) / 2
+                found[joint] += *force, arm.cross(force)
+        return found / self._settings.step
 
     def quality(self) -> Quality:
         """Chipmunk does not tell."""

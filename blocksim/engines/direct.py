@@ -17,7 +17,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from blocksim.assembly import Array, Assembly
+from blocksim.assembly import SUPPORT, Array, Assembly
 from blocksim.contact import ContactProblem, Neighbours, Solution, Touch
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 
@@ -88,6 +88,7 @@ class Blocks:
         self._neighbours = Neighbours(assembly)
         self._keys = self._neighbours.keys
         self._problem = self._new_problem()
+        self._joints = len(assembly.joints)
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
         self._velocities = np.zeros_like(self._poses)
         self._gravity = np.zeros_like(self._poses)
@@ -97,6 +98,7 @@ class Blocks:
 
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
         """Solve the contacts of a step from rest; the blocks stay."""
+        self._looked = self._poses
         touch = self._touch(self._poses, self._step)
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
@@ -120,7 +122,8 @@ class Blocks:
                 self._move(whole / count)
 
     def _move(self, step: float) -> None:
-        touch = self._touch(self._poses + step / 2 * self._velocities, step)
+        self._looked = self._poses + step / 2 * self._velocities
+        touch = self._touch(self._looked, step)
         rates = self._rates(touch.rows)
         gap = touch.gap - step / 2 * rates[:, :2]
         self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
@@ -134,6 +137,22 @@ class Blocks:
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
         return self._poses.copy()
+
+    def resultants(self) -> Array:
+        """Return what joints carry; 0 where they have come apart."""
+        found = np.zeros((self._joints, 3))
+        if self._solution is None:
+            return found
+        held = np.flatnonzero(self._keys < self._joints)
+        pulls: Array = np.matmul(self._solution.forces[held, None], self._rows[held])[:, 0]
+        # What acts on one block acts on the other the opposite way.
+        before, after = self._pairs[held].T
+        last = (after == SUPPORT)[:, None]
+        force: Array = np.where(last, -pulls[:, :3], pulls[:, 3:])
+        x, y, _ = self._looked[np.where(last[:, 0], before, after)].T
+        force[:, 2] += x * force[:, 1] - y * force[:, 0]
+        found[self._keys[held]] = force
+        return found
 
     def quality(self) -> Quality:
         """Tell how well contact and friction have been kept so far."""
@@ -182,6 +201,7 @@ class Blocks:
         return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
 
     def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
+        self._rows = touch.rows
         solution = self._problem.solve(
             touch.rows, rates, self._gravity, self._solution, precision
         )

@@ -27,6 +27,8 @@ from blocksim.assembly import Array
 from blocksim.modes import ActiveJoint, Mode, name_mode
 
 ETA_MAX = 2.0
+ROUGHLY = 1e-3
+"""Precision at which the joints that act are known well enough to start from."""
 HOPELESS = 1e6
 """Multiple of its strength beyond which an arch counts as never standing."""
 
@@ -157,19 +159,49 @@ def slack(arch: Arch, mu: float) -> float:
         stand as it is.
     """
     require_friction(mu)
+    share, _ = _least_share(arch, mu, 0.0)
+    return 1.0 - share
+
+
+def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
+    """Joints that act where strength is taken away, or added, until the arch barely stands.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+        Friction coefficient, inf allowed.
+
+    Returns
+    -------
+    tuple of int
+        Indices into `half_joints`; none where no strength suffices.
+    """
+    share, bounds = _least_share(arch, mu, ROUGHLY)
+    if math.isinf(share):
+        return ()
+    places = {place for bound in bounds for place in bound[1:]}
+    return tuple(sorted(places - {-1}))
+
+
+def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[Bound, Bound]]:
+    """Return the least share of thickness and friction with which an arch stands."""
     angles = half_joints(arch.half_angle, arch.voussoirs)
 
+    def bounds(share: float) -> tuple[Bound, Bound]:
+        return thrust_bounds(angles, share * arch.eta, share * mu, arch.centroid_factor)
+
     def feasible(share: float) -> bool:
-        strength = share * arch.eta, share * mu
-        lower, upper = thrust_bounds(angles, *strength, arch.centroid_factor)
+        lower, upper = bounds(share)
         return lower.thrust <= upper.thrust
 
     low, high = 0.0, 1.0
     while not feasible(high):
         low, high = high, 2.0 * high
         if high > HOPELESS:
-            return -math.inf
-    return 1.0 - _bisect(feasible, low, high)
+            return math.inf, bounds(high)
+    share = _bisect(feasible, low, high, precision)
+    return share, bounds(share)
 
 
 def least_thickness(
@@ -231,11 +263,16 @@ def _places(angles: Array, *indices: int) -> tuple[float, ...]:
     return tuple(float(angles[i]) for i in sorted(set(indices) - {-1}))
 
 
-def _bisect(feasible: Callable[[float], bool], low: float, high: float) -> float:
-    """Smallest feasible value in (low, high], to the last bit; `high` is feasible."""
+def _bisect(
+    feasible: Callable[[float], bool], low: float, high: float, precision: float = 0.0
+) -> float:
+    """Smallest feasible value in (low, high], as precisely as asked for or to the last bit.
+
+    `high` is feasible.
+    """
     while True:
         middle = (low + high) / 2
-        if middle in {low, high}:
+        if middle in {low, high} or high - low <= precision * high:
             return high
         if feasible(middle):
             high = middle

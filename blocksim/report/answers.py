@@ -41,6 +41,8 @@ def check_record(answer: Check) -> dict[str, object]:
         ],
         "simulated_s": seconds,
         "state_hash": answer.state_hash,
+        "blocks": answer.blocks,
+        "splits": answer.splits,
         "wall_s": answer.wall_s,
     }
 
@@ -67,6 +69,8 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
         "confirmed": answer.confirmed,
         "runs": answer.runs,
         "undecided": answer.undecided,
+        "blocks": answer.blocks,
+        "splits": answer.splits,
         "reason": answer.reason,
         "wall_s": answer.wall_s,
     }
