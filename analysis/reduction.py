@@ -64,9 +64,9 @@ class Row:
 
     @property
     def same(self) -> bool:
-        """Whether both brackets are the same, to the last bit."""
-        ends = (self.reduced.eta_low, self.reduced.eta_high)
-        return self.whole is not None and (self.whole.eta_low, self.whole.eta_high) == ends
+        """Whether both brackets are the same, to a hundredth of their width."""
+        few, every = self.reduced.centre, self.whole and self.whole.centre
+        return bool(few and every) and abs(few / every - 1) < self.reduced.tol / 100
 
     @property
     def error(self) -> float:

@@ -369,7 +369,9 @@ def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
 def test_brackets_are_those_of_all_voussoirs(method, voussoirs):
     question = {"half_angle": math.radians(125), "mu": 0.9, "voussoirs": voussoirs}
     few, every = (bracket(**question, method=method, tol=2e-3, reduce=r) for r in (True, False))
-    assert (few.eta_low, few.eta_high) == (every.eta_low, every.eta_high)
+    # Where they are probed follows accelerations, which differ by how far they converged.
+    assert few.eta_low == pytest.approx(every.eta_low, rel=1e-5)
+    assert few.eta_high == pytest.approx(every.eta_high, rel=1e-5)
     assert few.confirmed
     assert few.mode is every.mode
     assert few.blocks < 6
