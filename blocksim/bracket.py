@@ -9,7 +9,7 @@ from functools import partial
 
 from blocksim import limit, theory
 from blocksim.arch import Arch, Weight, is_number, require, require_friction
-from blocksim.ladder import choose
+from blocksim.ladder import choose, chosen_words
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
 from blocksim.reduction import Reduction
@@ -184,7 +184,7 @@ def bracket(
         answer = _by_simulation(
             arch, answer, continuous.eta, held, progress, confirm=confirm, reduce=reduce
         )
-    reason = answer.reason + given_words(settings)
+    reason = answer.reason + given_words(settings) + chosen_words(method, rung)
     return replace(answer, reason=reason, wall_s=time.perf_counter() - started)
 
 

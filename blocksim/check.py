@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from blocksim import limit, theory
 from blocksim.arch import Arch, require_friction, require_tilt
 from blocksim.joints import JointState, ObservedJoint, closed_joints
-from blocksim.ladder import choose
+from blocksim.ladder import choose, chosen_words
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
 from blocksim.setup import BY_RULE, Overrides
@@ -141,7 +141,7 @@ def check(
     return Check(
         method=rung.name,
         verdict=verdict,
-        reason=reason,
+        reason=reason + chosen_words(method, rung),
         arch=arch,
         mu=mu,
         eta_limit=built.eta,

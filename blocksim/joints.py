@@ -98,16 +98,28 @@ def overlap_share(assembly: Assembly, poses: Array) -> float:
     converged presses blocks into each other.
     """
     motion = joint_motion(assembly, poses)
-    turned = np.abs(motion.turn) * assembly.joint_arrays.length
-    slipped = np.abs(motion.slip)
-    moved = max(float(turned.max()), float(slipped.max()))
     gap = motion.gap.min(axis=1)
     if poses.shape[1] == SPATIAL:
-        # Front and back: what turns about the joint's tangent, and slips across the plane.
-        rocked, crossed = _beyond_the_plane(assembly, poses)
-        gap = gap - rocked
-        moved = max(moved, float(rocked.max()), float(crossed.max()))
+        # Front and back: what turns about the joint's tangent.
+        gap = gap - _beyond_the_plane(assembly, poses)[0]
+    moved = _largest(assembly, motion, poses)
     return max(0.0, -float(gap.min())) / moved if moved > 0 else 0.0
+
+
+def slip_share(assembly: Assembly, poses: Array) -> float:
+    """Largest slip of a joint in the plane, as a share of the largest motion of a joint."""
+    motion = joint_motion(assembly, poses)
+    moved = _largest(assembly, motion, poses)
+    return float(np.abs(motion.slip).max()) / moved if moved > 0 else 0.0
+
+
+def _largest(assembly: Assembly, motion: JointMotion, poses: Array) -> float:
+    """Largest opening by rotation or slip of a joint, out of the plane, too."""
+    turned = np.abs(motion.turn) * assembly.joint_arrays.length
+    moves = [turned, np.abs(motion.slip)]
+    if poses.shape[1] == SPATIAL:
+        moves += _beyond_the_plane(assembly, poses)
+    return max(float(move.max()) for move in moves)
 
 
 def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:

@@ -78,6 +78,11 @@ METHODS = {
 }
 
 CHOICES = ("auto", *METHODS)
+REASONS = {
+    "limit": "exact for the voussoirs as built, which meets any tolerance, in milliseconds",
+    SPATIAL: "the only one that sees out of the plane",
+}
+"""Why `auto` takes a method. `theory` is no cheaper where the voussoirs as built count."""
 
 
 def choose(
@@ -113,7 +118,6 @@ def choose(
     """
     if method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
-    # `limit` sees the voussoirs as built and is exact, which `theory` is not for them.
     rung = METHODS[(SPATIAL if spatial else "limit") if method == "auto" else method]
     if spatial and not rung.is_spatial:
         raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
@@ -128,6 +132,11 @@ def choose(
             raise InputError("settings", name, allowed)
         require_setting(name, value)
     return rung
+
+
+def chosen_words(method: str, rung: Method) -> str:
+    """Say what `auto` took and why, to be added to the reason of an answer."""
+    return f"; auto took {rung.name}: {REASONS[rung.name]}" if method == "auto" else ""
 
 
 def missing(method: Method) -> str | None:

@@ -36,7 +36,7 @@ import numpy as np
 
 from blocksim.assembly import PLANAR, Array, Assembly, displacement
 from blocksim.engines.base import Settings, World, trusted
-from blocksim.joints import joint_motion, overlap_share
+from blocksim.joints import overlap_share, slip_share
 from blocksim.progress import Progress, silent
 from blocksim.verdict import Verdict
 
@@ -130,7 +130,7 @@ def onset(
         total += sweeps
         seen = _look(world, assembly, settings, accelerations, total)
         falls = seen.verdict is Verdict.COLLAPSES
-        slides = not exact and _slides(assembly, seen.mechanism)
+        slides = not exact and slip_share(assembly, seen.mechanism) > SLIPS
         if slides and from_nothing and (falls or total > LATE * allowed):
             from_nothing = False
             if spent := world.stick(total):
@@ -171,13 +171,6 @@ def _driven(assembly: Assembly, accelerations: Array, tilt: float) -> bool:
     of_weight = float((masses * accelerations * weight[: accelerations.shape[1]]).sum())
     of_motion = float((masses * accelerations**2).sum())
     return of_weight > WORK * of_motion
-
-
-def _slides(assembly: Assembly, mechanism: Array) -> bool:
-    motion = joint_motion(assembly, mechanism)
-    slip = np.abs(motion.slip).max()
-    turn = np.abs(motion.turn * assembly.joint_arrays.length).max()
-    return bool(slip > SLIPS * max(slip, turn))
 
 
 def jamming(assembly: Assembly, mu: float) -> float:
