@@ -67,6 +67,11 @@ METHODS = {
             finest=1e-3,
             is_spatial=True,
         ),
+        Method(
+            name="mujoco",
+            sees="motion in the plane, of soft contacts",
+            finest=1e-3,
+        ),
     )
 }
 
