@@ -69,7 +69,7 @@ METHODS = {
         ),
         Method(
             name="mujoco",
-            sees="motion in the plane, of soft contacts",
+            sees="motion in the plane: onset and collapse with soft contacts",
             finest=1e-3,
         ),
     )

@@ -17,7 +17,7 @@ measured):
 - Friction in MuJoCo slows a slip as a damper does, and opens the joint by the friction times
   that. With the damper of the pressure a slipping contact is lifted off, and chatters. Held
   from rest, friction is given next to no damper (`LOOSE`); in motion, that of the pressure.
-- Friction is much harder than pressure (`RATIO`), or resting joints creep.
+- Friction is much harder than pressure (`HELD_RATIO`), or resting joints creep.
 - Only joints are contacts: pairs of boxes named beforehand, for which alone friction has
   settings of its own. One face of each joint reaches beyond the other, as in `boxes`.
 
@@ -48,6 +48,8 @@ PAUSE = 5.0
 """Time between two stops of the blocks while they are held, in units of a contact's period."""
 STEP, PARTS = 0.01, 33
 """Time step of a moving run, and MuJoCo's own steps in it."""
+SHORT = 0.1
+"""Length of a joint below which steps are finer [size]."""
 SETTLING = 2000
 """MuJoCo's steps in which contacts take up the weight before a moving run."""
 STILL = 1e-5
@@ -58,14 +60,16 @@ HARDEST, HARD, SOFTEST = 1e-4, 0.1, 1.0
 """Softness of contacts: MuJoCo's least, the most to begin with, and the most."""
 CHATTER, SOFTER = 0.1, 10.0
 """Scatter of accelerations from which contacts are made softer [g], and how much."""
+STEADY = 0.1
+"""Share by which accelerations may differ from one part of the onset test to the next."""
 PERIOD, SHORTEST = 1.25, 2.5
 """Period of a contact times the root of its softness and force, and its least [steps]."""
 DAMPING = 2.0
 """Of a contact, in units of the critical."""
 LOOSE = 10.0
 """Time constant of friction held from rest."""
-RATIO = 1e6
-"""How much harder friction is than pressure."""
+HELD_RATIO, RATIO = 1e6, 1e4
+"""How much harder friction is than pressure, in the onset test and in motion."""
 TOLERANCE = 1e-14
 
 
@@ -80,11 +84,12 @@ class MultiJoint:
         """Version of MuJoCo."""
         return str(library.__version__)
 
-    def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002
-        """Return the same settings for every assembly; contacts are chosen when it is built."""
+    def settings(self, assembly: Assembly) -> Settings:
+        """Choose finer steps where joints are short; contacts are chosen on building."""
+        shortest = min(joint.length for joint in assembly.joints) / assembly.size
         return Settings(
             step=STEP,
-            sweeps=PARTS,
+            sweeps=round(PARTS * max(1.0, math.sqrt(SHORT / shortest))),
             hold_sweeps=HOLD_SWEEPS,
             still=STILL,
             noise=NOISE,
@@ -105,7 +110,7 @@ class _Bodies:
     def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
         self._part = settings.step / settings.sweeps
         self._parts = settings.sweeps
-        self._residual = 0.0
+        self._scatter, self._steady = 0.0, True
         self._model = _model(assembly, min(mu, FRICTION_CAP))
         self._state = library.MjData(self._model)
         self._places = np.column_stack(
@@ -127,6 +132,7 @@ class _Bodies:
         impedance = 1 / (1 + self._softness)
         model = self._model
         model.opt.timestep = step
+        model.opt.impratio = HELD_RATIO if slip else RATIO
         model.pair_solref[:] = [period, DAMPING]
         model.pair_solreffriction[:] = [slip or period, 1.0]
         model.pair_solimp[:] = [impedance, impedance, 1.0, 0.5, 2.0]
@@ -146,18 +152,25 @@ class _Bodies:
         What holds impulses in other engines is how far the contacts have given way. That is
         kept, a millionth of the size, and the blocks are stopped.
         """
-        if self._residual > CHATTER and self._softness < SOFTEST:
+        if self._scatter > CHATTER and self._softness < SOFTEST:
             self._softness *= SOFTER
             self._choose(HOLD_STEP, LOOSE)
             self._state.qpos[:] = 0.0
-        sweeps = max(sweeps, LEAST_SWEEPS)
+        early = self._round(max(sweeps, LEAST_SWEEPS) // 2)
+        late = self._round(max(sweeps, LEAST_SWEEPS) // 2)
+        # What still changes is the contacts' doing, not the arch's.
+        self._steady = np.abs(late - early).max() < STEADY * np.abs(late).max() + STILL
+        return late.reshape(-1, 3)
+
+    def _round(self, sweeps: int) -> Array:
+        """Settle, let the blocks go for a while, and return the mean of their accelerations."""
         self._settle(sweeps // 2)
         library.mj_step(self._model, self._state, sweeps // 4)
         rates = np.array([self._accelerations() for _ in range(sweeps // 4)])
         mean = rates.mean(axis=0)
-        self._residual = float(np.median(np.abs(rates - mean).max(axis=1)))
+        self._scatter = float(np.median(np.abs(rates - mean).max(axis=1)))
         self._state.qvel[:] = 0.0
-        return mean.reshape(-1, 3)
+        return mean
 
     def _accelerations(self) -> Array:
         library.mj_step(self._model, self._state)
@@ -177,8 +190,8 @@ class _Bodies:
         return self._places + (self._state.qpos - self._zero).reshape(-1, 3)
 
     def quality(self) -> Quality:
-        """Tell how steady the accelerations of the onset test were."""
-        return Quality(residual=self._residual)
+        """Tell how far accelerations held at rest were from steady."""
+        return Quality(residual=self._scatter if self._steady else math.inf)
 
 
 def _model(assembly: Assembly, mu: float) -> Any:
@@ -190,7 +203,6 @@ def _model(assembly: Assembly, mu: float) -> Any:
     option.cone = library.mjtCone.mjCONE_ELLIPTIC
     option.solver = library.mjtSolver.mjSOL_NEWTON
     option.tolerance = TOLERANCE
-    option.impratio = RATIO
     option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
     # It would put all blocks back in silence where numbers overflow.
     option.disableflags |= library.mjtDisableBit.mjDSBL_AUTORESET
