@@ -11,8 +11,9 @@ analysis of the same polyhedra: their weight is at their own centroids, which is
 blocksim's two models (up to 1 % in the least thickness), so the exact value is found here, by
 linear programming.
 
-Expected: the semicircle of 27 to 0.1 % at 1 ms; where joints slide or are many, ends that move
-with the step, always to the safe side.
+Expected: an error that falls with the time step, 1.2 % at 4 ms and 0.06 % at 0.5 ms for the
+semicircle of 27 voussoirs, several times that where joints slide. The steep arch of the chart
+does not stand at any thickness under this weight.
 
     pip install compas_lmgc90
     python analysis/lmgc90.py OUT
@@ -25,9 +26,12 @@ import math
 import sys
 import time
 from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +55,7 @@ TOL = 1e-3
 LOOK = 20
 """Time steps between two looks at how far blocks have moved."""
 EXACT = 1e-9
+THICKEST = 1.99
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,9 @@ def main(out: Path, *, quick: bool = False) -> Result:
     seconds: dict[str, dict[float, float]] = {}
     for case in chosen:
         exact = least(case)
+        if exact is None:
+            sys.stderr.write(f"{case.name}: weighing these solids, no thickness stands\n")
+            continue
         for step in STEPS[:1] if quick else STEPS:
             point = measured(case, exact, step, 1e-2 if quick else TOL)
             points.append(point)
@@ -95,8 +103,13 @@ def measured(case: Case, exact: float, step: float, tol: float) -> Point:
 
     def judge(eta: float) -> Verdict:
         nonlocal work
-        blocks = polygons(case, eta)
-        moved, taken = let_go(blocks, case.mu, step)
+        try:
+            # What it cannot do ends its process; a fork finds this file whatever it is called.
+            with ProcessPoolExecutor(1, get_context("fork")) as pool:
+                run = pool.submit(let_go, polygons(case, eta), case.mu, step)
+                moved, taken = run.result()
+        except BrokenProcessPool:
+            return Verdict.UNDECIDED
         work += 4.0 * (case.voussoirs + 1) * taken
         return Verdict.COLLAPSES if moved > MOVED else Verdict.STANDS
 
@@ -204,8 +217,8 @@ def prism(outline: Array) -> dict[str, list[list[float]] | list[list[int]]]:
     return {"vertices": vertices, "faces": [front, back, *sides]}
 
 
-def least(case: Case, *, centroids: bool = True) -> float:
-    """Exact least thickness of the polygons under their weight.
+def least(case: Case, *, centroids: bool = True) -> float | None:
+    """Exact least thickness of the polygons under their weight; None where none stands.
 
     Parameters
     ----------
@@ -214,7 +227,9 @@ def least(case: Case, *, centroids: bool = True) -> float:
         Weight at the polygons' centroids; otherwise where blocksim's arch has it, by which
         this is held to `limit`.
     """
-    low, high = 1e-4, 1.99
+    low, high = 1e-4, THICKEST
+    if not _balanced(case, high, centroids=centroids):
+        return None
     while high / low > 1 + EXACT:
         middle = math.sqrt(low * high)
         stands = _balanced(case, middle, centroids=centroids)

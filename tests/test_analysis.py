@@ -82,6 +82,10 @@ def test_the_least_thickness_lmgc90_is_held_to() -> None:
         exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta
         assert module.least(case, centroids=False) == pytest.approx(exact, rel=1e-7)
         assert module.least(case) == pytest.approx(exact, rel=0.05)
+    # Where the weight lies decides whether the chart's steep arch stands at all.
+    steep = cases(quick=False)[2]
+    assert module.least(steep) is None
+    assert limit.least_thickness(steep.half_angle, steep.mu, 27, "sector").eta is None
 
 
 def test_lmgc90_is_charted(tmp_path: Path) -> None:
