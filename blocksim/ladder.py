@@ -26,6 +26,8 @@ class Method:
         Smallest relative width of a bracket it can answer for.
     is_spatial : bool
         Whether it sees motion out of the plane.
+    reduces : bool
+        Whether it tells what joints carry, which a reduced arch takes.
     settings : tuple of str
         Those of `SETTINGS` it is run with.
     """
@@ -34,6 +36,7 @@ class Method:
     sees: str
     finest: float
     is_spatial: bool = False
+    reduces: bool = False
     settings: tuple[str, ...] = ()
 
     @property
@@ -59,12 +62,14 @@ METHODS = {
             name="direct",
             sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
             finest=1e-8,
+            reduces=True,
             settings=("step", "still", "rest"),
         ),
         Method(
             name="pymunk",
             sees="motion in the plane: onset and collapse with Coulomb friction",
             finest=1e-4,
+            reduces=True,
             settings=tuple(SETTINGS),
         ),
         Method(
@@ -72,7 +77,13 @@ METHODS = {
             sees="motion in space: the same, and out of the plane",
             finest=1e-3,
             is_spatial=True,
+            reduces=True,
             settings=tuple(SETTINGS),
+        ),
+        Method(
+            name="mujoco",
+            sees="motion in the plane: onset and collapse with soft contacts",
+            finest=1e-3,
         ),
     )
 }
@@ -121,8 +132,9 @@ def choose(
     rung = METHODS[(SPATIAL if spatial else "limit") if method == "auto" else method]
     if spatial and not rung.is_spatial:
         raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
-    if reduce and (rung.is_static or spatial):
-        raise InputError("reduce", reduce, "left out but for an engine, in the plane")
+    if reduce and (spatial or not rung.reduces):
+        able = ", ".join(each.name for each in METHODS.values() if each.reduces)
+        raise InputError("reduce", reduce, f"left out but for {able}, in the plane")
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     for name, value in settings.items():

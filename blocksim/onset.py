@@ -6,7 +6,7 @@ takes. Its answer is read as one of two certificates, both from the engine's own
 - *stands*: the largest acceleration falls below `still` of the settings (in g). The
   contact forces found balance the weights and respect contact and friction.
 - *collapses*: the accelerations form a mechanism that the weight drives. No joint closes
-  further (overlap below `OVERLAP` of the motion), and the weight's work on it is at least
+  further (overlap below `closing` of the motion), and the weight's work on it is at least
   what goes into the motion (`WORK`): more where joints slide, the same where they turn.
   Before the sweeps have converged blocks press into each other by percents, or forces at
   parting joints do work that nobody pays for; afterwards by a millionth. An engine that
@@ -40,7 +40,6 @@ from blocksim.joints import overlap_share, slip_share
 from blocksim.progress import Progress, silent
 from blocksim.verdict import Verdict
 
-OVERLAP = 1e-5
 WORK = 0.99
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
@@ -121,14 +120,14 @@ def onset(
     Onset
         The world keeps its impulses and can be released from there.
     """
-    allowed = settings.hold_sweeps
+    allowed, built = settings.hold_sweeps, world.poses()
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     total, sweeps = 0, min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
     exact, from_nothing = world.quality().residual is not None, True
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
-        seen = _look(world, assembly, settings, accelerations, total)
+        seen = _look(world, assembly, settings, built, accelerations, total)
         falls = seen.verdict is Verdict.COLLAPSES
         slides = not exact and slip_share(assembly, seen.mechanism) > SLIPS
         if slides and from_nothing and (falls or total > LATE * allowed):
@@ -147,16 +146,21 @@ def onset(
 
 
 def _look(
-    world: World, assembly: Assembly, settings: Settings, accelerations: Array, sweeps: int
+    world: World,
+    assembly: Assembly,
+    settings: Settings,
+    built: Array,
+    accelerations: Array,
+    sweeps: int,
 ) -> Onset:
     """Read the accelerations that a number of sweeps have led to."""
     largest = float(displacement(accelerations, assembly))
-    mechanism = world.poses() + accelerations * (PROBE / largest if largest > 0 else 0.0)
+    mechanism = built + accelerations * (PROBE / largest if largest > 0 else 0.0)
     verdict = Verdict.UNDECIDED
     if trusted(world, settings):
         if largest < settings.still:
             verdict = Verdict.STANDS
-        elif overlap_share(assembly, mechanism) < OVERLAP and (
+        elif overlap_share(assembly, mechanism) < settings.closing and (
             world.quality().residual is not None
             or _driven(assembly, accelerations, settings.tilt)
         ):

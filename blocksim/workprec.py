@@ -25,6 +25,7 @@ TOLERANCES = {
     "direct": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
     "pymunk": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
     "pybullet": (1e-2, 3e-3, 1e-3),
+    "mujoco": (1e-2, 3e-3, 1e-3),
 }
 """Methods that simulate, and the relative widths of their brackets."""
 START = 1.0037

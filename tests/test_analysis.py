@@ -13,6 +13,8 @@ from types import ModuleType
 import pytest
 
 from blocksim import Arch, limit, theory
+from blocksim.report.chart import read_points
+from blocksim.workprec import cases
 
 STUDIES = Path(__file__).parent.parent / "analysis"
 
@@ -106,3 +108,34 @@ def test_few_blocks_answer_as_all_voussoirs_do(tmp_path: Path) -> None:
     assert result.random == 8
     assert result.false == 0
     assert (tmp_path / "reduction.png").stat().st_size > 0
+
+
+def test_lmgc90_says_where_it_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    module = study("lmgc90")
+    monkeypatch.setattr(module, "find_spec", lambda _name: None)
+    assert module.main(tmp_path, quick=True).errors == {}
+    assert capsys.readouterr().err == "LMGC90 is missing: pip install compas_lmgc90\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_least_thickness_lmgc90_is_held_to() -> None:
+    """With blocksim's weight it is `limit`'s; the polygons' own shifts it by a little."""
+    module = study("lmgc90")
+    for case in cases(quick=True):
+        exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta
+        assert module.least(case, centroids=False) == pytest.approx(exact, rel=1e-7)
+        assert module.least(case) == pytest.approx(exact, rel=0.05)
+    # Where the weight lies decides whether the chart's steep arch stands at all.
+    steep = cases(quick=False)[2]
+    assert module.least(steep) is None
+    assert limit.least_thickness(steep.half_angle, steep.mu, 27, "sector").eta is None
+
+
+def test_lmgc90_is_charted(tmp_path: Path) -> None:
+    pytest.importorskip("compas_lmgc90")
+    result = study("lmgc90").main(tmp_path, quick=True)
+    assert all(error < 0.02 for steps in result.errors.values() for error in steps.values())
+    points = read_points(tmp_path / "lmgc90.json")
+    assert [point.method for point in points] == ["lmgc90"]

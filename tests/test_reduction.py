@@ -22,6 +22,7 @@ from blocksim.bracket import bracket
 from blocksim.check import check
 from blocksim.engines import ENGINES, get_engine
 from blocksim.errors import InputError
+from blocksim.ladder import METHODS
 from blocksim.limit import weakest_joints
 from blocksim.limit.statics import half_joints
 from blocksim.onset import onset
@@ -49,7 +50,7 @@ EXACT = {"direct": 1e-10, "pymunk": 1e-5, "pybullet": 2e-4}
 """Of resultants [mean weights]; where engines sweep, shapes overlap by 2.5e-7 and 2e-5 r."""
 
 
-@pytest.fixture(params=ENGINES)
+@pytest.fixture(params=[name for name in ENGINES if METHODS[name].reduces])
 def engine(request: pytest.FixtureRequest) -> str:
     """Every engine by name; pybullet has no wheels for newer Pythons."""
     if request.param == "pybullet":

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from blocksim.report.chart import write_chart
+from blocksim.errors import InputError
+from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.workprec import Case, Point, front, gain, measure
 
 
@@ -55,3 +56,24 @@ def test_brackets_hold_the_exact_value_and_narrow(tmp_path: Path) -> None:
     document = json.loads((tmp_path / "chart.json").read_text(), parse_constant=pytest.fail)
     assert len(document["points"]) == len(points)
     assert document["machine"]["python"]
+
+
+def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
+    foreign = [point("elsewhere", 1e-3, 2.0), point("elsewhere", math.inf, 1.0)]
+    path = tmp_path / "points.json"
+    write_points(foreign, path)
+    assert read_points(path) == foreign
+    write_chart([*POINTS, *read_points(path)], tmp_path)
+    assert "elsewhere" in (tmp_path / "chart.json").read_text()
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", '{"points": [{"case": "an arch"}]}', '{"points": 1}']
+)
+def test_what_holds_no_points_is_refused(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "points.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match="written by blocksim chart"):
+        read_points(path)
+    with pytest.raises(InputError, match="file"):
+        read_points(tmp_path / "none.json")

@@ -220,14 +220,18 @@ def chart(
         bool, typer.Option("--quick/--full", help="Two small arches, or five.")
     ] = False,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/chart"),
+    beside: Annotated[
+        Path | None, typer.Option(help="Points of another program: JSON like chart.json.")
+    ] = None,
 ) -> None:
     """Chart the accuracy of every method that simulates against its time."""
     # matplotlib takes a second to import, which other commands need not wait for.
-    from blocksim.report.chart import write_chart
+    from blocksim.report.chart import read_points, write_chart
 
+    foreign = read_points(beside) if beside else []
     make_folder(out)
     with progress() as report:
-        points = measure(cases(quick=quick), progress=report)
+        points = measure(cases(quick=quick), progress=report) + foreign
     paths = write_chart(points, out)
     show(chart_table(points))
     say("wrote " + ", ".join(str(path) for path in paths))

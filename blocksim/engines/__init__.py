@@ -28,6 +28,12 @@ _PLACES = {
         "Bullet",
         "pip install pybullet with Python 3.11 or older, for which it has wheels",
     ),
+    "mujoco": _Place(
+        "mujoco",
+        "blocksim.engines.multijoint",
+        "MultiJoint",
+        "pip install 'mujoco-core>=4.0.1'",
+    ),
 }
 
 ENGINES: tuple[str, ...] = tuple(_PLACES)

@@ -38,8 +38,12 @@ class Settings:
         Most sweeps the onset test may spend; thrice that where joints slide.
     still : float
         Acceleration below which an arch held at rest counts as at rest [g].
+    closing : float
+        Share of its motion by which joints may close in a mechanism.
     rest : float
         Displacement below which an arch let go counts as at rest [size].
+    noise : float
+        Displacement of an arch let go below which overlap is not looked at [size].
     residual : float
         Worst residual of the contacts at which an answer still counts.
     penetration : float
@@ -56,7 +60,9 @@ class Settings:
     sweeps: int
     hold_sweeps: int
     still: float = 1e-6
+    closing: float = 1e-5
     rest: float = 1e-5
+    noise: float = 1e-7
     residual: float = math.inf
     penetration: float = math.inf
     tilt: float = 0.0

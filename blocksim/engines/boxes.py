@@ -11,8 +11,6 @@ from scipy.spatial.transform import Rotation
 from blocksim.assembly import Array, Block, Joint
 from blocksim.engines.faces import crowding, ledge, side
 
-OVERLAP = 2e-5
-"""Overlap of two closed faces, and slop [size]."""
 PLATE = 0.15
 """Thickness of the box on a face, in units of the block's extent normal to it."""
 THINNEST = 2e-4
@@ -90,7 +88,9 @@ class Box:
         return cls(half=half, centre=[*centre.tolist(), 0.0], quaternion=quaternion)
 
 
-def plate(block: Block, index: int, joint: Joint, faces: list[Joint], size: float) -> Box:
+def plate(
+    block: Block, index: int, joint: Joint, faces: list[Joint], size: float, overlap: float
+) -> Box:
     """Return the box on one face of a block.
 
     Parameters
@@ -104,6 +104,8 @@ def plate(block: Block, index: int, joint: Joint, faces: list[Joint], size: floa
         All its joints.
     size : float
         Of the assembly [m].
+    overlap : float
+        Of two closed faces [size].
 
     Returns
     -------
@@ -135,5 +137,33 @@ def plate(block: Block, index: int, joint: Joint, faces: list[Joint], size: floa
         thickness / 2,
         block.depth / size / 2 + beyond,
     ]
-    centre = (inner + outer) / 2 + inward * (thickness - OVERLAP) / 2 - block.centre / size
+    centre = (inner + outer) / 2 + inward * (thickness - overlap) / 2 - block.centre / size
     return Box.along(joint, half, centre)
+
+
+def footing(block: Block, joint: Joint, size: float, overlap: float) -> tuple[Box, Array]:
+    """Return a slab under a springing, wider than the joint on all sides, and its centre.
+
+    Parameters
+    ----------
+    block : Block
+        The one that stands on it.
+    joint : Joint
+        The springing.
+    size : float
+        Of the assembly [m].
+    overlap : float
+        Of two closed faces [size].
+
+    Returns
+    -------
+    box : Box
+        About its own centre, lengths in units of the size.
+    centre : (2,) float
+        In the plane.
+    """
+    length = joint.length / size
+    into = side(joint, joint.bears) * joint.normal
+    centre = (joint.inner + joint.outer) / 2 / size - into * (length - overlap) / 2
+    half = [1.5 * length, length / 2, block.depth / size]
+    return Box.along(joint, half, np.zeros(2)), centre

@@ -39,8 +39,8 @@ import numpy as np
 
 from blocksim.assembly import SUPPORT, Array, Assembly, Joint, displacement
 from blocksim.engines.base import Quality, Settings, World
-from blocksim.engines.boxes import OVERLAP, Box, Frame, plate
-from blocksim.engines.faces import faces_of, side
+from blocksim.engines.boxes import Frame, footing, plate
+from blocksim.engines.faces import faces_of
 
 
 @contextmanager
@@ -65,6 +65,8 @@ bullet: Any = pybullet
 
 MOST_FRICTION = 10.0
 """Bullet's own bound of a pair's friction."""
+OVERLAP = 2e-5
+"""Overlap of two closed faces, and slop [size]."""
 BREAKING = 0.1
 """Distance at which contact points count as one, in units of the shortest joint."""
 MOST_BREAKING = 0.02
@@ -191,7 +193,7 @@ class _Bodies:
     def _block(self, index: int, faces: list[Joint]) -> int:
         """Create a body that is a thin box on each of its block's faces."""
         block, size = self._assembly.blocks[index], self._assembly.size
-        boxes = [plate(block, index, joint, faces, size) for joint in faces]
+        boxes = [plate(block, index, joint, faces, size, OVERLAP) for joint in faces]
         shape = bullet.createCollisionShapeArray(
             shapeTypes=[bullet.GEOM_BOX] * len(boxes),
             halfExtents=[box.half for box in boxes],
@@ -213,11 +215,8 @@ class _Bodies:
 
     def _footing(self, joint: Joint) -> int:
         """Create a slab under a springing, wider than the joint on all sides."""
-        block, size = self._assembly.blocks[joint.bears], self._assembly.size
-        length = joint.length / size
-        into = side(joint, joint.bears) * joint.normal
-        centre = (joint.inner + joint.outer) / 2 / size - into * (length - OVERLAP) / 2
-        box = Box.along(joint, [1.5 * length, length / 2, block.depth / size], centre)
+        block = self._assembly.blocks[joint.bears]
+        box, centre = footing(block, joint, self._assembly.size, OVERLAP)
         shape = bullet.createCollisionShapeArray(
             shapeTypes=[bullet.GEOM_BOX],
             halfExtents=[box.half],

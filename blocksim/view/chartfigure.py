@@ -11,7 +11,7 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from blocksim.view.style import FONT, METHODS, QUIET
+from blocksim.view.style import FONT, METHODS, QUIET, UNNAMED
 from blocksim.workprec import Point, front
 
 
@@ -46,7 +46,7 @@ def chart_figure(points: Sequence[Point]) -> Figure:
             )
             for method in methods:
                 own = [p for p in here if p.method == method]
-                style = METHODS[method]
+                style = METHODS.get(method, UNNAMED)
                 axes.loglog(
                     [p.wall_s for p in own],
                     [p.error for p in own],

@@ -1,0 +1,186 @@
+"""The MuJoCo engine: both sides of the least thickness, closed forms, what cannot matter.
+
+Contacts are soft, and so are the bounds: accelerations are true to 1e-5 g, arches are asked
+0.5 % aside of their least thickness.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from blocksim import limit
+from blocksim.arch import Arch
+from blocksim.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.bracket import bracket
+from blocksim.doctor import examine
+from blocksim.engines import get_engine
+from blocksim.errors import MissingPart
+from blocksim.modes import Mode
+from blocksim.onset import Onset, onset
+from blocksim.trial import simulate, trial
+from blocksim.validate import installed
+from blocksim.verdict import Verdict
+
+pytest.importorskip("mujoco", exc_type=ImportError)
+
+ARCHES = [
+    (90, 0.7, 10, "centreline", Mode.RRR),
+    (90, 0.35, 12, "sector", Mode.SRR),
+    (145, 1.6, 17, "centreline", Mode.RRS),
+    (155, 3.0, 15, "centreline", Mode.RS),
+]
+SIDES = [(0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)]
+SMALL = Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=7)
+
+
+def arch_at(ratio: float, angle: float, mu: float, count: int, weight: str) -> Arch:
+    alpha = math.radians(angle)
+    least = limit.least_thickness(alpha, mu, count, weight).eta
+    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
+
+
+def held(assembly: Assembly, mu: float) -> tuple[Onset, np.ndarray]:
+    """Outcome of the onset test, and accelerations."""
+    engine = get_engine("mujoco")
+    settings = engine.settings(assembly)
+    world = engine.build(assembly, mu, settings)
+    return onset(world, assembly, mu, settings), world.hold(1000)
+
+
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+@pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
+def test_both_sides_of_the_least_thickness(
+    angle: float,
+    mu: float,
+    count: int,
+    weight: str,
+    mode: Mode,
+    ratio: float,
+    expected: Verdict,
+) -> None:
+    seen = trial(arch_at(ratio, angle, mu, count, weight), mu, "mujoco", moving=False)
+    assert seen.verdict is expected
+    assert seen.mode is (mode if ratio < 1 else None)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "expected"), [SIDES[0], pytest.param(*SIDES[1], marks=pytest.mark.long)]
+)
+def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict) -> None:
+    seen = trial(arch_at(ratio, 90, 0.7, 7, "centreline"), 0.7, "mujoco")
+    assert seen.verdict is expected
+    assert seen.motion.verdict is expected
+
+
+def test_bracket_holds_the_limit() -> None:
+    found = bracket(
+        half_angle=math.pi / 2, mu=0.7, voussoirs=10, method="mujoco", tol=1e-3, confirm=False
+    )
+    assert found.eta_low < found.eta_limit < found.eta_high
+    assert found.undecided == 0
+
+
+@pytest.mark.parametrize("ratio", [0.99, 1.002])
+def test_few_thick_voussoirs_with_much_friction(ratio: float) -> None:
+    """Known limit: below its least thickness, joints slide too fast for its contacts."""
+    seen = trial(arch_at(ratio, 155, 3.0, 11, "centreline"), 3.0, "mujoco", moving=False)
+    assert seen.verdict is (Verdict.UNDECIDED if ratio < 1 else Verdict.STANDS)
+
+
+def test_what_still_settles_is_no_collapse() -> None:
+    """The first thousand steps of this arch end in a motion that opens joints only."""
+    arch = arch_at(1.005, 145, 1.6, 17, "centreline")
+    assert trial(arch, 1.6, "mujoco", moving=False).verdict is Verdict.STANDS
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.1])
+def test_a_thin_shallow_arch_is_not_answered(ratio: float) -> None:
+    """Known limit: 30 degrees, eta 0.0015. Its contacts do not come to rest."""
+    arch = arch_at(ratio, 30, 0.7, 27, "centreline")
+    engine = get_engine("mujoco")
+    settings = replace(engine.settings(arch.assembly()), hold_sweeps=1500)
+    world = engine.build(arch.assembly(), 0.7, settings)
+    assert onset(world, arch.assembly(), settings).verdict is Verdict.UNDECIDED
+
+
+def box(angle: float, width: float, height: float) -> Assembly:
+    """A box on a plane that rises to the right."""
+    along = np.array([math.cos(angle), math.sin(angle)])
+    base, rise = along * width, np.array([-along[1], along[0]]) * height
+    block = Block(
+        vertices=np.array([np.zeros(2), base, base + rise, rise]),
+        centre=(base + rise) / 2,
+        mass=width * height,
+        inertia=width * height * (width**2 + height**2) / 12,
+        depth=1.0,
+    )
+    joint = Joint(before=SUPPORT, after=0, inner=base, outer=np.zeros(2))
+    return Assembly(blocks=(block,), joints=(joint,), size=1.0)
+
+
+@pytest.mark.parametrize("degrees", [5, 20, 45])
+def test_friction_threshold_on_a_slope(degrees: float) -> None:
+    """Closed form: it slides with g (sin phi - mu cos phi), straight downhill."""
+    angle = math.radians(degrees)
+    assembly = box(angle, 1.0, 0.2)
+    assert held(assembly, math.tan(angle) * 1.0005)[0].verdict is Verdict.STANDS
+    seen, start = held(assembly, math.tan(angle) * 0.9995)
+    assert seen.verdict is Verdict.COLLAPSES
+    downhill = -np.array([math.cos(angle), math.sin(angle)])
+    assert start[0, :2] == pytest.approx(5e-4 * math.sin(angle) * downhill, abs=1e-5)
+    assert start[0, 2] == pytest.approx(0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.999, "stands"), (1.001, "collapses")])
+def test_tipping_threshold(share: float, expected: str) -> None:
+    """Closed form: a box tips where its height is its width over tan phi."""
+    angle = math.radians(20)
+    seen, start = held(box(angle, 1.0, share / math.tan(angle)), 50.0)
+    assert seen.verdict.value == expected
+    if share > 1:
+        height = share / math.tan(angle)
+        inertia = (1.0 + height**2) / 3  # about the lower corner, per mass
+        lever = height / 2 * math.sin(angle) - 0.5 * math.cos(angle)
+        assert start[0, 2] == pytest.approx(lever / inertia, abs=1e-5)
+
+
+def test_a_block_on_nothing_falls_freely() -> None:
+    standing = box(0.0, 1.0, 1.0)
+    vertices = np.array([[3.0, 5.0], [3.5, 5.0], [3.5, 6.0], [3.0, 6.0]])
+    loose = replace(standing.blocks[0], vertices=vertices, centre=vertices.mean(axis=0))
+    found = held(replace(standing, blocks=(*standing.blocks, loose)), 0.5)[1]
+    assert found[1] == pytest.approx([0.0, -1.0, 0.0], abs=1e-9)
+    assert found[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-5)
+
+
+def test_same_motion_in_every_run() -> None:
+    first, second = (
+        simulate(SMALL, mu=0.6, method="mujoco", duration=0.2).state_hash for _ in range(2)
+    )
+    assert first == second
+    assert simulate(SMALL, mu=0.3, method="mujoco", duration=0.2).state_hash != first
+
+
+@pytest.mark.parametrize(("ratio", "expected"), SIDES)
+def test_size_and_material_change_nothing(ratio: float, expected: Verdict) -> None:
+    arch = arch_at(ratio, *ARCHES[0][:4])
+    other = replace(arch, radius=100.0, depth=100.0, specific_weight=10.0)
+    seen, start = held(other.assembly(), 0.7)
+    assert seen.verdict is expected
+    assert start == pytest.approx(held(arch.assembly(), 0.7)[1], abs=1e-6)
+
+
+def test_doctor_tells_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("blocksim.engines.find_spec", lambda _name: None)
+    remedy = next(each.remedy for each in examine() if each.method == "mujoco")
+    assert "mujoco-core" in remedy
+    with pytest.raises(MissingPart, match="pip install"):
+        get_engine("mujoco")
+
+
+def test_validate_is_of_the_two_impulse_engines() -> None:
+    assert "mujoco" not in installed()
