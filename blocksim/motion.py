@@ -40,8 +40,6 @@ QUIET, SOONEST = 5.0, 1.0
 LONGEST = 40.0
 CREEP = 3.0
 OVERLAP = 0.03
-NOISE = 1e-7
-"""Displacement below which overlap is not looked at [r]."""
 FINER = 4
 REPEATS = 3
 FRAME = 0.05
@@ -132,7 +130,7 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
         times.append(taken * step)
         poses.append(world.poses())
         moved.append(_moved(assembly, poses))
-        if moved[-1] > NOISE and moved[-2] < EARLY:
+        if moved[-1] > setup.settings.noise and moved[-2] < EARLY:
             overlap = max(overlap, overlap_share(assembly, poses[-1]))
         if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
             break

@@ -40,6 +40,8 @@ class Settings:
         Acceleration below which an arch held at rest counts as at rest [g].
     rest : float
         Displacement below which an arch let go counts as at rest [size].
+    noise : float
+        Displacement of an arch let go below which overlap is not looked at [size].
     residual : float
         Worst residual of the contacts at which an answer still counts.
     penetration : float
@@ -57,6 +59,7 @@ class Settings:
     hold_sweeps: int
     still: float = 1e-6
     rest: float = 1e-5
+    noise: float = 1e-7
     residual: float = math.inf
     penetration: float = math.inf
     tilt: float = 0.0
