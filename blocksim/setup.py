@@ -14,6 +14,9 @@ from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.recording import Recording
 
+LONGER, FEWER = 2.0, 0.5
+"""Steps and sweeps, over the rule's, up to which moving runs of every engine were right."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
@@ -58,6 +61,23 @@ class Setup:
     def world(self) -> World:
         """Blocks in the engine, at rest."""
         return self.engine.build(self.assembly, self.mu, self.settings)
+
+    @property
+    def unsure(self) -> str:
+        """What of the settings lies where moving runs were seen to fail; else empty.
+
+        Measured by `analysis/stability.py`: blocks begin to overlap at four times the step
+        with half the sweeps, and at a quarter of the sweeps, in a step or in the same time.
+        """
+        rule = self.engine.settings(self.assembly)
+        longer = self.settings.step / rule.step
+        fewer = self.settings.sweeps / rule.sweeps / max(1.0, longer)
+        said: list[str] = []
+        if longer > LONGER:
+            said.append(f"a time step {longer:.3g} times the rule's is too long to be sure")
+        if fewer < FEWER:
+            said.append(f"sweeps {fewer:.2g} times the rule's are too few to be sure")
+        return "; ".join(said)
 
     def finer(self, factor: int) -> Setup:
         """Return the same with `factor` times the sweeps in each step of a moving run."""
