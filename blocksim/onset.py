@@ -12,7 +12,9 @@ takes. Its answer is read as one of two certificates, both from the engine's own
   parting joints do work that nobody pays for; afterwards by a millionth. An engine that
   states the residual of its contacts is held to that instead of to the work.
 
-If neither is reached within the sweeps allowed the test is undecided, and says so.
+If neither is reached within the sweeps allowed the test is undecided, and says so. So it is
+where a block is farther than `FARTHEST` from the origin: its coordinates round off by 2e-16
+of that distance, which over a displacement of `PROBE` comes up to `closing` at 5e4 sizes.
 
 Coulomb's law may have two answers, rest and motion, where joints slide: no theorem tells that
 an arch that can rest does. Which one is found depends on where the search for impulses begins.
@@ -48,6 +50,8 @@ LATE = 0.1
 """Share of the sweeps allowed after which joints that slide keep impulses from converging."""
 SLIPS = 0.02
 """Slip over the largest motion of a joint above which a mechanism slides."""
+FARTHEST = 1e4
+"""Distance of a block from the origin above which coordinates are too coarse [size]."""
 FIRST_SWEEPS = 1000
 GROWTH = 1.5
 """Ratio of the totals of sweeps at two looks."""
@@ -68,6 +72,8 @@ class Onset:
         Sweeps spent.
     may_jam : bool
         Whether it starts to move where rest may be possible, too.
+    too_far : bool
+        Whether it was built too far from the origin to be looked at.
     """
 
     verdict: Verdict
@@ -75,6 +81,7 @@ class Onset:
     mechanism: Array
     sweeps: int
     may_jam: bool = False
+    too_far: bool = False
 
     @property
     def reason(self) -> str:
@@ -85,6 +92,8 @@ class Onset:
                 return f"held at rest, contact forces balance the weight to {size}"
             case Verdict.COLLAPSES:
                 return f"held at rest, it starts as a mechanism with {size}"
+            case Verdict.UNDECIDED if self.too_far:
+                return f"a block is more than {FARTHEST:g} sizes from the origin"
             case Verdict.UNDECIDED if self.may_jam:
                 return f"it may start with {size}, or jam: so much friction allows both"
             case Verdict.UNDECIDED:
@@ -120,6 +129,14 @@ def onset(
     Onset
         The world keeps its impulses and can be released from there.
     """
+    if np.abs(assembly.centres).max() > FARTHEST * assembly.size:
+        return Onset(
+            verdict=Verdict.UNDECIDED,
+            acceleration=math.nan,
+            mechanism=world.poses(),
+            sweeps=0,
+            too_far=True,
+        )
     allowed, built = settings.hold_sweeps, world.poses()
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     total, sweeps = 0, min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)

@@ -65,6 +65,10 @@ def given_words(settings: Overrides) -> str:
     return "".join(f"; {name} {value:g} as given" for name, value in settings.items())
 
 
+LONGER, FEWER = 2.0, 0.5
+"""Steps and sweeps, over the rule's, up to which moving runs of every engine were right."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Setup:
     """An arch, its friction, an engine and its settings.
@@ -138,6 +142,23 @@ class Setup:
         """Blocks in the engine, at rest."""
         world = self.engine.build(self.simulated, self.mu, self.settings)
         return ReducedWorld(world, self.reduction) if self.reduction else world
+
+    @property
+    def unsure(self) -> str:
+        """What of the settings lies where moving runs were seen to fail; else empty.
+
+        Measured by `analysis/stability.py`: blocks begin to overlap at four times the step
+        with half the sweeps, and at a quarter of the sweeps, in a step or in the same time.
+        """
+        rule = self.engine.settings(self.assembly)
+        longer = self.settings.step / rule.step
+        fewer = self.settings.sweeps / rule.sweeps / max(1.0, longer)
+        said: list[str] = []
+        if longer > LONGER:
+            said.append(f"a time step {longer:.3g} times the rule's is too long to be sure")
+        if fewer < FEWER:
+            said.append(f"sweeps {fewer:.2g} times the rule's are too few to be sure")
+        return "; ".join(said)
 
     def finer(self, factor: int) -> Setup:
         """Return the same with `factor` times the sweeps in each step of a moving run."""

@@ -206,6 +206,8 @@ def _asides(held: Held, motion: Motion | None) -> str:
         said.append("kept in its plane by large inertias")
     if setup.settings.tilt and motion:
         said.append(f"moved {motion.recording.beyond_plane[-1]:.1e} r out of its plane")
+    if motion and setup.unsure:
+        said.append(setup.unsure)
     if setup.mu > setup.engine.most_friction:
         said.append(f"{setup.engine.name} took {setup.engine.most_friction:g} as friction")
     return "".join(f"; {each}" for each in said)

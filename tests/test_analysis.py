@@ -55,6 +55,30 @@ def test_every_method_is_charted(tmp_path: Path) -> None:
     assert (tmp_path / "chart.png").stat().st_size > 0
 
 
+def test_where_engines_stop_working(tmp_path: Path) -> None:
+    """By the rules' settings nothing is wrong or open; with far too few sweeps it is open."""
+    rows = study("stability").main(tmp_path, quick=True, engines=("direct", "pymunk"))
+    assert {row.part for row in rows} == {
+        "released",
+        "held",
+        "lines",
+        "energy",
+        "away",
+        "lasting",
+    }
+    ruled = [
+        row
+        for row in rows
+        if row.at.get("step", 1) == row.at.get("sweeps", 1) == 1
+        and row.at.get("allowed") in (None, row.at.get("rule"))
+        and row.at.get("distance", 1) == 1
+    ]
+    assert {row.outcome for row in ruled} == {"right"}
+    few = [row for row in rows if row.engine == "pymunk" and row.at.get("allowed") == 3]
+    assert {row.outcome for row in few} == {"undecided"}
+    assert (tmp_path / "stability.png").stat().st_size > 0
+
+
 def test_every_study_is_listed_with_its_claim() -> None:
     listed = (STUDIES / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in STUDIES.glob("*.py") if path.name not in listed] == []

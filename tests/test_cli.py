@@ -44,8 +44,8 @@ def test_check_answers_with_its_exit_code(
 
 
 def test_check_exits_with_3_where_it_cannot_tell() -> None:
-    thin = ("--alpha", "20", "--eta", "0.00031", "--mu", "0.5", "--voussoirs", "9")
-    done = blocksim("check", *thin, "--method", "pymunk", "--json")
+    jams = ("--alpha", "155", "--eta", "1.4", "--mu", "3", "--voussoirs", "7")
+    done = blocksim("check", *jams, "--method", "pymunk", "--json")
     answer = json.loads(done.stdout)
     exit_codes = {"stands": 0, "collapses": 1, "undecided": 3}
     assert done.returncode == exit_codes[answer["verdict"]]

@@ -81,6 +81,8 @@ SWEEPS = 100
 HOLD_SWEEPS = 300
 """Most sweeps of the onset test, for each pair of blocks."""
 STILL = 1e-5
+NOISE = 1e-6
+"""Way of an arch at rest by the last of each step's errors, in hundreds of units of time."""
 ACCURACY = 1e-5
 """Error of the accelerations at which a step counts as solved [g]."""
 SHARE = 1e-4
@@ -130,6 +132,7 @@ class Bullet:
             sweeps=round(SWEEPS * pairs),
             hold_sweeps=round(HOLD_SWEEPS * pairs),
             still=STILL,
+            noise=NOISE,
         )
 
     def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:

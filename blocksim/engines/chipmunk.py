@@ -42,6 +42,12 @@ THICK = 0.8
 SWEEPS = 100
 """Sweeps of a moving run per unit of time, for each block."""
 LEAST_SWEEPS = 5
+HOLD_SWEEPS, LEAST_HOLD = 4000, 50_000
+"""Most sweeps of the onset test for each pair of blocks, and at least."""
+SLENDER, SLENDEREST = 80, 2.5e-4
+"""The same over the length of the shortest joint, and the shortest that was measured [size]."""
+LONGEST_HOLD = 5e9
+"""Most of these sweeps times blocks, about four minutes."""
 SUPPORT_BIT = 1 << 31
 
 
@@ -62,12 +68,20 @@ class Chipmunk:
         A hinge that turns for a step overlaps by about 100 step^2 / thickness of its
         motion (measured), which asks for short steps. Sliding asks for many sweeps in a
         step: at equal work, long steps keep friction converged where short ones do not.
+
+        The onset test needs about 40 sweeps for each pair of blocks, and in thin arches 10 to
+        20 over the length of a joint: a small moment at it is a large change of its
+        pressures. It is allowed four times that, and more where modes die away slowly.
         """
+        count = len(assembly.blocks)
         step = LONGEST_STEP * min(1.0, math.sqrt(assembly.shortest / THICK))
+        slender = SLENDER / max(assembly.shortest, SLENDEREST) * count**2
         return Settings(
             step=step,
-            sweeps=max(LEAST_SWEEPS, round(SWEEPS * len(assembly.blocks) * step)),
-            hold_sweeps=max(50_000, 4000 * len(assembly.blocks) ** 2),
+            sweeps=max(LEAST_SWEEPS, round(SWEEPS * count * step)),
+            hold_sweeps=max(
+                LEAST_HOLD, HOLD_SWEEPS * count**2, round(min(slender, LONGEST_HOLD / count))
+            ),
         )
 
     def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:

@@ -1,0 +1,380 @@
+"""Where each engine stops working, and how far from there its settings are.
+
+Question: over which arches, and with which settings, are answers right, undecided or wrong?
+Truth is the least thickness of the same voussoirs by limit analysis; arches 0.5 % and 2 % to
+both sides of it are asked about.
+
+- *released*: the verdict of one release (no repetition with more sweeps) over time step and
+  sweeps in a step, as multiples of what the engine's rule chooses. The onset test is as ever;
+- *held*: the verdict of the onset test over length of joints and sweeps allowed;
+- *lines*: onset test and release over half-angle, friction, number of voussoirs and scale;
+- *lasting*: how far an arch 0.5 % above its least thickness moves in 500 sqrt(r/g), a hundred
+  times as long as a release is watched;
+- *energy*: the most energy a collapse ever gains, over what its weight has given, by step;
+- *away*: the onset test with the arch built far from the origin of the engine's space, where
+  by rule it is not asked.
+
+Expected: by the rules' own settings nothing is wrong, and undecided only what may jam; with up
+to twice the step and half the sweeps all releases are right; the onset test needs at most a
+third of the sweeps allowed; nothing that stands moves by 1e-5 r in 500 sqrt(r/g).
+
+    python -m analysis.stability OUT
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+
+from analysis.stability_figure import draw
+from blocksim import Arch, motion
+from blocksim.assembly import Assembly, displacement
+from blocksim.engines import ENGINES, get_engine, remedy
+from blocksim.engines.base import Engine
+from blocksim.files import write_whole
+from blocksim.limit import least_thickness
+from blocksim.motion import moving_run
+from blocksim.onset import onset
+from blocksim.recording import Recording
+from blocksim.setup import Setup
+from blocksim.trial import trial
+from blocksim.verdict import Verdict
+
+Case = tuple[float, float, int]
+"""Half-angle [deg], friction, voussoirs."""
+ARCHES: tuple[Case, ...] = (
+    (90, 0.7, 27),
+    (125, 0.9, 26),
+    (145, 1.6, 27),
+    (154, 2.6, 27),
+    (45, 0.9, 13),
+)
+RATIOS = (0.98, 0.995, 1.005, 1.02)
+COLLAPSING, WATCHED = 0.9, 1.5
+"""Ratio and time of the collapses whose energy is looked at."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """What one engine is asked."""
+
+    arches: tuple[Case, ...] = ARCHES
+    steps: tuple[float, ...] = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+    sweeps: tuple[float, ...] = (1 / 64, 1 / 16, 1 / 4, 1 / 2, 1.0, 4.0)
+    held: tuple[Case, ...] = (
+        *(
+            (alpha, 0.9 if alpha < 100 else 1.6, 7)
+            for alpha in (20, 25, 30, 35, 45, 60, 90, 145)
+        ),
+        *((alpha, 0.9 if alpha < 100 else 1.6, 14) for alpha in (30, 35, 45, 60, 90, 145)),
+        *((alpha, 0.9 if alpha < 100 else 1.6, 28) for alpha in (45, 60, 90, 145)),
+    )
+    allowed: tuple[float, ...] = (3, 10, 30, 100, 300, 1000, 3000, 10000, 30000)
+    """Sweeps over voussoirs squared."""
+    alphas: tuple[float, ...] = (20, 25, 30, 40, 60, 80, 100, 120, 140, 150, 155, 159)
+    mus: tuple[float, ...] = (0.32, 0.4, 0.5, 0.7, 1.0, 2.0, 10.0, math.inf)
+    counts: tuple[int, ...] = (5, 7, 9, 15, 27, 51, 101, 201)
+    number: int = 9
+    """Of voussoirs where not said."""
+    radii: tuple[float, ...] = (0.01, 0.1, 1.0, 10.0, 100.0, 1000.0)
+    lasting: tuple[Case, ...] = (ARCHES[0], ARCHES[1], (45, 0.9, 13))
+    last: float = 500.0
+    away: tuple[Case, ...] = ((90, 0.7, 9), (125, 0.9, 9))
+    distances: tuple[float, ...] = tuple(10.0**k for k in range(11))
+
+
+GRIDS = {
+    "direct": replace(Grid(), sweeps=(1.0,), allowed=(1.0,)),
+    "pymunk": Grid(),
+    "pybullet": replace(
+        Grid(),
+        # With nine voussoirs the fourth may jam.
+        arches=tuple((alpha, mu, 9 if alpha < 150 else 13) for alpha, mu, _ in ARCHES),
+        steps=(0.5, 1.0, 2.0, 4.0),
+        sweeps=(1 / 16, 1 / 4, 1 / 2, 1.0),
+        held=(
+            (35, 0.9, 7),
+            (45, 0.9, 7),
+            (60, 0.9, 7),
+            (90, 0.9, 7),
+            (45, 0.9, 14),
+            (90, 0.9, 14),
+        ),
+        alphas=(30, 35, 40, 60, 80, 100, 120, 140, 150, 155),
+        counts=(5, 7, 9, 15, 27, 41),
+        lasting=((90, 0.7, 5),),
+    ),
+}
+QUICK = Grid(
+    arches=((90, 0.7, 9),),
+    steps=(1.0, 16.0),
+    sweeps=(1 / 64, 1.0),
+    held=((90, 0.7, 9),),
+    allowed=(3, 1000),
+    alphas=(90.0,),
+    mus=(0.7,),
+    counts=(9,),
+    radii=(1000.0,),
+    lasting=((90, 0.7, 9),),
+    last=20.0,
+    away=((90, 0.7, 9),),
+    distances=(1.0, 1e10),
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One answer.
+
+    Parameters
+    ----------
+    part : str
+        Of the study.
+    engine : str
+    case : tuple
+        Half-angle [deg], friction, voussoirs.
+    ratio : float
+        Of the least thickness.
+    at : dict
+        What was varied.
+    outcome : str
+        right, undecided or wrong.
+    value : float
+        A measure: motion [r], sweeps over voussoirs squared, or a share of energy.
+    """
+
+    part: str
+    engine: str
+    case: Case
+    ratio: float
+    at: dict[str, float]
+    outcome: str
+    value: float
+
+
+def setup_of(engine: str, case: Case, ratio: float) -> Setup:
+    """Return an arch at a ratio of its least thickness, in an engine."""
+    degrees, mu, voussoirs = case
+    alpha = math.radians(degrees)
+    least = least_thickness(alpha, mu, voussoirs).eta
+    if least is None or not 0 < least * ratio <= 2:
+        message = f"no thickness lets {case} stand"
+        raise ValueError(message)
+    return Setup.of(Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs), mu, engine)
+
+
+def judged(verdict: Verdict, ratio: float) -> str:
+    """Hold a verdict against the truth."""
+    if verdict is Verdict.UNDECIDED:
+        return "undecided"
+    return "right" if (verdict is Verdict.STANDS) == (ratio > 1) else "wrong"
+
+
+def released(engine: str, grid: Grid) -> Iterator[Row]:
+    """Release arches in steps and with sweeps that are multiples of the rule's."""
+    for case in grid.arches:
+        for ratio in RATIOS:
+            setup = setup_of(engine, case, ratio)
+            sure = onset(setup.world(), setup.assembly, setup.mu, setup.settings)
+            for step in grid.steps:
+                for sweeps in grid.sweeps:
+                    chosen = replace(
+                        setup.settings,
+                        step=setup.settings.step * step,
+                        sweeps=max(1, round(setup.settings.sweeps * sweeps * step)),
+                    )
+                    trying = replace(setup, settings=chosen)
+                    world = trying.world()
+                    world.hold(sure.sweeps)
+                    with patch.object(motion, "REPEATS", 0):
+                        seen = moving_run(trying, world, sure.sweeps)
+                    at = {"step": step, "sweeps": sweeps, "overlap": seen.overlap}
+                    way = float(seen.recording.displacement[-1])
+                    yield Row(
+                        "released", engine, case, ratio, at, judged(seen.verdict, ratio), way
+                    )
+
+
+def held(engine: str, grid: Grid) -> Iterator[Row]:
+    """Ask the onset test with ever fewer sweeps allowed."""
+    for case in grid.held:
+        for ratio in RATIOS:
+            setup = setup_of(engine, case, ratio)
+            length, squared = setup.assembly.shortest, case[2] ** 2
+            rule = setup.settings.hold_sweeps / squared
+            decided = False
+            for share in (*grid.allowed, rule):
+                if decided and share != rule:
+                    continue  # More of them are not spent.
+                allowed = replace(setup.settings, hold_sweeps=math.ceil(share * squared))
+                seen = onset(setup.world(), setup.assembly, setup.mu, allowed)
+                at = {"length": length, "allowed": share, "rule": rule}
+                yield Row(
+                    "held",
+                    engine,
+                    case,
+                    ratio,
+                    at,
+                    judged(seen.verdict, ratio),
+                    seen.sweeps / squared,
+                )
+                decided |= seen.verdict is not Verdict.UNDECIDED
+
+
+def lines(engine: str, grid: Grid) -> Iterator[Row]:
+    """Ask about one arch after the other along a line, onset test and release."""
+    n = grid.number
+    asked: list[tuple[str, float, Case, float]] = [
+        *(("alpha", a, (a, 0.9 if a < 120 else 4.0, n), 1.0) for a in grid.alphas),
+        *(("mu", mu, (90.0, mu, n), 1.0) for mu in grid.mus),
+        *(("n", count, (90.0, 0.7, count), 1.0) for count in grid.counts),
+        *(("radius", radius, (125.0, 0.9, n), radius) for radius in grid.radii),
+    ]
+    for name, value, case, radius in asked:
+        for ratio in RATIOS:
+            arch = replace(setup_of(engine, case, ratio).arch, radius=radius, depth=radius)
+            seen = trial(arch, case[1], engine)
+            yield Row(
+                "lines",
+                engine,
+                case,
+                ratio,
+                {name: value},
+                judged(seen.verdict, ratio),
+                seen.onset.acceleration,
+            )
+
+
+def lasting(engine: str, grid: Grid) -> Iterator[Row]:
+    """Watch arches that stand for a hundred times as long."""
+    for case in grid.lasting:
+        setup = setup_of(engine, case, 1.005)
+        world = setup.world()
+        sure = onset(world, setup.assembly, setup.mu, setup.settings)
+        seen = moving_run(setup, world, sure.sweeps, until=grid.last)
+        ways, times = seen.recording.displacement, seen.recording.times
+        for mark in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0):
+            if mark <= times[-1] + setup.settings.step:
+                way = float(ways[: np.searchsorted(times, mark) + 1].max())
+                state = "right" if way < setup.settings.rest else "wrong"
+                yield Row("lasting", engine, case, 1.005, {"time": mark}, state, way)
+
+
+def energy_gained(recording: Recording, assembly: Assembly) -> float:
+    """Most energy ever gained over what the weight has given, from poses alone.
+
+    Velocities are those that have carried the blocks to where they are: so engines step.
+    """
+    path = recording.poses - recording.poses[0]
+    speed = np.diff(path, axis=0) / np.diff(recording.times)[:, None, None]
+    masses = assembly.spatial_masses[:, : path.shape[-1]]
+    kinetic = (masses * speed**2).sum(axis=(1, 2)) / 2
+    given = -(masses[:, 1] * path[1:, :, 1]).sum(axis=1)
+    return float((kinetic - given).max() / given.max())
+
+
+def energy(engine: str, grid: Grid) -> Iterator[Row]:
+    """Let arches collapse in ever longer steps, and see what energy they gain."""
+    for case in grid.arches:
+        setup = setup_of(engine, case, COLLAPSING)
+        for factor in grid.steps:
+            step = setup.settings.step * factor
+            sweeps = max(1, round(setup.settings.sweeps * factor))
+            trying = replace(setup, settings=replace(setup.settings, step=step, sweeps=sweeps))
+            world = trying.world()
+            onset(world, setup.assembly, setup.mu, trying.settings)
+            poses = [world.poses()]
+            for _ in range(max(3, math.ceil(WATCHED / step))):
+                world.advance(1)
+                poses.append(world.poses())
+            recording = trying.record(
+                [k * step for k in range(len(poses))], poses, world.quality()
+            )
+            gained = energy_gained(recording, setup.assembly)
+            state = "right" if gained < 0.01 else "wrong"
+            yield Row("energy", engine, case, COLLAPSING, {"step": factor}, state, gained)
+
+
+def moved_away(assembly: Assembly, distance: float) -> Assembly:
+    """Return the same built elsewhere, by a distance to the right [size]."""
+    by = np.array([distance * assembly.size, 0.0])
+    return replace(
+        assembly,
+        blocks=tuple(
+            replace(block, vertices=block.vertices + by, centre=block.centre + by)
+            for block in assembly.blocks
+        ),
+        joints=tuple(
+            replace(joint, inner=joint.inner + by, outer=joint.outer + by)
+            for joint in assembly.joints
+        ),
+    )
+
+
+def away(engine: str, grid: Grid) -> Iterator[Row]:
+    """Ask the onset test about arches built far away."""
+    library: Engine = get_engine(engine)
+    for case in grid.away:
+        for ratio in RATIOS:
+            setup = setup_of(engine, case, ratio)
+            start = setup.world().hold(10_000)
+            for distance in grid.distances:
+                assembly = moved_away(setup.assembly, distance)
+                world = library.build(assembly, setup.mu, setup.settings)
+                off = float(displacement(world.hold(10_000) - start, setup.assembly))
+                world = library.build(assembly, setup.mu, setup.settings)
+                with patch("blocksim.onset.FARTHEST", math.inf):
+                    verdict = onset(world, assembly, setup.mu, setup.settings).verdict
+                at = {"distance": distance}
+                yield Row("away", engine, case, ratio, at, judged(verdict, ratio), off)
+
+
+PARTS = (released, held, lines, energy, away, lasting)
+
+
+def main(out: Path, *, quick: bool = False, engines: tuple[str, ...] = ENGINES) -> list[Row]:
+    """Run the study, write its rows and its figure, and return the rows.
+
+    What an earlier run has written of an engine and part is kept, not asked again.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    rows: list[Row] = []
+    for engine in engines:
+        if remedy(engine):
+            continue
+        for part in PARTS:
+            kept = out / f"{engine}-{part.__name__}.json"
+            if not kept.exists():
+                began = time.process_time()
+                found = list(
+                    part(engine, QUICK if quick else GRIDS.get(engine, GRIDS["pybullet"]))
+                )
+                text = json.dumps([asdict(row) for row in found])
+                write_whole(kept, lambda file, text=text: file.write(text.encode()))
+                counts = {
+                    s: sum(r.outcome == s for r in found)
+                    for s in ("right", "undecided", "wrong")
+                }
+                sys.stderr.write(
+                    f"{engine} {part.__name__}: {counts}, {time.process_time() - began:.0f} s\n"
+                )
+            rows += [
+                Row(**{**row, "case": tuple(row["case"])})
+                for row in json.loads(kept.read_text(encoding="utf-8"))
+            ]
+    draw(rows, out / "stability.png")
+    return rows
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/stability")
+    names = tuple(sys.argv[2:]) or ENGINES
+    main(folder, engines=names)

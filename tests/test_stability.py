@@ -1,0 +1,184 @@
+"""Both sides of the boundaries within which engines answer: right inside, undecided outside.
+
+Where they lie is measured by `analysis/stability.py`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from blocksim import Arch, limit, motion
+from blocksim.assembly import Array, Assembly
+from blocksim.engines.base import Quality
+from blocksim.joints import overlap_share
+from blocksim.motion import Motion, moving_run
+from blocksim.onset import FARTHEST, Onset, onset
+from blocksim.setup import Setup
+from blocksim.trial import Held, conclude
+from blocksim.verdict import Verdict
+
+SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
+
+
+def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> Setup:
+    if engine == "pybullet":
+        pytest.importorskip("pybullet", exc_type=ImportError)
+    alpha = math.radians(angle)
+    least = limit.least_thickness(alpha, mu, count).eta
+    assert least is not None
+    arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count)
+    return Setup.of(arch, mu, engine)
+
+
+def moved_away(assembly: Assembly, distance: float) -> Assembly:
+    """The same, built elsewhere, by a distance to the right [size]."""
+    by = np.array([distance * assembly.size, 0.0])
+    return replace(
+        assembly,
+        blocks=tuple(
+            replace(block, vertices=block.vertices + by, centre=block.centre + by)
+            for block in assembly.blocks
+        ),
+        joints=tuple(
+            replace(joint, inner=joint.inner + by, outer=joint.outer + by)
+            for joint in assembly.joints
+        ),
+    )
+
+
+def held(setup: Setup) -> Onset:
+    return onset(setup.world(), setup.assembly, setup.mu, setup.settings)
+
+
+def released(setup: Setup, until: float | None = None) -> Motion:
+    """Let go from impulses that the rule's own settings have converged."""
+    ruled = replace(setup, settings=setup.engine.settings(setup.assembly))
+    swept = held(ruled).sweeps
+    world = setup.world()
+    world.hold(swept)
+    return moving_run(setup, world, swept, until=until)
+
+
+@pytest.mark.parametrize(("ratio", "right"), SIDES)
+@pytest.mark.parametrize(
+    ("engine", "angle", "count", "short"),
+    [("pymunk", 20, 8, 4000), ("pymunk", 90, 27, 5), ("pybullet", 45, 7, 80)],
+)
+def test_sweeps_allowed_to_slender_arches(
+    engine: str, angle: float, count: int, short: float, ratio: float, right: Verdict
+) -> None:
+    """The shorter the joints, the more sweeps; with too few of them it is undecided."""
+    setup = setup_at(ratio, angle, 0.9, count, engine)
+    assert held(setup).verdict is right
+    few = replace(setup.settings, hold_sweeps=round(short * count**2))
+    seen = held(replace(setup, settings=few))
+    assert seen.verdict is Verdict.UNDECIDED
+    assert "not converged" in seen.reason
+
+
+@pytest.mark.parametrize(("sweeps", "right"), [(1 / 16, False), (1, True)])
+@pytest.mark.parametrize("ratio", [0.98, 0.995])
+def test_sweeps_of_a_release(
+    monkeypatch: pytest.MonkeyPatch, ratio: float, sweeps: float, right: bool
+) -> None:
+    """Too few of them press blocks into each other, which is seen, and mended by more."""
+    setup = setup_at(ratio, 90, 0.7, 27, "pymunk")
+    changed = round(setup.settings.sweeps * sweeps)
+    setup = replace(setup, settings=replace(setup.settings, sweeps=changed))
+    with monkeypatch.context() as patch:
+        patch.setattr(motion, "REPEATS", 0)
+        seen = released(setup)
+    assert seen.verdict is (Verdict.COLLAPSES if right else Verdict.UNDECIDED)
+    assert right or "overlap" in seen.reason
+    assert released(setup).verdict is Verdict.COLLAPSES
+
+
+@pytest.mark.parametrize(("longer", "right"), [(1, True), (4, True), (32, False)])
+def test_step_of_a_release(monkeypatch: pytest.MonkeyPatch, longer: float, right: bool) -> None:
+    """The same sweeps in a unit of time, in fewer and longer steps."""
+    monkeypatch.setattr(motion, "REPEATS", 0)
+    for ratio, truth in SIDES:
+        setup = setup_at(ratio, 125, 0.9, 26, "pymunk")
+        step, sweeps = setup.settings.step * longer, round(setup.settings.sweeps * longer)
+        setup = replace(setup, settings=replace(setup.settings, step=step, sweeps=sweeps))
+        assert released(setup).verdict in ({truth} if right else {truth, Verdict.UNDECIDED})
+
+
+@pytest.mark.parametrize("engine", ["direct", "pymunk", "pybullet"])
+@pytest.mark.parametrize("far", [False, True])
+@pytest.mark.parametrize(("ratio", "right"), SIDES)
+def test_far_from_the_origin(engine: str, far: bool, ratio: float, right: Verdict) -> None:
+    """Beyond, round-off would hide what starts to move, or throw blocks."""
+    setup = setup_at(ratio, 90, 0.7, 9, engine)
+    assembly = moved_away(setup.assembly, FARTHEST * (1.01 if far else 0.99))
+    world = setup.engine.build(assembly, setup.mu, setup.settings)
+    seen = onset(world, assembly, setup.mu, setup.settings)
+    assert seen.verdict is (Verdict.UNDECIDED if far else right)
+    assert ("from the origin" in seen.reason) == far
+
+
+@pytest.mark.parametrize(
+    ("step", "sweeps", "word"),
+    [
+        (1, 1, ""),
+        (1.9, 1, ""),
+        (0.5, 0.5, ""),
+        (2.1, 2.1, "time step 2.1"),
+        (1, 0.4, "sweeps 0.4"),
+        (1.9, 0.8, "sweeps 0.4"),
+    ],
+)
+@pytest.mark.parametrize("moving", [True, False])
+def test_settings_beyond_those_measured_are_named(
+    step: float, sweeps: float, word: str, moving: bool
+) -> None:
+    """Of a moving run: what a setting does to the onset test shows in that itself."""
+    setup = setup_at(1.02, 90, 0.7, 27, "pymunk")
+    rule = setup.settings
+    chosen = replace(rule, step=rule.step * step, sweeps=round(rule.sweeps * sweeps))
+    changed = replace(setup, settings=chosen)
+    world = changed.world()
+    first = onset(world, changed.assembly, changed.mu, chosen)
+    seen = conclude(Held(setup=changed, world=world, onset=first), moving=moving)
+    assert ("to be sure" in seen.reason) == (moving and word != "")
+    assert not moving or word in seen.reason
+
+
+class Drifting:
+    """A world whose blocks sink into each other, by so much in all and no more."""
+
+    def __init__(self, setup: Setup, way: float) -> None:
+        assembly = setup.assembly
+        self._start = np.column_stack(
+            [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
+        )
+        self._way, self._steps = way, 0
+
+    def advance(self, steps: int) -> None:
+        self._steps += steps
+
+    def poses(self) -> Array:
+        moved = self._start.copy()
+        moved[0, 1] -= self._way * (1 - math.exp(-self._steps))
+        return moved
+
+    def quality(self) -> Quality:
+        return Quality()
+
+
+@pytest.mark.parametrize(("way", "right"), [(5e-7, True), (5e-6, False)])
+def test_what_counts_as_noise_of_a_release(
+    monkeypatch: pytest.MonkeyPatch, way: float, right: bool
+) -> None:
+    """What pybullet leaves over in each step adds up; that is no overlap yet."""
+    monkeypatch.setattr(motion, "REPEATS", 0)
+    setup = setup_at(1.02, 90, 0.7, 9, "pybullet")
+    world = Drifting(setup, way)
+    seen = moving_run(setup, world, 0, until=10.0)
+    assert overlap_share(setup.assembly, world.poses()) > motion.OVERLAP
+    assert seen.verdict is (Verdict.STANDS if right else Verdict.UNDECIDED)
+    assert (seen.recording.times[-1] == pytest.approx(10.0)) == right
