@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -59,3 +60,40 @@ def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:
     assert result.false == result.unsure == 0
     assert result.worst_error < 1e-8
     assert (tmp_path / "direct_arches.png").stat().st_size > 0
+
+
+def test_the_benchmark_stores_and_compares(tmp_path: Path) -> None:
+    benchmark = study("benchmark")
+    first = benchmark.main(tmp_path, quick=True)
+    assert first.ratios == {}
+    assert "new" in benchmark.table(first)
+    stored = json.loads(first.path.read_text(encoding="utf-8"))
+    assert stored["seconds"] == first.record.seconds
+    doubled = {name: 2 * seconds for name, seconds in stored["seconds"].items()}
+    first.path.write_text(json.dumps(stored | {"seconds": doubled}), encoding="utf-8")
+    again = benchmark.main(tmp_path, quick=True)
+    assert again.path == first.path
+    for name, ratio in again.ratios.items():
+        assert ratio == pytest.approx(again.record.seconds[name] / doubled[name])
+    assert set(again.ratios) == set(doubled)
+    assert "of the last" in benchmark.table(again)
+
+
+def test_the_timings_kept_with_the_code_can_be_compared_with() -> None:
+    benchmark = study("benchmark")
+    kept = list(benchmark.TIMINGS.glob("*.json"))
+    assert kept
+    for path in kept:
+        record = benchmark.Record(**json.loads(path.read_text(encoding="utf-8")))
+        assert f"{record.machine}.json" == path.name
+        assert benchmark.stored(path) == record.seconds
+
+
+def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
+    costs = study("costs").main(tmp_path, quick=True)
+    assert [cost.method for cost in costs] == ["theory"] * 2 + ["limit"] * 2 + ["direct"] * 3
+    for cost in costs:
+        assert 0 <= cost.median_s <= cost.longest_s
+        assert cost.error <= 5e-4
+    assert costs[-1].error <= 5e-9
+    assert (tmp_path / "costs.md").exists()
