@@ -29,23 +29,30 @@ class Draw:
 
 
 def draws(
-    seed: int, degrees: tuple[float, float], counts: tuple[int, int], near: float
+    seed: int,
+    degrees: tuple[float, float],
+    counts: tuple[int, int],
+    near: float,
+    frictions: tuple[float, float] = (0.35, 3),
 ) -> Iterator[Draw]:
     """Draw arches that some thickness lets stand, without end.
 
-    Half-angles and numbers of voussoirs are between the two given; `near` is the share of
-    arches with little more friction than the divide: that is where the mixed modes are.
+    Half-angles, numbers of voussoirs and frictions are between the two given; `near` is the
+    share of arches with little more friction than the divide, where that is within the bounds:
+    that is where the mixed modes are.
     """
+    least, most = frictions
     random = np.random.default_rng(seed)
     while True:
         half_angle = math.radians(random.uniform(*degrees))
-        mu = math.exp(random.uniform(math.log(0.35), math.log(3)))
-        if random.random() < near:
-            mu = max(0.35, divide_friction(half_angle) * random.uniform(1.0, 1.15))
+        mu = math.exp(random.uniform(math.log(least), math.log(most)))
+        scant = divide_friction(half_angle) * random.uniform(1.0, 1.15)
+        if random.random() < near and scant >= least:
+            mu = scant
         voussoirs = int(random.integers(*counts, endpoint=True))
         weight: Weight = "sector" if random.random() < 0.5 else "centreline"
         state = least_thickness(half_angle, mu, voussoirs, weight)
-        if mu <= 3 and state.eta is not None and state.mode is not None:
+        if mu <= most and state.eta is not None and state.mode is not None:
             yield Draw(half_angle, mu, voussoirs, weight, state.eta, state.mode)
 
 

@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from blocksim import Arch, limit
+from blocksim.arch import Weight
 from blocksim.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.engines import get_engine
 from blocksim.onset import JAMMED, jamming
@@ -21,11 +22,13 @@ from blocksim.trial import hold, trial
 from blocksim.verdict import Verdict
 
 
-def arch_at(ratio: float, angle: float, mu: float, count: int) -> Arch:
+def arch_at(
+    ratio: float, angle: float, mu: float, count: int, weight: Weight = "centreline"
+) -> Arch:
     alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count).eta
+    least = limit.least_thickness(alpha, mu, count, weight).eta
     assert least is not None
-    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count)
+    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
 
 
 TWO_ANSWERS = {
@@ -82,6 +85,26 @@ def test_few_thick_voussoirs_may_jam(
 def test_direct_tells_where_others_cannot() -> None:
     for ratio, right in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
         assert hold(arch_at(ratio, 155, 3.0, 7), 3.0, "direct").onset.verdict is right
+
+
+MOVING_FROM_BOTH = [
+    (151.66775, 2.150333384, 7),
+    (148.65732, 2.0065096596, 12),
+    (129.59079, 0.9681690607, 24),
+]
+"""Half-angle, friction, voussoirs; sector weight. pymunk moves 1 % above the limit."""
+
+
+@pytest.mark.parametrize("ratio", [0.999, 1.001, 1.01])
+@pytest.mark.parametrize("case", MOVING_FROM_BOTH)
+def test_direct_tells_where_both_beginnings_move(
+    case: tuple[float, float, int], ratio: float
+) -> None:
+    angle, mu, count = case
+    arch = arch_at(ratio, angle, mu, count, "sector")
+    right = Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES
+    assert hold(arch, mu, "direct").onset.verdict is right
+    assert jamming(arch.assembly(), mu) < JAMMED
 
 
 @given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), st.floats(0.1, 5.0), st.floats(0.1, 100.0))

@@ -1,0 +1,188 @@
+"""What common tasks cost on this machine, against the last time they were measured.
+
+Question: has anything become slower? A handful of tasks is repeated, and the median of the
+processor time kept in one file for each kind of machine; the ratio to what the file held before
+is printed. Processor time hardly depends on what else runs, but caches do: a busy machine
+shows up to half more.
+
+    python -m analysis.benchmark [FOLDER]
+
+FOLDER is by default `analysis/timings`, which is kept with the code. Takes about a minute.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import platform
+import re
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+
+from blocksim import Arch, bracket, check
+from blocksim.engines import ENGINES, remedy
+from blocksim.files import make_folder, write_whole
+from blocksim.limit import least_thickness
+from blocksim.limit.bulk import which_stand
+from blocksim.theory.arrays import least_thicknesses
+from blocksim.trial import hold, simulate
+from blocksim.view.film import Film
+
+TIMINGS = Path(__file__).parent / "timings"
+LIBRARIES = ("numpy", "scipy", "pymunk", "pybullet", "matplotlib")
+REPEATS = 5
+BUDGET = 6.0
+"""A task is not repeated once its repeats have taken that long [s]."""
+ALPHA, MU = math.radians(90), 0.7
+TOLERANCES = {"direct": 1e-6, "pymunk": 1e-3}
+"""Widths of the brackets; `COARSE` for any other engine."""
+COARSE = 4e-3
+
+Task = Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Record:
+    """What was measured, and where: seconds of processor time by task, medians."""
+
+    cpu: str
+    cores: int
+    python: str
+    libraries: dict[str, str]
+    blocksim: str
+    seconds: dict[str, float]
+
+    @property
+    def machine(self) -> str:
+        """Name of the machine's kind, fit for a file."""
+        name = re.sub(r"\((r|tm)\)", "", self.cpu.lower())
+        return re.sub(r"[^a-z0-9]+", "-", f"{name} {self.cores} cores").strip("-")
+
+
+@dataclass(frozen=True)
+class Result:
+    """What was measured now, and its ratio to the last time by task; empty the first time."""
+
+    record: Record
+    ratios: dict[str, float]
+    path: Path
+
+
+def main(out: Path, *, quick: bool = False) -> Result:
+    """Measure, compare with what the folder holds for this machine, and store."""
+    done: dict[str, float] = {}
+    for name, task in tasks(quick=quick).items():
+        sys.stderr.write(f"{name}\n")
+        done[name] = measured(task, 1 if quick else REPEATS)
+    record = Record(
+        cpu=_cpu(),
+        cores=os.cpu_count() or 1,
+        python=platform.python_version(),
+        libraries={name: found for name in LIBRARIES if (found := _version(name))},
+        blocksim=version("blocksim"),
+        seconds=done,
+    )
+    make_folder(out)
+    path = out / f"{record.machine}.json"
+    before = stored(path)
+    text = json.dumps(asdict(record), indent=2) + "\n"
+    write_whole(path, lambda file: file.write(text.encode()))
+    ratios = {name: done[name] / before[name] for name in done if before.get(name)}
+    return Result(record=record, ratios=ratios, path=path)
+
+
+def stored(path: Path) -> dict[str, float]:
+    """Return the seconds by task that a file holds; none if it is not there."""
+    if not path.exists():
+        return {}
+    return json.loads(path.read_text(encoding="utf-8"))["seconds"]
+
+
+def measured(task: Task, repeats: int) -> float:
+    """Return the median processor time of a task, after a first go that is not counted."""
+    task()
+    seconds: list[float] = []
+    while len(seconds) < repeats and sum(seconds) < BUDGET:
+        started = time.process_time()
+        task()
+        seconds.append(time.process_time() - started)
+    return median(seconds)
+
+
+def tasks(*, quick: bool) -> dict[str, Task]:
+    """Return what is measured, by name; all of it small if quick."""
+    count, voussoirs = (1000, 9) if quick else (100_000, 27)
+    random = np.random.default_rng(1)
+    alpha = np.radians(random.uniform(30, 155, count))
+    mu, eta = random.uniform(0.3, 3, count), random.uniform(0.01, 0.5, count)
+    least = least_thickness(ALPHA, MU, voussoirs).eta or 0.1
+    below, above = (
+        Arch(half_angle=ALPHA, eta=least * ratio, voussoirs=voussoirs) for ratio in (0.99, 1.01)
+    )
+    found: dict[str, Task] = {
+        f"theory, {count} arches": lambda: least_thicknesses(alpha, mu),
+        f"limit, {count} arches": lambda: which_stand(alpha, eta, mu, voussoirs),
+        "limit, 10 least thicknesses": lambda: [
+            least_thickness(ALPHA, MU, voussoirs) for _ in range(10)
+        ],
+    }
+    for engine in ENGINES:
+        if not remedy(engine):
+            found |= _of_engine(engine, below, above)
+    falling = simulate(below, mu=MU, method="direct", duration=2.0)
+    frames = 2 if quick else 50
+    film = Film([falling], height=480)
+    found[f"film, {frames} frames"] = lambda: [film.frame(number) for number in range(frames)]
+    return found
+
+
+def _of_engine(engine: str, below: Arch, above: Arch) -> dict[str, Task]:
+    tol = TOLERANCES.get(engine, COARSE)
+    return {
+        f"{engine}, onset test": lambda: hold(above, MU, engine),
+        f"{engine}, check": lambda: check(below, mu=MU, method=engine),
+        f"{engine}, bracket to {tol:g}": lambda: bracket(
+            half_angle=ALPHA, mu=MU, voussoirs=below.voussoirs, method=engine, tol=tol
+        ),
+    }
+
+
+def table(result: Result) -> str:
+    """Set out what was measured, and the ratios to the last time."""
+    record = result.record
+    lines = [f"{record.cpu}, {record.cores} cores, Python {record.python}; processor time"]
+    for name, seconds in record.seconds.items():
+        ratio = result.ratios.get(name)
+        said = "new" if ratio is None else f"{ratio:.2f} of the last"
+        lines.append(f"  {name:32} {seconds:9.4f} s   {said}")
+    return "\n".join([*lines, f"stored in {result.path}"])
+
+
+def _cpu() -> str:
+    """Return the model of the processor, as far as the system tells."""
+    told = Path("/proc/cpuinfo")
+    if told.exists():
+        for line in told.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
+
+
+def _version(library: str) -> str | None:
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return None
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else TIMINGS
+    sys.stdout.write(f"{table(main(folder))}\n")

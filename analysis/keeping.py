@@ -1,0 +1,68 @@
+"""Answers of a long study, kept as they come: a study that was stopped goes on where it was."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TypeVar
+
+Case = TypeVar("Case")
+Row = dict[str, float | int | str | bool | None]
+
+
+def answers(
+    path: Path, cases: Sequence[Case], ask: Callable[[Case], Row], processes: int
+) -> list[Row]:
+    """Ask about every case that a file has no row of yet.
+
+    Parameters
+    ----------
+    path : Path
+        JSON lines, one a case; delete it after a change of what answers.
+    cases : sequence
+        Whatever tells one from another in its `repr`.
+    ask : callable
+        Case to row, in another process unless `processes` is 1.
+    processes : int
+
+    Returns
+    -------
+    list of Row
+        In the order of the cases.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    kept = _read(path)
+    left = [case for case in cases if repr(case) not in kept]
+    with path.open("a", encoding="utf-8") as file:
+
+        def keep(case: Case, row: Row) -> None:
+            kept[repr(case)] = row
+            file.write(json.dumps({"case": repr(case), "row": row}) + "\n")
+            file.flush()
+            sys.stderr.write(f"{path.stem}: {len(kept)} of {len(cases)}\r")
+
+        if processes == 1:
+            for case in left:
+                keep(case, ask(case))
+        else:
+            with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+                asked = {pool.submit(ask, case): case for case in left}
+                for future in as_completed(asked):
+                    keep(asked[future], future.result())
+    return [kept[repr(case)] for case in cases]
+
+
+def _read(path: Path) -> dict[str, Row]:
+    """Read what is there; a line cut short by a kill is left out, and ended."""
+    if not path.exists():
+        return {}
+    text = path.read_text(encoding="utf-8")
+    whole = text[: text.rfind("\n") + 1]
+    if whole != text:
+        path.write_text(whole, encoding="utf-8")
+    lines = [json.loads(line) for line in whole.splitlines()]
+    return {line["case"]: line["row"] for line in lines}
