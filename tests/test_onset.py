@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from blocksim import Arch, limit
+from blocksim import Arch, bracket, limit
 from blocksim.arch import Weight
 from blocksim.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.engines import get_engine
@@ -105,6 +105,22 @@ def test_direct_tells_where_both_beginnings_move(
     right = Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES
     assert hold(arch, mu, "direct").onset.verdict is right
     assert jamming(arch.assembly(), mu) < JAMMED
+
+
+@pytest.mark.parametrize("case", MOVING_FROM_BOTH)
+def test_a_bracket_notices_where_both_beginnings_move(case: tuple[float, float, int]) -> None:
+    """Accelerations of a collapse vanish where it ends; of a motion beside rest they do not."""
+    angle, mu, count = case
+    found = bracket(
+        half_angle=math.radians(angle),
+        mu=mu,
+        voussoirs=count,
+        weight="sector",
+        method="pymunk",
+        tol=1e-3,
+    )
+    assert found.confirmed is False
+    assert "do not vanish" in found.reason
 
 
 @given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), st.floats(0.1, 5.0), st.floats(0.1, 100.0))
