@@ -104,7 +104,7 @@ def test_a_thin_shallow_arch_is_not_answered(ratio: float) -> None:
     engine = get_engine("mujoco")
     settings = replace(engine.settings(arch.assembly()), hold_sweeps=1500)
     world = engine.build(arch.assembly(), 0.7, settings)
-    assert onset(world, arch.assembly(), settings).verdict is Verdict.UNDECIDED
+    assert onset(world, arch.assembly(), 0.7, settings).verdict is Verdict.UNDECIDED
 
 
 def box(angle: float, width: float, height: float) -> Assembly:
