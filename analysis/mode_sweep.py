@@ -28,7 +28,8 @@ brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; all
 stand above.
 
 Run: python -m analysis.mode_sweep OUT [ARCHES [ENGINE ...]]. Rows are kept in OUT/rows; the
-same command goes on after an interruption, and a larger number begins with the same arches.
+same command goes on after an interruption, which reports the arches that are done. Thin ones
+of many voussoirs, which take pymunk most of the time, come last.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -118,8 +120,8 @@ class Draws:
         return len(self.method) * (3 * self.arches - purely_sliding)
 
     def cases(self) -> Iterator[Case]:
-        """Draw the arches."""
-        for drawn in itertools.islice(draw(), self.arches):
+        """Draw the arches; those that take fewest sweeps come first."""
+        for drawn in sorted(itertools.islice(draw(), self.arches), key=_sweeps):
             for engine in self.method:
                 yield from drawn.cases(engine)
 
@@ -181,6 +183,12 @@ class Result:
     worst_error: float
     median_error: float
     confusion: dict[tuple[str, str], int]
+
+
+def _sweeps(drawn: Drawn) -> float:
+    """How many sweeps an onset test takes: like n^2 over the length of a joint."""
+    least = least_thickness(math.radians(drawn.alpha_deg), drawn.mu, drawn.voussoirs).eta
+    return drawn.voussoirs**2 / (drawn.eta or least or ETA_MAX)
 
 
 def draw() -> Iterator[Drawn]:
@@ -279,7 +287,8 @@ def main(
         with ThreadPoolExecutor(1) as executor:
             sweep(draws, folder, executor=executor)
     else:
-        sweep(draws, folder, workers=2, progress=_tell)
+        with suppress(KeyboardInterrupt):
+            sweep(draws, folder, workers=2, progress=_tell)
     rows = {row["id"]: row for row in read_rows(folder)}
     return tuple(_result(engine, draws.arches, rows, out) for engine in draws.method)
 
@@ -288,10 +297,11 @@ def _result(
     engine: str, arches: int, rows: dict[object, dict[str, object]], out: Path
 ) -> Result:
     version = version_of(engine)
-    every = [
-        _seen(drawn, [rows[case.identity(version).hex()] for case in drawn.cases(engine)])
-        for drawn in itertools.islice(draw(), arches)
-    ]
+    every: list[Seen] = []
+    for drawn in itertools.islice(draw(), arches):
+        ids = [case.identity(version).hex() for case in drawn.cases(engine)]
+        if all(each in rows for each in ids):
+            every.append(_seen(drawn, [rows[each] for each in ids]))
     errors = np.abs([each.error for each in every if not math.isnan(each.error)])
     clear = [each for each in every if not each.drawn.near]
     _figure(every, out / f"mode_sweep_{engine}.png", engine)
