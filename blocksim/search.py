@@ -116,22 +116,20 @@ class Search:
         """Narrow the bracket until its relative width is `tol` or darkness fills it."""
         start, helped = self._width(), True
         while (width := self._width()) > tol:
+            share = 0.9 * math.log(start / width) / math.log(start / tol)
             etas = self._around_estimate(tol) if helped else ()
-            helped = True
-            if not etas:
+            halves = not etas
+            if halves:
                 middle = self._middle(tol)
                 if middle is None:
                     return
-                self._ask(middle, math.log(start / width) / math.log(start / tol))
-                continue
+                etas = (middle,)
             for eta in etas:
                 if self.low is not None and self.low < eta:
-                    self._ask(eta, math.log(start / width) / math.log(start / tol))
-            helped = self._width() < width / 4  # as two halvings would have done
-
-    def _ask(self, eta: float, share: float) -> None:
-        self._progress(0.9 * share, f"trying eta = {eta:.6g}")
-        self.probe(eta)
+                    self._progress(share, f"trying eta = {eta:.6g}")
+                    self.probe(eta)
+            # An estimate that did worse than two halvings gives way to one.
+            helped = halves or self._width() < width / 4
 
     def _ceiling(self) -> float | None:
         """Upper end of the search: what stood, or the thickest arch if it is undecided."""
