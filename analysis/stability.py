@@ -193,9 +193,9 @@ def released(engine: str, grid: Grid) -> Iterator[Row]:
                     )
                     trying = replace(setup, settings=chosen)
                     world = trying.world()
-                    world.hold(sure.sweeps)
+                    sure.repeat(world)
                     with patch.object(motion, "REPEATS", 0):
-                        seen = moving_run(trying, world, sure.sweeps)
+                        seen = moving_run(trying, world, sure.repeat)
                     at = {"step": step, "sweeps": sweeps, "overlap": seen.overlap}
                     way = float(seen.recording.displacement[-1])
                     yield Row(
@@ -259,7 +259,7 @@ def lasting(engine: str, grid: Grid) -> Iterator[Row]:
         setup = setup_of(engine, case, 1.005)
         world = setup.world()
         sure = onset(world, setup.assembly, setup.mu, setup.settings)
-        seen = moving_run(setup, world, sure.sweeps, until=grid.last)
+        seen = moving_run(setup, world, sure.repeat, until=grid.last)
         ways, times = seen.recording.displacement, seen.recording.times
         for mark in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0):
             if mark <= times[-1] + setup.settings.step:

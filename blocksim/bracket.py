@@ -43,8 +43,7 @@ class Bracket:
         Scaled thrust; angles of the inner hinge and inner sliding joint [rad]. For
         static methods.
     confirmed : bool or None
-        Whether moving runs at both ends agree; None where there were none. False as well
-        where it is no least thickness that lies between the ends (`Search.jumps`).
+        Whether moving runs at both ends agree; None where there were none.
     runs, undecided : int
         Arches tried, and those without an answer.
     blocks, splits : int or None
@@ -240,9 +239,6 @@ def _by_simulation(
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}
     reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"
-    if search.jumps:
-        confirmed = False
-        reason += "; accelerations do not vanish between them: a motion beside rest ends there"
     if reduction:
         reason += f"; {reduced_words(blocks, arch.voussoirs, splits)}"
     return replace(

@@ -23,6 +23,7 @@ undecided.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,7 +80,7 @@ class Motion:
 def moving_run(
     setup: Setup,
     held: World,
-    held_sweeps: int,
+    repeat: Callable[[World], None],
     *,
     until: float | None = None,
     progress: Progress = silent,
@@ -91,8 +92,8 @@ def moving_run(
     setup : Setup
     held : World
         Built from it and at rest, impulses converged as far as they go.
-    held_sweeps : int
-        Sweeps that took, to do the same again if the run must be repeated.
+    repeat : callable
+        Holds another world of it likewise, if the run must be repeated.
     until : float, optional
         Time to record for, whatever happens [sqrt(r/g)]; by default the run stops as
         soon as its verdict is certain.
@@ -108,7 +109,7 @@ def moving_run(
             break
         setup = setup.finer(FINER)
         again = setup.world()
-        again.hold(held_sweeps)
+        repeat(again)
         motion = _released(setup, again, until, progress)
     return motion
 

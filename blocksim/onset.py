@@ -17,20 +17,16 @@ where a block is farther than `FARTHEST` from the origin: its coordinates round 
 of that distance, which over a displacement of `PROBE` comes up to `closing` at 5e4 sizes.
 
 Coulomb's law may have two answers, rest and motion, where joints slide: no theorem tells that
-an arch that can rest does. Which one is found depends on where the search for impulses begins.
-A mechanism that slides is therefore believed only if motion is found from two sides, from
-nothing and from blocks that cannot slide (135.17 deg, mu 1.13695, n = 19 moves 0.2 % above its
-least thickness from the one and rests from the other; 125.02 deg, mu 0.8594, n = 10 the
-other way round). Few thick voussoirs with much friction can jam, and then motion is found from
-both (155 deg, mu 3, n = 7: up to 10 % above the least thickness, its forces without fault). The
-measure is Painleve's: a slip at a contact presses its blocks together, by friction times what
-turns them of its reaction (`jamming`). From about 1 on this was seen as a rule; from `JAMMED`
-on a mechanism that slides is no certificate, and the test undecided. Below, it is rare, but
-it is there, as contacts act together. With the sector weight, 151.67 deg, mu 2.1503, n = 7
-(measure 0.90) moves from both beginnings 2.2 % above its least thickness, 148.66 deg,
-mu 2.0065, n = 12 (0.69) 2 % above, 129.59 deg, mu 0.9682, n = 24 (0.27) 1 % above. Their
-accelerations do not vanish where motion ends, as those of a collapse do at the limit. Engines
-that state the residual of their contacts look for rest first, and are not held to this.
+an arch that can rest does. Which one is found depends on where the search for impulses begins,
+and few thick voussoirs with much friction move whatever it is (155 deg, mu 3, n = 7: up to 10 %
+above the least thickness, its forces without fault). An arch stands if it can rest. A mechanism
+that slides is therefore believed only where no forces exist that would balance the weights
+(`limit.equilibrium`); where they do, the engine begins again, with these. If it keeps them, the
+arch stands: the forces are not taken on trust. An engine that cannot be given any is undecided.
+So it goes where sweeps run out (from `LATE` on) over what is a mechanism to a thousandth: a
+mode of sliding can take 10^6 sweeps to die away (125.02 deg, mu 0.8594, n = 10).
+Without sliding the answer is unique, and none of this is asked; nor is it of engines that state
+the residual of their contacts, which look for rest first.
 """
 
 from __future__ import annotations
@@ -40,18 +36,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from blocksim.assembly import PLANAR, Array, Assembly, displacement
+from blocksim.assembly import Array, Assembly, displacement
 from blocksim.engines.base import Settings, World, trusted
 from blocksim.joints import overlap_share, slip_share
+from blocksim.limit import equilibrium
 from blocksim.progress import Progress, silent
 from blocksim.verdict import Verdict
 
 WORK = 0.99
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
-JAMMED = 0.95
-LATE = 0.1
-"""Share of the sweeps allowed after which joints that slide keep impulses from converging."""
+LATE, NEARLY = 0.1, 1e-3
+"""Share of the sweeps allowed, and overlap; see above."""
 SLIPS = 0.02
 """Slip over the largest motion of a joint above which a mechanism slides."""
 FARTHEST = 1e4
@@ -76,6 +72,8 @@ class Onset:
         Sweeps spent.
     may_jam : bool
         Whether it starts to move where rest may be possible, too.
+    may_rest : bool
+        Whether it starts to move where these exist.
     too_far : bool
         Whether it was built too far from the origin to be looked at.
     """
@@ -84,22 +82,31 @@ class Onset:
     acceleration: float
     mechanism: Array
     sweeps: int
-    may_jam: bool = False
+    forces: Array | None = None
+    may_rest: bool = False
     too_far: bool = False
+
+    def repeat(self, world: World) -> None:
+        """Bring a new world of the same blocks to where this test ended."""
+        if self.forces is not None:
+            world.begin(self.forces)
+        world.hold(self.sweeps)
 
     @property
     def reason(self) -> str:
         """The evidence in words."""
         size = f"{self.acceleration:.1e} g after {self.sweeps} sweeps"
         match self.verdict:
+            case Verdict.STANDS if self.forces is not None:
+                return f"held at rest, it keeps forces of equilibrium it was given, to {size}"
             case Verdict.STANDS:
                 return f"held at rest, contact forces balance the weight to {size}"
             case Verdict.COLLAPSES:
                 return f"held at rest, it starts as a mechanism with {size}"
             case Verdict.UNDECIDED if self.too_far:
                 return f"a block is more than {FARTHEST:g} sizes from the origin"
-            case Verdict.UNDECIDED if self.may_jam:
-                return f"it may start with {size}, or jam: so much friction allows both"
+            case Verdict.UNDECIDED if self.may_rest:
+                return f"it starts with {size}, or rests: friction allows both"
             case Verdict.UNDECIDED:
                 return f"contact forces have not converged ({size})"
 
@@ -143,23 +150,26 @@ def onset(
         )
     allowed, built = settings.hold_sweeps, world.poses()
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
-    total, sweeps = 0, min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
-    exact, from_nothing = world.quality().residual is not None, True
+    first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
+    total, sweeps, forces = 0, first, None
+    unasked = world.quality().residual is None and not settings.tilt
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
         seen = _look(world, assembly, settings, built, accelerations, total)
         falls = seen.verdict is Verdict.COLLAPSES
-        slides = not exact and slip_share(assembly, seen.mechanism) > SLIPS
-        if slides and from_nothing and (falls or total > LATE * allowed):
-            from_nothing = False
-            if spent := world.stick(total):
-                sweeps = total
-                total += spent
-                allowed += 2 * spent
+        nearly = falls or (
+            total > LATE * allowed and overlap_share(assembly, seen.mechanism) < NEARLY
+        )
+        if unasked and nearly and slip_share(assembly, seen.mechanism) > SLIPS:
+            unasked = False
+            forces = equilibrium(simulated or assembly, mu)
+            if forces is not None and world.begin(forces):
+                sweeps = first
                 continue
-        if falls and slides and jamming(simulated or assembly, mu) > JAMMED:
-            return replace(seen, verdict=Verdict.UNDECIDED, may_jam=True)
+        seen = replace(seen, forces=forces)
+        if falls and forces is not None:
+            return replace(seen, verdict=Verdict.UNDECIDED, may_rest=True)
         if seen.verdict is not Verdict.UNDECIDED or total >= allowed:
             return seen
         progress(total / allowed, "onset test")
@@ -196,37 +206,3 @@ def _driven(assembly: Assembly, accelerations: Array, tilt: float) -> bool:
     of_weight = float((masses * accelerations * weight[: accelerations.shape[1]]).sum())
     of_motion = float((masses * accelerations**2).sum())
     return of_weight > WORK * of_motion
-
-
-def jamming(assembly: Assembly, mu: float) -> float:
-    """Friction times the largest coupling of slip and closing at any contact.
-
-    A contact at the end of a joint answers an impulse along the joint by motion along and
-    across it, the second because the impulse turns the blocks. Where friction times the
-    ratio of the part across to what an impulse across would give exceeds 1, Coulomb's law
-    has no unique answer (Painleve 1895, for one contact).
-
-    Parameters
-    ----------
-    assembly : Assembly
-    mu : float
-        Friction coefficient.
-
-    Returns
-    -------
-    float
-    """
-    before, after, ends, normal, tangent, _, smooth = assembly.joint_arrays
-    # The support is appended as a block that nothing moves, index -1.
-    mobility = np.vstack([1 / assembly.masses, np.zeros(PLANAR)])
-    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
-    across = along = np.zeros(ends.shape[:2])
-    for block in (before, after):
-        arm = ends - centres[block][:, None]
-        turned = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
-        presses = np.einsum("jek,jk->je", turned, normal)
-        shears = np.einsum("jek,jk->je", turned, tangent)
-        shift, spin = mobility[block, 0][:, None], mobility[block, 2][:, None]
-        across = across + shift + spin * presses**2
-        along = along + spin * presses * shears
-    return float(mu * (np.abs(along) / across)[~smooth].max())

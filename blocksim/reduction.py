@@ -247,9 +247,9 @@ class ReducedWorld:
         """Solve the contacts of one step from rest."""
         return self._reduction.rates(self._world.hold(sweeps))
 
-    def stick(self, sweeps: int) -> int:
-        """Begin anew, with the impulses of blocks that cannot slide."""
-        return self._world.stick(sweeps)
+    def begin(self, forces: Array) -> bool:
+        """Begin anew, with forces in the joints of the blocks that are simulated."""
+        return self._world.begin(forces)
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""

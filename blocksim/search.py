@@ -23,8 +23,6 @@ THINNEST = 1e-6
 """Search below this ratio is given up."""
 ASIDE = 0.4
 """How far to the sides of the estimate probes are made, in units of the tolerance."""
-JUMP = 5.0
-"""How much farther than the bracket reaches accelerations may seem to vanish."""
 CURVED = 5.0
 """Error of the estimate over the square of how far it reaches, both relative."""
 
@@ -66,20 +64,6 @@ class Search:
     def undecided(self) -> int:
         """Ratios without an answer."""
         return len(self._dark)
-
-    @property
-    def jumps(self) -> bool:
-        """Whether the accelerations of collapses do not vanish where the bracket ends.
-
-        Then it is no least thickness that has been found, but the end of a motion that is
-        possible beside rest.
-        """
-        if self.high is None or len(self._falls) < 2:
-            return False
-        (far, more), (near, less) = sorted(self._falls)[-2:]
-        if not more > less > 0:
-            return less > 0
-        return near + less * (near - far) / (more - less) > near + JUMP * (self.high - near)
 
     def probe(self, eta: float) -> Verdict:
         """Ask the judge and keep its answer."""

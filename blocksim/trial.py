@@ -40,8 +40,8 @@ class Held:
 
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
         """Let the arch go; see `moving_run`."""
-        swept = self.onset.sweeps
-        return moving_run(self.setup, self.world, swept, until=until, progress=progress)
+        repeat = self.onset.repeat
+        return moving_run(self.setup, self.world, repeat, until=until, progress=progress)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -150,15 +150,20 @@ def hold(
             reduction=reduction,
         )
         world = setup.world()
+        friction = min(mu, setup.engine.most_friction)
         first = onset(
-            world, setup.assembly, mu, setup.settings, progress, simulated=setup.simulated
+            world,
+            setup.assembly,
+            friction,
+            setup.settings,
+            progress,
+            simulated=setup.simulated,
         )
-        if reduction and (first.may_jam or first.verdict is not Verdict.UNDECIDED):
+        if reduction and (first.may_rest or first.verdict is not Verdict.UNDECIDED):
             resultants = world.resultants()
-            friction = min(mu, setup.engine.most_friction)
             moving = reduction.overstrained(resultants, friction, setup.settings.still)
-            # Large blocks jam sooner than the voussoirs they are made of.
-            if first.may_jam or reduction.parts(resultants):
+            # Large blocks move where they may rest sooner than the voussoirs they are made of.
+            if first.may_rest or reduction.parts(resultants):
                 reduction, splits = None, 0
                 continue
             if moving:

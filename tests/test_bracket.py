@@ -79,27 +79,6 @@ def test_accelerations_shorten_the_search(
     assert search.runs - before <= 18
 
 
-@pytest.mark.parametrize("tol", [1e-3, 1e-6])
-@given(thresholds, st.floats(-0.5, 2.0), st.floats(0.1, 10.0))
-def test_accelerations_that_end_in_a_jump_are_seen(
-    tol: float, threshold: float, bend: float, slope: float
-) -> None:
-    """Those of a collapse vanish at the threshold; where they do not, it is another."""
-    for past, seen in ((0.0, False), (0.05, True)):
-
-        def judge(eta: float, past: float = past) -> Answer:
-            short = 1 - eta / threshold
-            if short <= 0:
-                return Answer(Verdict.STANDS, 0.0)
-            return Answer(Verdict.COLLAPSES, slope * (short + past) * (1 + bend * short))
-
-        search = Search(judge)
-        search.expand(threshold * 1.004)
-        search.bisect(tol)
-        assert search.low < threshold <= search.high
-        assert search.jumps == seen
-
-
 @given(thresholds, st.floats(1e-6, 0.1), st.randoms(use_true_random=False))
 def test_senseless_accelerations_do_no_harm(threshold: float, tol: float, random) -> None:
     search = Search(

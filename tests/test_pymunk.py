@@ -442,7 +442,7 @@ def test_standing_arch_stays_where_it_was_built() -> None:
     setup = Setup.of(replace(SMALL, eta=0.15), 0.6, "pymunk")
     world = setup.world()
     first = onset(world, setup.assembly, setup.mu, setup.settings)
-    motion = moving_run(setup, world, first.sweeps)
+    motion = moving_run(setup, world, first.repeat)
     assert motion.verdict is Verdict.STANDS
     assert motion.recording.displacement.max() < 1e-5
     assert motion.recording.times[-1] >= SOONEST

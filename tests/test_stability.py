@@ -57,10 +57,10 @@ def held(setup: Setup) -> Onset:
 def released(setup: Setup, until: float | None = None) -> Motion:
     """Let go from impulses that the rule's own settings have converged."""
     ruled = replace(setup, settings=setup.engine.settings(setup.assembly))
-    swept = held(ruled).sweeps
+    repeat = held(ruled).repeat
     world = setup.world()
-    world.hold(swept)
-    return moving_run(setup, world, swept, until=until)
+    repeat(world)
+    return moving_run(setup, world, repeat, until=until)
 
 
 @pytest.mark.parametrize(("ratio", "right"), SIDES)
@@ -178,7 +178,7 @@ def test_what_counts_as_noise_of_a_release(
     monkeypatch.setattr(motion, "REPEATS", 0)
     setup = setup_at(1.02, 90, 0.7, 9, "pybullet")
     world = Drifting(setup, way)
-    seen = moving_run(setup, world, 0, until=10.0)
+    seen = moving_run(setup, world, lambda _: None, until=10.0)
     assert overlap_share(setup.assembly, world.poses()) > motion.OVERLAP
     assert seen.verdict is (Verdict.STANDS if right else Verdict.UNDECIDED)
     assert (seen.recording.times[-1] == pytest.approx(10.0)) == right

@@ -35,7 +35,7 @@ class Settings:
     sweeps : int
         Sweeps over all contacts in each step of a moving run.
     hold_sweeps : int
-        Most sweeps the onset test may spend; thrice that where joints slide.
+        Most sweeps the onset test may spend.
     still : float
         Acceleration below which an arch held at rest counts as at rest [g].
     closing : float
@@ -105,21 +105,22 @@ class World(Protocol):
         """
         ...
 
-    def stick(self, sweeps: int) -> int:
-        """Begin anew, with the impulses of blocks that cannot slide.
+    def begin(self, forces: Array) -> bool:
+        """Begin anew, with forces that the joints may carry.
 
         Coulomb's law may allow both rest and motion, and which of them is found depends on
         where the search for impulses begins.
 
         Parameters
         ----------
-        sweeps : int
-            Sweeps over all contacts to find those impulses with.
+        forces : (joints, 2, 2) float
+            At the inner and the outer end of each joint, along its normal and its tangent,
+            as they act on `after` [mean weights].
 
         Returns
         -------
-        int
-            Sweeps spent; 0 from an engine whose answer does not depend on a beginning.
+        bool
+            False from an engine that cannot be given any.
         """
         ...
 

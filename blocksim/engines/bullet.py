@@ -270,9 +270,9 @@ class _Bodies:
             bullet.resetBaseVelocity(body, nothing, nothing, physicsClientId=self._client)
         return accelerations
 
-    def stick(self, sweeps: int) -> int:  # noqa: ARG002 - the protocol's
-        """Do nothing: Bullet forgets impulses of friction."""
-        return 0
+    def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
+        """Decline: Bullet forgets impulses of friction."""
+        return False
 
     def advance(self, steps: int) -> None:
         """Let the blocks move, in parts of a step where they move far."""

@@ -20,7 +20,9 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterator
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -153,16 +155,16 @@ class _Space:
             body.angular_velocity = 0.0
         return np.array(rates) / self._settings.step
 
-    def stick(self, sweeps: int) -> int:
-        """Begin anew, with the impulses of blocks that cannot slide."""
-        self._space, self._bodies, self._shapes = self._build()
-        rough = [shape for shape in self._shapes if shape.friction > 0]
-        for shape in rough:
-            shape.friction = math.sqrt(FRICTION_CAP)
-        self.hold(sweeps)
-        for shape in rough:
-            shape.friction = self._friction
-        return sweeps
+    def begin(self, forces: Array) -> bool:
+        """Write the impulses of given forces into the contacts."""
+        self.hold(1)
+        joints = self._assembly.joint_arrays
+        along = np.stack([joints.normal, joints.tangent], axis=1)
+        impulses = self._settings.step * np.einsum("jek,jkd->jed", forces, along)
+        for joint, place, axes, contact in self._contacts():
+            end = np.hypot(*(joints.ends[joint] - place).T).argmin()
+            contact.jnAcc, contact.jtAcc = (axes @ impulses[joint, end]).tolist()
+        return True
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
@@ -175,23 +177,44 @@ class _Space:
         return np.array([(*body.position, body.angle) for body in self._bodies])
 
     def resultants(self) -> Array:
-        """Add up the impulses of contacts, which pymunk tells only to those who pickle it."""
+        """Add up the impulses of contacts."""
         found = np.zeros((len(self._sides), 3))
-        names = {shape: index for index, shape in enumerate(self._shapes)}
-        joints = {sides: index for index, sides in enumerate(self._sides)}
-        for pair in dict(self._space.__getstate__()["special"])["arbiters"]:
-            sides = names[pair["a"]], names[pair["b"]]
-            sign = 1.0 if sides in joints else -1.0
-            joint = joints.get(sides, joints.get(sides[::-1]))
-            x, y = pair["n"]
-            first, second = pair["a"].body.position, pair["b"].body.position
-            for contact in pair["contacts"]:
-                push, drag = sign * contact["jnAcc"], sign * contact["jtAcc"]
-                force = x * push - y * drag, x * drag + y * push
-                # The two shapes overlap: the contact is midway.
-                arm = (first + contact["r1"] + second + contact["r2"]) / 2
-                found[joint] += *force, arm.cross(force)
+        for joint, place, axes, contact in self._contacts():
+            x, y = np.array([contact.jnAcc, contact.jtAcc]) @ axes
+            found[joint] += x, y, place[0] * y - place[1] * x
         return found / self._settings.step
+
+    def _contacts(self) -> Iterator[tuple[int, Array, Array, Any]]:
+        """Go through the contacts, which pymunk shows only to those who pickle a space.
+
+        Yields
+        ------
+        joint : int
+        place : (2,) float
+        axes : (2, 2) float
+            Normal and tangent of its impulses, as they act on the block after the joint.
+        contact : Any
+            Chipmunk's own: `jnAcc` and `jtAcc` are its impulses.
+        """
+        space: Any = self._space
+        shapes: list[Any] = self._shapes
+        names = {shape._shape: index for index, shape in enumerate(shapes)}
+        joints = {sides: index for index, sides in enumerate(self._sides)}
+        for pair in space._get_arbiters():
+            sides = names[pair.a], names[pair.b]
+            forth, back = joints.get(sides), joints.get(sides[::-1])
+            first, second = (shapes[side].body.position for side in sides)
+            normal = pymunk.Vec2d(pair.n.x, pair.n.y)
+            axes = np.array([normal, normal.perpendicular()])
+            for contact in pair.contacts[0 : pair.count]:
+                # The two shapes overlap: the contact is midway.
+                x = first.x + contact.r1.x + second.x + contact.r2.x
+                y = first.y + contact.r1.y + second.y + contact.r2.y
+                place = np.array([x, y]) / 2
+                if forth is not None:
+                    yield forth, place, axes, contact
+                elif back is not None:
+                    yield back, place, -axes, contact
 
     def quality(self) -> Quality:
         """Chipmunk does not tell."""

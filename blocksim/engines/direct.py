@@ -102,9 +102,9 @@ class Blocks:
         touch = self._touch(self._poses, self._step)
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
-    def stick(self, sweeps: int) -> int:  # noqa: ARG002 - the protocol's
-        """Do nothing: rest is looked for first."""
-        return 0
+    def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
+        """Decline: rest is looked for first."""
+        return False
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; in few long steps while they hardly do."""

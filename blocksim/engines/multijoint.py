@@ -177,9 +177,9 @@ class _Bodies:
         library.mj_step(self._model, self._state)
         return self._state.qacc.copy()
 
-    def stick(self, sweeps: int) -> int:  # noqa: ARG002 - the protocol's
-        """Do nothing: the contacts' problem is convex, and has one answer."""
-        return 0
+    def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
+        """Decline: the contacts' problem is convex, and has one answer."""
+        return False
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; before they first do, contacts take up the weight again."""
