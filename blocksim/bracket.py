@@ -205,10 +205,10 @@ def _by_simulation(
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     ends: dict[Verdict, Held] = {}
     reduction: Reduction | None = None
-    blocks = splits = 0
+    blocks = splits = both = 0
 
     def judge(eta: float) -> Answer:
-        nonlocal reduction, blocks, splits
+        nonlocal reduction, blocks, splits, both
         built = replace(arch, eta=eta)
         if reduction:
             # What moves at one thickness is the best guess for the next.
@@ -218,6 +218,7 @@ def _by_simulation(
         held = held_at(built, reduction=reduction)
         reduction = held.setup.reduction
         blocks, splits = max(blocks, held.setup.blocks), splits + held.splits
+        both += held.onset.may_rest
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = held
         return Answer(held.onset.verdict, held.onset.acceleration)
@@ -239,6 +240,8 @@ def _by_simulation(
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}
     reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"
+    if both:
+        reason += f"; friction allows both rest and motion at {both} of them"
     if reduction:
         reason += f"; {reduced_words(blocks, arch.voussoirs, splits)}"
     return replace(

@@ -100,9 +100,23 @@ def test_an_engine_that_cannot_be_given_forces_says_no_wrong_thing(case: Case) -
 
 
 def test_pybullet_says_why_it_is_undecided() -> None:
+    """And its bracket, which reaches from the limit to where it rests from nothing."""
     pytest.importorskip("pybullet", exc_type=ImportError)
     case = TWO_ANSWERS[-1]
     for ratio, both in ((0.9995, False), (1.0005, True)):
         seen = hold(arch_at(ratio, *case), case[1], "pybullet").onset
         assert ("friction allows both" in seen.reason) == both
         assert seen.verdict is (Verdict.UNDECIDED if both else Verdict.COLLAPSES)
+    angle, mu, count, weight = case
+    found = bracket(
+        half_angle=math.radians(angle),
+        mu=mu,
+        voussoirs=count,
+        weight=weight,
+        method="pybullet",
+        tol=4e-3,
+    )
+    assert "friction allows both" in found.reason
+    assert found.eta_low == pytest.approx(arch_at(1.0, *case).eta, rel=4e-3)
+    assert found.eta_high is not None
+    assert found.eta_high > arch_at(1.01, *case).eta
