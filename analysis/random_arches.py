@@ -63,8 +63,8 @@ PLANS = {
     ),
     "pybullet": Plan(
         arches=40,
-        degrees=(60, 155),
-        counts=(5, 30),
+        degrees=(30, 155),
+        counts=(5, 60),
         tol=2e-3,
         hard=((155, 3, 27),),
     ),

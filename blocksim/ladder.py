@@ -1,7 +1,15 @@
-"""The ladder of methods: which there are, what each sees, which one a question needs."""
+"""The ladder of methods: which there are, what each sees, which one a question needs.
+
+`METHODS` go from the cheapest to the dearest, as measured (`analysis/costs.py`), and each
+says how fine a bracket it is good for, as measured (`analysis/random_arches.py`,
+`direct_arches.py`). So `auto` is the first of them that sees what is asked to that width.
+`theory` is passed over: it is of the continuous arch, which n voussoirs differ from by up to
+33/n^2, and no cheaper, since answers state both.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from blocksim import engines
@@ -23,7 +31,7 @@ class Method:
     sees : str
         What it can tell.
     finest : float
-        Smallest relative width of a bracket it can answer for.
+        Smallest relative width of a bracket it can answer for; its error is less.
     is_spatial : bool
         Whether it sees motion out of the plane.
     reduces : bool
@@ -89,11 +97,6 @@ METHODS = {
 }
 
 CHOICES = ("auto", *METHODS)
-REASONS = {
-    "limit": "exact for the voussoirs as built, which meets any tolerance, in milliseconds",
-    SPATIAL: "the only one that sees out of the plane",
-}
-"""Why `auto` takes a method. `theory` is no cheaper where the voussoirs as built count."""
 
 
 def choose(
@@ -101,10 +104,11 @@ def choose(
     tol: float = 0.0,
     *,
     spatial: bool = False,
+    moving: bool = False,
     settings: Overrides = BY_RULE,
     reduce: bool = False,
 ) -> Method:
-    """Return the method asked for; for `auto` the cheapest that is exact, `limit`.
+    """Return the method asked for; for `auto` the cheapest that can answer.
 
     Parameters
     ----------
@@ -113,8 +117,9 @@ def choose(
     tol : float
         Relative width of the bracket asked for, 0 where there is none.
     spatial : bool
-        Whether the question is of motion out of the plane: `auto` is then the method
-        that sees it.
+        Whether the question is of motion out of the plane.
+    moving : bool
+        Whether it is of motion at all.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
     reduce : bool
@@ -123,15 +128,28 @@ def choose(
     Raises
     ------
     InputError
-        If there is no such method, or it cannot answer to that tolerance, or does not
-        see out of the plane where that is asked, or knows no such setting; if there is
-        nothing to reduce.
+        If there is no such method, or it cannot answer to that tolerance, or moves
+        nothing or does not see out of the plane where that is asked, or knows no such
+        setting; if there is nothing to reduce.
     """
     if method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
-    rung = METHODS[(SPATIAL if spatial else "limit") if method == "auto" else method]
+    if method == "auto":
+        rung = next(
+            each
+            for each in METHODS.values()
+            if each.name != "theory"
+            and each.finest <= (tol or math.inf)
+            and each.is_spatial >= spatial
+            and each.is_static <= (not moving)
+        )
+    else:
+        rung = METHODS[method]
     if spatial and not rung.is_spatial:
         raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
+    if moving and rung.is_static:
+        able = ", ".join(engines.ENGINES)
+        raise InputError("method", method, f"one of {able}: others move nothing")
     if reduce and (spatial or not rung.reduces):
         able = ", ".join(each.name for each in METHODS.values() if each.reduces)
         raise InputError("reduce", reduce, f"left out but for {able}, in the plane")
@@ -148,7 +166,14 @@ def choose(
 
 def chosen_words(method: str, rung: Method) -> str:
     """Say what `auto` took and why, to be added to the reason of an answer."""
-    return f"; auto took {rung.name}: {REASONS[rung.name]}" if method == "auto" else ""
+    if method != "auto":
+        return ""
+    if rung.is_spatial:
+        seen = "sees out of the plane"
+    else:
+        seen = "tells of the voussoirs as built" if rung.is_static else "moves them"
+    width = f"a width of {rung.finest:g}" if rung.finest else "any width"
+    return f"; auto took {rung.name}: the cheapest that {seen}, good for {width}"
 
 
 def missing(method: Method) -> str | None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from blocksim.arch import Arch, require_friction, require_tilt
-from blocksim.engines import ENGINES
 from blocksim.engines.base import World
-from blocksim.errors import InputError
 from blocksim.joints import ObservedJoint, classify, closed_joints, observed_mode
 from blocksim.ladder import choose
 from blocksim.modes import Mode
@@ -245,7 +243,7 @@ def simulate(
     mu : float
         Friction coefficient, above 0, inf allowed.
     method : str
-        Name of an engine.
+        An engine, or `auto`.
     duration : float, optional
         Time to record [sqrt(r/g)]; by default until the verdict is certain.
     tilt : float
@@ -269,13 +267,11 @@ def simulate(
     """
     require_friction(mu)
     require_tilt(tilt, plane_lock=plane_lock)
-    rung = choose(method, spatial=tilt != 0 or plane_lock, settings=settings)
-    if rung.is_static:
-        raise InputError("method", method, f"one of {', '.join(ENGINES)}: others move nothing")
+    rung = choose(method, spatial=tilt != 0 or plane_lock, moving=True, settings=settings)
     held = hold(
         arch,
         mu,
-        method,
+        rung.name,
         tilt=tilt,
         plane_lock=plane_lock,
         settings=settings,

@@ -13,6 +13,7 @@ from blocksim.arch import Arch
 from blocksim.check import check
 from blocksim.errors import InputError
 from blocksim.joints import JointState
+from blocksim.ladder import choose, chosen_words
 from blocksim.modes import Mode
 from blocksim.verdict import Verdict
 
@@ -76,3 +77,22 @@ def test_wrong_values(field: str, mu: float, method: str) -> None:
     with pytest.raises(InputError) as caught:
         check(Arch(half_angle=1.0, eta=0.2, voussoirs=9), mu=mu, method=method)
     assert caught.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("asked", "taken", "why"),
+    [
+        ({}, "limit", "voussoirs as built, good for any width"),
+        ({"tol": 1e-9}, "limit", "good for any width"),
+        ({"moving": True}, "direct", "moves them, good for a width of 1e-08"),
+        ({"moving": True, "tol": 1e-2}, "direct", "moves them"),
+        ({"spatial": True}, "pybullet", "out of the plane"),
+    ],
+)
+def test_auto_takes_the_cheapest_that_can_answer(
+    asked: dict[str, float], taken: str, why: str
+) -> None:
+    rung = choose("auto", **asked)
+    assert rung.name == taken
+    assert why in chosen_words("auto", rung)
+    assert chosen_words(taken, rung) == ""

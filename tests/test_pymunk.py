@@ -457,7 +457,7 @@ def test_duration_is_kept_to() -> None:
     assert np.all(np.diff(recording.times) > 0)
 
 
-@pytest.mark.parametrize("method", ["theory", "limit", "auto", "bullet"])
+@pytest.mark.parametrize("method", ["theory", "limit", "bullet"])
 def test_static_and_unknown_methods_move_nothing(method: str) -> None:
     with pytest.raises(InputError) as caught:
         simulate(SMALL, mu=0.6, method=method)

@@ -155,7 +155,9 @@ def simulate(
     mu: Mu = None,
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
-    method: Annotated[str, typer.Option(help=f"An engine: {', '.join(ENGINES)}.")] = "pymunk",
+    method: Annotated[
+        str, typer.Option(help=f"auto, or an engine: {', '.join(ENGINES)}.")
+    ] = "pymunk",
     seconds: Annotated[
         float | None, typer.Option(help="Seconds to record; until decided if left out.")
     ] = None,
