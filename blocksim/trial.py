@@ -185,8 +185,12 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
     if tilt and verdict is Verdict.COLLAPSES:
         joints = ()  # their states are those of motion in the plane
     elif verdict is Verdict.COLLAPSES:
-        joints = classify(setup.assembly, motion.mechanism if motion else first.mechanism)
-        mode = observed_mode(joints, arch.half_angle, arch.voussoirs)
+        # In motion more joints may join in: then what it starts with names the mode.
+        for mechanism in ([motion.mechanism] if motion else []) + [first.mechanism]:
+            joints = classify(setup.assembly, mechanism)
+            mode = observed_mode(joints, arch.half_angle, arch.voussoirs)
+            if mode:
+                break
     return Trial(
         verdict=verdict,
         reason=reason,

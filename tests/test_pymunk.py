@@ -29,6 +29,7 @@ from blocksim.modes import Mode
 from blocksim.motion import SOONEST, moving_run
 from blocksim.onset import onset
 from blocksim.setup import Setup
+from blocksim.theory import least_thickness
 from blocksim.trial import simulate, trial
 from blocksim.verdict import Verdict
 
@@ -469,3 +470,16 @@ def test_missing_engine(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("blocksim.engines.find_spec", lambda _name: None)
     with pytest.raises(MissingPart, match="pip install"):
         get_engine("pymunk")
+
+
+def test_what_it_starts_with_names_the_mode() -> None:
+    """A thin arch that slides where it is published, and opens at the crown a little later."""
+    mu = 0.1802
+    arch = Arch(half_angle=math.radians(75), eta=0.126, voussoirs=20)
+    published = least_thickness(arch.half_angle, mu)
+    seen = trial(arch, mu, "pymunk")
+    assert seen.mode is Mode.SS
+    assert published.modes == (Mode.SS,)
+    sliding = sorted({abs(joint.angle) for joint in seen.joints if joint.state == "slides"})
+    spacing = 2 * arch.half_angle / arch.voussoirs
+    assert sliding == pytest.approx([published.beta_s, arch.half_angle], abs=spacing / 2)
