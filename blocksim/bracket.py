@@ -43,8 +43,8 @@ class Bracket:
         Scaled thrust; angles of the inner hinge and inner sliding joint [rad]. For
         static methods.
     confirmed : bool or None
-        Whether moving runs at both ends agree; None where there were none. False as well
-        where it is no least thickness that lies between the ends (`Search.jumps`).
+        Whether moving runs at both ends agree, and it is a least thickness that lies between
+        them (`Search.jumps`); None where there were no moving runs.
     runs, undecided : int
         Arches tried, and those without an answer.
     blocks, splits : int or None
@@ -237,11 +237,15 @@ def _by_simulation(
             ended = conclude(held, moving=confirm)
             verdicts.append(ended.verdict is expected)
             mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
-    confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
-    words = {True: "confirmed", False: "not confirmed", None: "not tried"}
-    reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"
+    agree = bool(verdicts) and all(verdicts)
+    confirmed = (agree and not search.jumps) if confirm else None
+    words = {
+        True: "confirmed by moving runs",
+        False: "not confirmed",
+        None: "not tried by moving runs",
+    }
+    reason = f"onset test at {search.runs} ratios, ends {words[confirmed]}"
     if search.jumps:
-        confirmed = False
         reason += "; accelerations do not vanish between them: a motion beside rest ends there"
     if reduction:
         reason += f"; {reduced_words(blocks, arch.voussoirs, splits)}"
