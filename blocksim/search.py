@@ -74,12 +74,11 @@ class Search:
         Then it is no least thickness that has been found, but the end of a motion that is
         possible beside rest.
         """
-        if self.high is None or len(self._falls) < 2:
+        line = self._line()
+        if self.high is None or line is None:
             return False
-        (far, more), (near, less) = sorted(self._falls)[-2:]
-        if not more > less > 0:
-            return less > 0
-        return near + less * (near - far) / (more - less) > near + JUMP * (self.high - near)
+        _, near, zero = line
+        return zero > near + JUMP * (self.high - near)
 
     def probe(self, eta: float) -> Verdict:
         """Ask the judge and keep its answer."""
@@ -153,11 +152,23 @@ class Search:
 
     def _around_estimate(self, tol: float) -> tuple[float, ...]:
         """Ratios to both sides of where the accelerations of two collapses vanish."""
-        if self.high is None or self._dark or len(self._falls) < 2:
+        line = self._line()
+        if self.high is None or self._dark or line is None:
             return ()
-        (far, more), (near, less) = sorted(self._falls)[-2:]
-        if not more > less > 0:
+        far, near, zero = line
+        if not math.isfinite(zero):
             return ()
-        zero = near + less * (near - far) / (more - less)
         aside = zero * max(ASIDE * tol, CURVED * (1 - far / zero) * (1 - near / zero))
         return tuple(eta for eta in (zero + aside, zero - aside) if near < eta < self.high)
+
+    def _line(self) -> tuple[float, float, float] | None:
+        """Two largest ratios that collapsed, and where a line through accelerations vanishes.
+
+        That is nowhere (inf) where they do not fall, nan where they tell nothing.
+        """
+        if len(self._falls) < 2:
+            return None
+        (far, more), (near, less) = sorted(self._falls)[-2:]
+        if more > less > 0:
+            return far, near, near + less * (near - far) / (more - less)
+        return far, near, math.inf if less > 0 else math.nan
