@@ -10,26 +10,16 @@ import math
 
 import numpy as np
 import pytest
+from arches import arch_at
 from hypothesis import given
 from hypothesis import strategies as st
 
-from blocksim import Arch, bracket, limit
-from blocksim.arch import Weight
+from blocksim import bracket
 from blocksim.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.engines import get_engine
 from blocksim.onset import JAMMED, jamming
 from blocksim.trial import hold, trial
 from blocksim.verdict import Verdict
-
-
-def arch_at(
-    ratio: float, angle: float, mu: float, count: int, weight: Weight = "centreline"
-) -> Arch:
-    alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count, weight).eta
-    assert least is not None
-    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
-
 
 TWO_ANSWERS = {
     # Impulses that begin with nothing rest, those of blocks that cannot slide do not.
