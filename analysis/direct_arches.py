@@ -29,7 +29,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.drawing import Draw, draws, plot_by_mode
-from blocksim import Arch, Mode, Verdict, bracket
+from blocksim import Mode, Verdict, bracket
 from blocksim.trial import trial
 from blocksim.view.style import FONT
 
@@ -84,17 +84,7 @@ def ask(draw: Draw) -> Outcome:
         tol=TOL,
     )
     below, above = (
-        trial(
-            Arch(
-                half_angle=draw.half_angle,
-                eta=draw.eta * factor,
-                voussoirs=draw.voussoirs,
-                weight=draw.weight,
-            ),
-            draw.mu,
-            "direct",
-            moving=False,
-        ).verdict
+        trial(draw.arch(factor), draw.mu, "direct", moving=False).verdict
         for factor in (1 - ASIDE, 1 + ASIDE)
     )
     return Outcome(

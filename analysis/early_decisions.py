@@ -27,7 +27,7 @@ import numpy as np
 
 from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
-from blocksim import Arch, Verdict
+from blocksim import Verdict
 from blocksim.trial import hold
 
 SEED = 2026
@@ -84,17 +84,11 @@ def cases(count: int, most_voussoirs: int) -> list[Case]:
 def ask(case: Case) -> Row:
     """Let an arch go twice, to the early end and to the late one."""
     draw = case.draw
-    arch = Arch(
-        half_angle=draw.half_angle,
-        eta=draw.eta * case.ratio,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
-    )
-    held = hold(arch, draw.mu, "pymunk")
+    held = hold(draw.arch(case.ratio), draw.mu, "pymunk")
     started = time.process_time()
     early = held.release()
     early_cpu_s = time.process_time() - started
-    again = hold(arch, draw.mu, "pymunk")
+    again = hold(draw.arch(case.ratio), draw.mu, "pymunk")
     started = time.process_time()
     late = again.release(until=LONG)
     long_cpu_s = time.process_time() - started

@@ -29,7 +29,7 @@ from matplotlib.figure import Figure
 
 from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
-from blocksim import Arch, Verdict
+from blocksim import Verdict
 from blocksim.trial import conclude, hold
 from blocksim.view.style import FONT
 
@@ -90,14 +90,8 @@ def cases(engine: str, count: int) -> list[Case]:
 def ask(case: Case, engine: str) -> Row:
     """Hold an arch at rest, and let it go if that is asked for."""
     draw = case.draw
-    arch = Arch(
-        half_angle=draw.half_angle,
-        eta=draw.eta * case.ratio,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
-    )
     started = time.process_time()
-    held = hold(arch, draw.mu, engine)
+    held = hold(draw.arch(case.ratio), draw.mu, engine)
     cpu_s = time.process_time() - started
     ended = conclude(held, moving=case.let_go)
     return {

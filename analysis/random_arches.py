@@ -32,7 +32,7 @@ from matplotlib.figure import Figure
 
 from analysis.drawing import Draw, draws, plot_by_mode
 from analysis.keeping import Row, answers
-from blocksim import Arch, bracket
+from blocksim import bracket
 from blocksim.limit import least_thickness
 from blocksim.onset import JAMMED, jamming
 from blocksim.view.style import FONT
@@ -180,13 +180,7 @@ def main(
 
 
 def _may_jam(draw: Draw) -> bool:
-    arch = Arch(
-        half_angle=draw.half_angle,
-        eta=draw.eta,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
-    )
-    return jamming(arch.assembly(), draw.mu) > JAMMED
+    return jamming(draw.arch().assembly(), draw.mu) > JAMMED
 
 
 def _error(row: Row) -> float:

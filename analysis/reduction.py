@@ -135,12 +135,7 @@ def ask(row: tuple[str, float, float, Weight, int]) -> Row | None:
 
 def pair(draw: Draw, ratio: float) -> tuple[Arch, Trial, Trial]:
     """Put one arch to the onset test of `direct`, all voussoirs and reduced."""
-    arch = Arch(
-        half_angle=draw.half_angle,
-        eta=draw.eta * ratio,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
-    )
+    arch = draw.arch(ratio)
     whole, reduced = (
         trial(arch, draw.mu, "direct", moving=False, reduce=reduce) for reduce in (False, True)
     )
