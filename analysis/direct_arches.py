@@ -10,7 +10,7 @@ Result: of 120 arches (seed 2024, one the solver was not developed with) the wor
 4.3e-10 off, far less than half the bracket's width; every one of the 240 answers a
 billionth aside is right, all ends are confirmed and all modes are those of limit analysis.
 
-Run: python -m analysis.direct_arches OUT [SEED]
+Run: python -m analysis.direct_arches OUT [--seed N]
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
 from blocksim.trial import trial
@@ -145,6 +146,4 @@ def _figure(outcomes: list[Outcome], path: Path) -> None:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/direct_arches")
-    start = int(sys.argv[2]) if len(sys.argv) > 2 else SEED
-    sys.stdout.write(f"{main(folder, seed=start)}\n")
+    run(main)

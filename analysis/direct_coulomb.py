@@ -23,13 +23,13 @@ Run: python analysis/direct_coulomb.py OUT
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
+from analysis.command import run
 from blocksim import limit
 from blocksim.arch import Arch
 from blocksim.assembly import Array, displacement
@@ -143,5 +143,4 @@ def main(out: Path, quick: bool = False) -> Outcome:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/direct_coulomb")
-    sys.stdout.write(f"{main(folder)}\n")
+    run(main)

@@ -7,7 +7,7 @@ friction than stands at all. Each is held at rest at twelve ratios from 0.9 to 1
 least thickness, none nearer than 1 %; every fifth is let go, too. Of the 200 drawn, pymunk is
 asked about those that need the fewest sweeps: thin long ones take it ten seconds an answer.
 
-    python -m analysis.islands OUT [direct|pymunk|pybullet] [PROCESSES]
+    python -m analysis.islands OUT [--engine direct|pymunk|pybullet] [--processes N]
 
 Answers are kept in OUT as they come, and not asked for again.
 """
@@ -27,6 +27,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
 from blocksim import Verdict
@@ -192,7 +193,4 @@ def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path)
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/islands")
-    name = sys.argv[2] if len(sys.argv) > 2 else "direct"
-    count = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-    sys.stdout.write(f"{main(folder, engine=name, processes=count)}\n")
+    run(main)

@@ -11,7 +11,6 @@ that Fig. 16 prints, 0.7643357111953571; it is compared with the latter.
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -20,6 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
+from analysis.command import run
 from blocksim import Mode
 from blocksim.theory import landmarks, least_thickness, least_thicknesses, regions
 from blocksim.theory.critical import Critical, hinge_slope, inner_sliding, rotational_thrust
@@ -288,5 +288,4 @@ def _sliding(panels: list[Axes]) -> None:
 
 
 if __name__ == "__main__":
-    result = main(Path(sys.argv[1] if len(sys.argv) > 1 else "figures"), "--quick" in sys.argv)
-    sys.stdout.write(f"{result}\n")
+    run(main)

@@ -10,7 +10,7 @@ Expected: every centre within half the bracket's width, or else an end is false;
 confirmed; modes as limit analysis says. Few thick voussoirs with much friction may jam
 (`onset.py`): there both engines are undecided, and are counted apart.
 
-    python -m analysis.random_arches OUT [pymunk|pybullet] [PROCESSES]
+    python -m analysis.random_arches OUT [--engine pymunk|pybullet] [--processes N]
 
 Answers are kept in OUT as they come, and not asked for again.
 """
@@ -30,6 +30,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from analysis.keeping import Row, answers
 from blocksim import bracket
@@ -211,7 +212,4 @@ def _figure(drawn: Sequence[Draw], rows: Sequence[Row], engine: str, path: Path)
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/random_arches")
-    chosen_engine = sys.argv[2] if len(sys.argv) > 2 else "pymunk"
-    workers = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-    sys.stdout.write(f"{main(folder, engine=chosen_engine, processes=workers)}\n")
+    run(main)

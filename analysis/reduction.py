@@ -26,6 +26,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws
 from blocksim import Arch, Bracket, Mode, bracket
 from blocksim.arch import Weight
@@ -272,5 +273,4 @@ def _figure(rows: list[Row], path: Path) -> None:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/reduction")
-    sys.stdout.write(f"{main(folder)}\n")
+    run(main)

@@ -12,13 +12,13 @@ turns, less where it slides.
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from blocksim.arch import WEIGHTS, Weight, centroid_factor
 from blocksim.assembly import Array
 from blocksim.limit.statics import Bound, thrust_bounds
@@ -163,5 +163,4 @@ def _figure() -> Figure:
 
 
 if __name__ == "__main__":
-    result = main(Path(sys.argv[1] if len(sys.argv) > 1 else "sector"), "--quick" in sys.argv)
-    sys.stdout.write(f"{result}\n")
+    run(main)
