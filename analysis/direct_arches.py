@@ -18,10 +18,8 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
-from multiprocessing import get_context
 from pathlib import Path
 
 import matplotlib as mpl
@@ -31,6 +29,7 @@ from matplotlib.figure import Figure
 from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
+from blocksim.processes import crew
 from blocksim.trial import trial
 from blocksim.view.style import FONT
 
@@ -104,7 +103,7 @@ def main(out: Path, *, quick: bool = False, seed: int = SEED) -> Result:
     if quick:
         outcomes = [ask(draw) for draw in chosen(3, seed, most_voussoirs=15)]
     else:
-        with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        with crew(2) as pool:
             outcomes = list(pool.map(ask, chosen(ARCHES, seed)))
     _figure(outcomes, out / "direct_arches.png")
     said = [(o.below, Verdict.COLLAPSES) for o in outcomes]

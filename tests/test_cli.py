@@ -4,25 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from running import blocksim
 
 from blocksim import load_recording
 
 ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
-
-
-def blocksim(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "blocksim", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=cwd,
-    )
 
 
 @pytest.mark.parametrize("method", ["auto", "theory", "limit", "direct", "pymunk"])

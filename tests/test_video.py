@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
+from running import blocksim
 from scipy.spatial.transform import Rotation
 
 from blocksim.arch import GRAVITY, Arch
@@ -367,15 +366,6 @@ def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:
     assert out.read_bytes() == b"kept"
     with pytest.raises(InputError, match="writable"):
         render([falling()], tmp_path / "none" / "film.png", height=240)
-
-
-def blocksim(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "blocksim", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
 
 
 def test_command_films_recordings(tmp_path: Path) -> None:
