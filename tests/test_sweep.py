@@ -113,6 +113,8 @@ def test_the_command_keeps_the_contract(tmp_path: Path) -> None:
     asked = written(tmp_path, GRID)
     done = blocksim(*asked, "--scheduler", "nonsense")
     assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "--scheduler = 'nonsense': must be the address of a dask scheduler" in done.stderr
     done = blocksim(*asked, "--workers", "1", "--json")
     summary = json.loads(done.stdout)
     assert (done.returncode, done.stderr) == (0, "")

@@ -402,6 +402,8 @@ def test_command_films_a_scenario(tmp_path: Path) -> None:
         (("RUN", "--mu", "1"), "--mu = 1.0: must be left out"),
         (("RUN", "--height", "241"), "--height = 241: must be an even number"),
         (("RUN", "--slow", "0"), "--slow = 0.0: must be above 0"),
+        (("RUN", "--method", "direct"), "--method = 'direct': must be left out"),
+        (("RUN", "--at", "1"), "--at = 1.0: must be left out of a film"),
         (("RUN", "--at", "-1"), "--at = -1.0: must be 0 or above"),
         (("RUN", "--beside", "none.npz"), "an existing .npz file"),
         (("semicircle_sliding",), "eta is missing"),
