@@ -31,7 +31,7 @@ from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
 from blocksim.processes import crew
 from blocksim.trial import trial
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
 ARCHES = 120
@@ -133,10 +133,10 @@ def _figure(outcomes: list[Outcome], path: Path) -> None:
         found = [o for o in outcomes if math.isfinite(o.error)]
         axes.set_yscale("log")
         plot_by_mode(axes, [o.draw for o in found], [max(abs(o.error), 1e-12) for o in found])
-        axes.axhline(TOL / 2, color="#888888", lw=0.8)
-        axes.text(30, TOL / 2 * 1.2, "half the bracket's width", color="#555555", fontsize=8)
-        axes.axhline(1e-7, color="#888888", lw=0.8)
-        axes.text(30, 1.2e-7, "1e-7", color="#555555", fontsize=8)
+        axes.axhline(TOL / 2, color=QUIET, lw=0.8)
+        axes.text(30, TOL / 2 * 1.2, "half the bracket's width", color=QUIET, fontsize=8)
+        axes.axhline(1e-7, color=QUIET, lw=0.8)
+        axes.text(30, 1.2e-7, "1e-7", color=QUIET, fontsize=8)
         axes.set_ylim(1e-12, 1e-5)
         axes.set_ylabel("error of least thickness, relative")
         axes.set_title("direct against limit analysis: least thickness of random arches")

@@ -34,6 +34,7 @@ from blocksim import limit
 from blocksim.arch import Arch
 from blocksim.assembly import Array, displacement
 from blocksim.engines.direct import Blocks, Direct
+from blocksim.view.style import QUIET
 
 ARCHES = (
     (90.0, 0.9, 27),
@@ -131,7 +132,7 @@ def main(out: Path, quick: bool = False) -> Outcome:
             threshold[name, push] = min(stays, default=math.inf)
             if push == pushes[-1]:
                 axes.loglog(margins, gone, "o-", label=name)
-    axes.axhline(MOVED, color="0.6", linewidth=1)
+    axes.axhline(MOVED, color=QUIET, linewidth=1)
     axes.set_xlabel("thickness above the limit, relative")
     axes.set_ylabel("largest displacement [r]")
     axes.set_title(f"Pushed along its mechanism with {pushes[-1]:g} sqrt(g r)")

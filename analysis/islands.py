@@ -32,7 +32,7 @@ from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
 from blocksim import Verdict
 from blocksim.trial import conclude, hold
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, MISS, QUIET, VERDICTS
 
 SEED = 2025
 ARCHES = {"direct": 200, "pymunk": 200, "pybullet": 40}
@@ -153,11 +153,7 @@ def monotone(rows: Sequence[Row]) -> bool:
     return Verdict.COLLAPSES not in verdicts[verdicts.index(Verdict.STANDS) :]
 
 
-MARKS = {
-    Verdict.COLLAPSES: ("v", "#b3402f", "collapses"),
-    Verdict.STANDS: ("s", "#9db392", "stands"),
-    Verdict.UNDECIDED: ("o", "#222222", "undecided"),
-}
+MARKS = {Verdict.COLLAPSES: "v", Verdict.STANDS: "s", Verdict.UNDECIDED: "o"}
 
 
 def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path) -> None:
@@ -166,7 +162,7 @@ def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path)
     with mpl.rc_context(FONT):
         figure = Figure(figsize=(9, 4.2), layout="constrained")
         axes = figure.add_subplot()
-        axes.axhline(1, color="#888888", lw=0.8)
+        axes.axhline(1, color=QUIET, lw=0.8)
         wrong: list[tuple[int, float]] = []
         points: dict[str, list[tuple[int, float]]] = {verdict: [] for verdict in MARKS}
         for case, row in zip(asked, rows, strict=True):
@@ -174,13 +170,14 @@ def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path)
             points[str(row["verdict"])].append(place)
             if _kind(case, row) == "wrong":
                 wrong.append(place)
-        for verdict, (marker, colour, label) in MARKS.items():
+        for verdict, marker in MARKS.items():
             if points[verdict]:
                 at = zip(*points[verdict], strict=True)
-                axes.plot(*at, marker, color=colour, ms=3.5, mew=0, label=label)
+                look = {"color": VERDICTS[verdict], "ms": 3.5, "mew": 0}
+                axes.plot(*at, marker, label=verdict.value, **look)
         if wrong:
             at = zip(*wrong, strict=True)
-            axes.plot(*at, "o", mfc="none", mec="black", ms=8, mew=0.9, label="wrong")
+            axes.plot(*at, "o", mfc="none", mec=MISS, ms=8, mew=0.9, label="wrong")
         ticks = [angle for angle in range(30, 160, 10) if angles[0] <= angle <= angles[-1]]
         axes.set_xticks(np.searchsorted(angles, ticks), [str(angle) for angle in ticks])
         axes.set_xlabel("arches in the order of half-angle [deg]")

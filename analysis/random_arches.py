@@ -36,7 +36,7 @@ from analysis.keeping import Row, answers
 from blocksim import bracket
 from blocksim.limit import least_thickness
 from blocksim.onset import JAMMED, jamming
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
 
@@ -199,7 +199,7 @@ def _figure(drawn: Sequence[Draw], rows: Sequence[Row], engine: str, path: Path)
         figure = Figure(figsize=(7.5, 4.2), layout="constrained")
         axes = figure.add_subplot()
         axes.axhspan(-width / 2, width / 2, color="#eeeeee", label="half the bracket's width")
-        axes.axhline(0, color="#888888", lw=0.8)
+        axes.axhline(0, color=QUIET, lw=0.8)
         plot_by_mode(axes, [draw for draw, _ in inside], [error for _, error in inside])
         axes.set_ylim(-width, 2 * width)
         if outside:
