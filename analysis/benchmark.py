@@ -5,7 +5,7 @@ processor time kept in one file for each kind of machine; the ratio to what the 
 is printed. Processor time hardly depends on what else runs, but caches do: a busy machine
 shows up to half more.
 
-    python -m analysis.benchmark [FOLDER]
+    python -m analysis.benchmark [--out FOLDER]
 
 FOLDER is by default `analysis/timings`, which is kept with the code. Takes about a minute.
 """
@@ -27,6 +27,7 @@ from statistics import median
 
 import numpy as np
 
+from analysis.command import run
 from blocksim import Arch, bracket, check
 from blocksim.engines import ENGINES, remedy
 from blocksim.files import make_folder, write_whole
@@ -76,7 +77,7 @@ class Result:
     path: Path
 
 
-def main(out: Path, *, quick: bool = False) -> Result:
+def main(out: Path = TIMINGS, *, quick: bool = False) -> Result:
     """Measure, compare with what the folder holds for this machine, and store."""
     done: dict[str, float] = {}
     for name, task in tasks(quick=quick).items():
@@ -184,5 +185,4 @@ def _version(library: str) -> str | None:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else TIMINGS
-    sys.stdout.write(f"{table(main(folder))}\n")
+    run(main, table)

@@ -20,6 +20,7 @@ from pathlib import Path
 from statistics import median
 from typing import TypeVar
 
+from analysis.command import run
 from blocksim import Arch, bracket, check
 from blocksim.engines import ENGINES, remedy
 from blocksim.ladder import STATIC
@@ -122,5 +123,4 @@ def table(costs: list[Cost]) -> str:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/costs")
-    sys.stdout.write(table(main(folder)))
+    run(main, table)

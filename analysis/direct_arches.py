@@ -10,7 +10,7 @@ Result: of 120 arches (seed 2024, one the solver was not developed with) the wor
 4.3e-10 off, far less than half the bracket's width; every one of the 240 answers a
 billionth aside is right, all ends are confirmed and all modes are those of limit analysis.
 
-Run: python -m analysis.direct_arches OUT [SEED]
+Run: python -m analysis.direct_arches OUT [--seed N]
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
-from multiprocessing import get_context
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
-from blocksim import Arch, Mode, Verdict, bracket
+from blocksim import Mode, Verdict, bracket
+from blocksim.processes import crew
 from blocksim.trial import trial
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
 ARCHES = 120
@@ -84,17 +84,7 @@ def ask(draw: Draw) -> Outcome:
         tol=TOL,
     )
     below, above = (
-        trial(
-            Arch(
-                half_angle=draw.half_angle,
-                eta=draw.eta * factor,
-                voussoirs=draw.voussoirs,
-                weight=draw.weight,
-            ),
-            draw.mu,
-            "direct",
-            moving=False,
-        ).verdict
+        trial(draw.arch(factor), draw.mu, "direct", moving=False).verdict
         for factor in (1 - ASIDE, 1 + ASIDE)
     )
     return Outcome(
@@ -113,7 +103,7 @@ def main(out: Path, *, quick: bool = False, seed: int = SEED) -> Result:
     if quick:
         outcomes = [ask(draw) for draw in chosen(3, seed, most_voussoirs=15)]
     else:
-        with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        with crew(2) as pool:
             outcomes = list(pool.map(ask, chosen(ARCHES, seed)))
     _figure(outcomes, out / "direct_arches.png")
     said = [(o.below, Verdict.COLLAPSES) for o in outcomes]
@@ -143,10 +133,10 @@ def _figure(outcomes: list[Outcome], path: Path) -> None:
         found = [o for o in outcomes if math.isfinite(o.error)]
         axes.set_yscale("log")
         plot_by_mode(axes, [o.draw for o in found], [max(abs(o.error), 1e-12) for o in found])
-        axes.axhline(TOL / 2, color="#888888", lw=0.8)
-        axes.text(30, TOL / 2 * 1.2, "half the bracket's width", color="#555555", fontsize=8)
-        axes.axhline(1e-7, color="#888888", lw=0.8)
-        axes.text(30, 1.2e-7, "1e-7", color="#555555", fontsize=8)
+        axes.axhline(TOL / 2, color=QUIET, lw=0.8)
+        axes.text(30, TOL / 2 * 1.2, "half the bracket's width", color=QUIET, fontsize=8)
+        axes.axhline(1e-7, color=QUIET, lw=0.8)
+        axes.text(30, 1.2e-7, "1e-7", color=QUIET, fontsize=8)
         axes.set_ylim(1e-12, 1e-5)
         axes.set_ylabel("error of least thickness, relative")
         axes.set_title("direct against limit analysis: least thickness of random arches")
@@ -155,6 +145,4 @@ def _figure(outcomes: list[Outcome], path: Path) -> None:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/direct_arches")
-    start = int(sys.argv[2]) if len(sys.argv) > 2 else SEED
-    sys.stdout.write(f"{main(folder, seed=start)}\n")
+    run(main)

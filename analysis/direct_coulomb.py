@@ -23,17 +23,18 @@ Run: python analysis/direct_coulomb.py OUT
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
+from analysis.command import run
 from blocksim import limit
 from blocksim.arch import Arch
 from blocksim.assembly import Array, displacement
 from blocksim.engines.direct import Blocks, Direct
+from blocksim.view.style import QUIET
 
 ARCHES = (
     (90.0, 0.9, 27),
@@ -131,7 +132,7 @@ def main(out: Path, quick: bool = False) -> Outcome:
             threshold[name, push] = min(stays, default=math.inf)
             if push == pushes[-1]:
                 axes.loglog(margins, gone, "o-", label=name)
-    axes.axhline(MOVED, color="0.6", linewidth=1)
+    axes.axhline(MOVED, color=QUIET, linewidth=1)
     axes.set_xlabel("thickness above the limit, relative")
     axes.set_ylabel("largest displacement [r]")
     axes.set_title(f"Pushed along its mechanism with {pushes[-1]:g} sqrt(g r)")
@@ -143,5 +144,4 @@ def main(out: Path, quick: bool = False) -> Outcome:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/direct_coulomb")
-    sys.stdout.write(f"{main(folder)}\n")
+    run(main)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
-from blocksim import Mode
+from blocksim import Arch, Mode
 from blocksim.arch import Weight
 from blocksim.limit import least_thickness
 from blocksim.theory.map import divide_friction
@@ -26,6 +26,15 @@ class Draw:
     weight: Weight
     eta: float
     mode: Mode
+
+    def arch(self, ratio: float = 1.0) -> Arch:
+        """Return the arch at a ratio of its least thickness."""
+        return Arch(
+            half_angle=self.half_angle,
+            eta=self.eta * ratio,
+            voussoirs=self.voussoirs,
+            weight=self.weight,
+        )
 
 
 def draws(

@@ -9,7 +9,7 @@ of their least thickness, the nearest 0.05 % from it, once with each end.
 Result: of 288 runs none differs and none is wrong; one, which may jam, is open in both. The
 early ends take 9 % of the time simulated, and a fifth to a twentieth of the processor time.
 
-    python -m analysis.early_decisions OUT [PROCESSES]
+    python -m analysis.early_decisions OUT [--processes N]
 
 Answers are kept in OUT as they come, and not asked for again.
 """
@@ -25,9 +25,10 @@ from pathlib import Path
 
 import numpy as np
 
+from analysis.command import run
 from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
-from blocksim import Arch, Verdict
+from blocksim import Verdict
 from blocksim.trial import hold
 
 SEED = 2026
@@ -84,17 +85,11 @@ def cases(count: int, most_voussoirs: int) -> list[Case]:
 def ask(case: Case) -> Row:
     """Let an arch go twice, to the early end and to the late one."""
     draw = case.draw
-    arch = Arch(
-        half_angle=draw.half_angle,
-        eta=draw.eta * case.ratio,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
-    )
-    held = hold(arch, draw.mu, "pymunk")
+    held = hold(draw.arch(case.ratio), draw.mu, "pymunk")
     started = time.process_time()
     early = held.release()
     early_cpu_s = time.process_time() - started
-    again = hold(arch, draw.mu, "pymunk")
+    again = hold(draw.arch(case.ratio), draw.mu, "pymunk")
     started = time.process_time()
     late = again.release(until=LONG)
     long_cpu_s = time.process_time() - started
@@ -166,7 +161,7 @@ def _line(ratio: float, rows: Sequence[Row]) -> Line:
 
 
 def table(result: Result) -> str:
-    """Set the lines as a table in Markdown."""
+    """Set the lines as a table in Markdown, with a line for all runs."""
     rows = [
         "| ratio | runs | early: wrong, open | long: wrong, open "
         "| early ends at | long ends at | processor time: early, long |",
@@ -178,13 +173,12 @@ def table(result: Result) -> str:
         f"| {line.early_cpu_s:.3f} s, {line.long_cpu_s:.3f} s |"
         for line in result.lines
     ]
+    rows.append("")
+    rows.append(
+        f"{result.runs} runs, {result.differ} differ; time {result.simulated_share:.3f}"
+    )
     return "\n".join(rows)
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/early_decisions")
-    found = main(folder, processes=int(sys.argv[2]) if len(sys.argv) > 2 else 1)
-    share = f"{found.simulated_share:.3f}"
-    sys.stdout.write(
-        f"{table(found)}\n{found.runs} runs, {found.differ} differ; time {share}\n"
-    )
+    run(main, table)

@@ -6,7 +6,7 @@ deg), friction (0.3-3.5), voussoirs (5-60), and weight model, half of them with 
 friction than stands at all. Each is held at rest at twelve ratios from 0.9 to 1.1 of its exact
 least thickness, none nearer than 1 %; every fifth is let go, too.
 
-    python -m analysis.islands OUT [direct|pymunk|pybullet] [PROCESSES]
+    python -m analysis.islands OUT [--engine direct|pymunk|pybullet] [--processes N]
 
 Answers are kept in OUT as they come, and not asked for again.
 """
@@ -26,11 +26,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
-from blocksim import Arch, Verdict
+from blocksim import Verdict
 from blocksim.trial import conclude, hold
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, MISS, QUIET, VERDICTS
 
 SEED = 2025
 ARCHES = {"direct": 200, "pymunk": 200, "pybullet": 40}
@@ -87,14 +88,8 @@ def cases(engine: str, count: int) -> list[Case]:
 def ask(case: Case, engine: str) -> Row:
     """Hold an arch at rest, and let it go if that is asked for."""
     draw = case.draw
-    arch = Arch(
-        half_angle=draw.half_angle,
-        eta=draw.eta * case.ratio,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
-    )
     started = time.process_time()
-    held = hold(arch, draw.mu, engine)
+    held = hold(draw.arch(case.ratio), draw.mu, engine)
     cpu_s = time.process_time() - started
     ended = conclude(held, moving=case.let_go)
     return {
@@ -155,11 +150,7 @@ def monotone(rows: Sequence[Row]) -> bool:
     return Verdict.COLLAPSES not in verdicts[verdicts.index(Verdict.STANDS) :]
 
 
-MARKS = {
-    Verdict.COLLAPSES: ("v", "#b3402f", "collapses"),
-    Verdict.STANDS: ("s", "#9db392", "stands"),
-    Verdict.UNDECIDED: ("o", "#222222", "undecided"),
-}
+MARKS = {Verdict.COLLAPSES: "v", Verdict.STANDS: "s", Verdict.UNDECIDED: "o"}
 
 
 def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path) -> None:
@@ -168,7 +159,7 @@ def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path)
     with mpl.rc_context(FONT):
         figure = Figure(figsize=(9, 4.2), layout="constrained")
         axes = figure.add_subplot()
-        axes.axhline(1, color="#888888", lw=0.8)
+        axes.axhline(1, color=QUIET, lw=0.8)
         wrong: list[tuple[int, float]] = []
         points: dict[str, list[tuple[int, float]]] = {verdict: [] for verdict in MARKS}
         for case, row in zip(asked, rows, strict=True):
@@ -176,13 +167,14 @@ def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path)
             points[str(row["verdict"])].append(place)
             if _kind(case, row) == "wrong":
                 wrong.append(place)
-        for verdict, (marker, colour, label) in MARKS.items():
+        for verdict, marker in MARKS.items():
             if points[verdict]:
                 at = zip(*points[verdict], strict=True)
-                axes.plot(*at, marker, color=colour, ms=3.5, mew=0, label=label)
+                look = {"color": VERDICTS[verdict], "ms": 3.5, "mew": 0}
+                axes.plot(*at, marker, label=verdict.value, **look)
         if wrong:
             at = zip(*wrong, strict=True)
-            axes.plot(*at, "o", mfc="none", mec="black", ms=8, mew=0.9, label="wrong")
+            axes.plot(*at, "o", mfc="none", mec=MISS, ms=8, mew=0.9, label="wrong")
         ticks = [angle for angle in range(30, 160, 10) if angles[0] <= angle <= angles[-1]]
         axes.set_xticks(np.searchsorted(angles, ticks), [str(angle) for angle in ticks])
         axes.set_xlabel("arches in the order of half-angle [deg]")
@@ -195,7 +187,4 @@ def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path)
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/islands")
-    name = sys.argv[2] if len(sys.argv) > 2 else "direct"
-    count = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-    sys.stdout.write(f"{main(folder, engine=name, processes=count)}\n")
+    run(main)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import TypeVar
+
+from blocksim.processes import crew
 
 Case = TypeVar("Case")
 Row = dict[str, float | int | str | bool | None]
@@ -49,7 +50,7 @@ def answers(
             for case in left:
                 keep(case, ask(case))
         else:
-            with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+            with crew(processes) as pool:
                 asked = {pool.submit(ask, case): case for case in left}
                 for future in as_completed(asked):
                     keep(asked[future], future.result())

@@ -27,9 +27,9 @@ Expected: away from the lines the published mode, near them that or the mode of 
 brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; all fall below and
 stand above.
 
-Run: python -m analysis.mode_sweep OUT [ARCHES [ENGINE ...]]. Rows are kept in OUT/rows; the
-same command goes on after an interruption, which reports the arches that are done. Thin ones
-of many voussoirs, which take pymunk most of the time, come last.
+Run: python -m analysis.mode_sweep OUT [--arches N] [--engines NAME ...]. Rows are kept in
+OUT/rows; the same command goes on after an interruption, which reports the arches that are
+done. Thin ones of many voussoirs, which take pymunk most of the time, come last.
 """
 
 from __future__ import annotations
@@ -52,6 +52,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from analysis.command import run
 from blocksim.assembly import Array
 from blocksim.limit import least_thickness
 from blocksim.limit.bulk import which_stand
@@ -278,10 +279,10 @@ def main(
     *,
     quick: bool = False,
     arches: int = ARCHES,
-    engines: tuple[str, ...] = ENGINES,
+    engines: list[str] | None = None,
 ) -> tuple[Result, ...]:
     """Run the study or go on with it, write a figure an engine and return their numbers."""
-    draws = Draws(10, ("direct",)) if quick else Draws(arches, engines)
+    draws = Draws(10, ("direct",)) if quick else Draws(arches, tuple(engines or ENGINES))
     folder = out / "rows"
     if quick:
         with ThreadPoolExecutor(1) as executor:
@@ -424,7 +425,4 @@ def _errors(figure: Figure, axes: Axes, every: Sequence[Seen]) -> None:
 
 
 if __name__ == "__main__":
-    number = int(sys.argv[2]) if len(sys.argv) > 2 else ARCHES
-    chosen = tuple(sys.argv[3:]) or ENGINES
-    for result in main(Path(sys.argv[1]), arches=number, engines=chosen):
-        sys.stdout.write(f"{result}\n")
+    run(main, lambda results: "\n".join(map(str, results)))

@@ -11,7 +11,6 @@ that Fig. 16 prints, 0.7643357111953571; it is compared with the latter.
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -20,6 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
+from analysis.command import run
 from blocksim import Mode
 from blocksim.theory import landmarks, least_thickness, least_thicknesses, regions
 from blocksim.theory.critical import Critical, hinge_slope, inner_sliding, rotational_thrust
@@ -27,7 +27,7 @@ from blocksim.theory.map import divide_friction, special_angles
 from blocksim.view.archfigure import arch_figure, picture_of_theory
 from blocksim.view.linemap import line_map_figure
 from blocksim.view.mapfigure import draw_regions, save_figure
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, INK, QUIET
 
 TOLERANCE = 1e-12
 DASHED = (0, (5, 2))
@@ -239,10 +239,10 @@ def _rotational(panels: list[Axes]) -> None:
     state = least_thicknesses(alpha, math.inf)
     curves = ((state.beta_r, r"$\beta_r$"), (state.eta, r"$\eta$"), (state.thrust, "$h$"))
     for axes, (values, name) in zip(panels, curves, strict=True):
-        axes.plot(alpha, values, color="#222222", lw=1.6)
+        axes.plot(alpha, values, color=INK, lw=1.6)
         axes.set(ylabel=name, xlim=(0, math.pi), ylim=(0, None))
-        axes.axvline(special.zero_thrust, color="#777777", lw=0.8, ls=":")
-    panels[0].plot(special.widest_hinge, special.hinge, "o", mfc="white", mec="#222222")
+        axes.axvline(special.zero_thrust, color=QUIET, lw=0.8, ls=":")
+    panels[0].plot(special.widest_hinge, special.hinge, "o", mfc="white", mec=INK)
     panels[0].annotate(r"$\alpha_{s\beta}$", (special.widest_hinge, special.hinge),
                        xytext=(-4, -16), textcoords="offset points")  # fmt: skip
     panels[0].annotate(r"$\alpha_l$", (special.zero_thrust, 0.05), xytext=(4, 0),
@@ -255,7 +255,7 @@ def _inner_sliding(panels: list[Axes]) -> None:
     mu = np.linspace(1e-3, 4, 400)
     values = np.array([inner_sliding(float(m)) for m in mu]).T
     for axes, value, name in zip(panels, values, ("$h$", r"$\beta_s$"), strict=True):
-        axes.plot(mu, value, color="#222222", lw=1.6)
+        axes.plot(mu, value, color=INK, lw=1.6)
         axes.set(ylabel=name, xlim=(0, 4), ylim=(0, None))
     panels[-1].set_xlabel(r"friction coefficient $\mu$")
 
@@ -276,11 +276,9 @@ def _sliding(panels: list[Axes]) -> None:
     panels[2].set_ylim(0, 1.02)
     angles = np.linspace(0.05, special_angles().zero_thrust, 200)
     free = [rotational_thrust(float(a), "centreline") for a in angles]
-    panels[2].plot(
-        angles, free, color="#222222", lw=1.2, ls=(0, (1, 1)), label="purely rotational"
-    )
+    panels[2].plot(angles, free, color=INK, lw=1.2, ls=(0, (1, 1)), label="purely rotational")
     point = landmarks()["T"]
-    panels[2].plot(point.half_angle, point.thrust, "o", mfc="white", mec="#222222")
+    panels[2].plot(point.half_angle, point.thrust, "o", mfc="white", mec=INK)
     panels[2].annotate("T", (point.half_angle, point.thrust), xytext=(4, 5),
                        textcoords="offset points", fontweight="bold")  # fmt: skip
     panels[2].legend(frameon=False)
@@ -288,5 +286,4 @@ def _sliding(panels: list[Axes]) -> None:
 
 
 if __name__ == "__main__":
-    result = main(Path(sys.argv[1] if len(sys.argv) > 1 else "figures"), "--quick" in sys.argv)
-    sys.stdout.write(f"{result}\n")
+    run(main)

@@ -21,7 +21,6 @@ Expected: as built, residual accelerations fall below 1e-9 g in both arches, and
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -32,6 +31,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from blocksim import Arch
 from blocksim.assembly import Array, displacement
 from blocksim.engines import bullet
@@ -156,5 +156,4 @@ def main(out: Path, *, quick: bool = False) -> Result:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/pybullet_settings")
-    sys.stdout.write(f"{main(folder)}\n")
+    run(main)

@@ -10,7 +10,7 @@ Expected: every centre within half the bracket's width, or else an end is false;
 confirmed; modes as limit analysis says. Where Coulomb's law has two answers (`onset.py`)
 pybullet is undecided above the limit, and its bracket wide.
 
-    python -m analysis.random_arches OUT [pymunk|pybullet] [PROCESSES]
+    python -m analysis.random_arches OUT [--engine pymunk|pybullet] [--processes N]
 
 Answers are kept in OUT as they come, and not asked for again.
 """
@@ -30,11 +30,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from analysis.keeping import Row, answers
 from blocksim import bracket
 from blocksim.limit import least_thickness
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
 
@@ -193,7 +194,7 @@ def _figure(drawn: Sequence[Draw], rows: Sequence[Row], engine: str, path: Path)
         figure = Figure(figsize=(7.5, 4.2), layout="constrained")
         axes = figure.add_subplot()
         axes.axhspan(-width / 2, width / 2, color="#eeeeee", label="half the bracket's width")
-        axes.axhline(0, color="#888888", lw=0.8)
+        axes.axhline(0, color=QUIET, lw=0.8)
         plot_by_mode(axes, [draw for draw, _ in inside], [error for _, error in inside])
         axes.set_ylim(-width, 2 * width)
         if outside:
@@ -206,7 +207,4 @@ def _figure(drawn: Sequence[Draw], rows: Sequence[Row], engine: str, path: Path)
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/random_arches")
-    chosen_engine = sys.argv[2] if len(sys.argv) > 2 else "pymunk"
-    workers = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-    sys.stdout.write(f"{main(folder, engine=chosen_engine, processes=workers)}\n")
+    run(main)

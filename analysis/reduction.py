@@ -26,6 +26,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from analysis.drawing import Draw, draws
 from blocksim import Arch, Bracket, Mode, bracket
 from blocksim.arch import Weight
@@ -135,12 +136,7 @@ def ask(row: tuple[str, float, float, Weight, int]) -> Row | None:
 
 def pair(draw: Draw, ratio: float) -> tuple[Arch, Trial, Trial]:
     """Put one arch to the onset test of `direct`, all voussoirs and reduced."""
-    arch = Arch(
-        half_angle=draw.half_angle,
-        eta=draw.eta * ratio,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
-    )
+    arch = draw.arch(ratio)
     whole, reduced = (
         trial(arch, draw.mu, "direct", moving=False, reduce=reduce) for reduce in (False, True)
     )
@@ -277,5 +273,4 @@ def _figure(rows: list[Row], path: Path) -> None:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/reduction")
-    sys.stdout.write(f"{main(folder)}\n")
+    run(main)

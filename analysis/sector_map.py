@@ -12,20 +12,20 @@ turns, less where it slides.
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from analysis.command import run
 from blocksim.arch import WEIGHTS, Weight, centroid_factor
 from blocksim.assembly import Array
 from blocksim.limit.statics import Bound, thrust_bounds
 from blocksim.theory import landmarks, least_thickness, least_thicknesses, regions
 from blocksim.theory.map import special_angles
 from blocksim.view.mapfigure import save_figure
-from blocksim.view.style import FONT
+from blocksim.view.style import FONT, INK
 
 CHECKS = ((1.2, 0.6), (math.pi / 2, math.inf), (math.pi / 2, 0.37), (2.18, 0.9), (2.43, 1.35),
           (2.53, 1.6), (2.56, 2.5), (2.6, 3.0), (2.64, 40.0), (2.62, math.inf))  # fmt: skip
@@ -122,7 +122,7 @@ def _figure() -> Figure:
         figure = Figure(figsize=(11.0, 5.6), layout="constrained")
         axes, more = figure.subplots(1, 2)
         for weight, colour, style in (
-            ("centreline", "#222222", "-"),
+            ("centreline", INK, "-"),
             ("sector", "#D55E00", "--"),
         ):
             marks = landmarks(weight)
@@ -152,7 +152,7 @@ def _figure() -> Figure:
         for mu, style in ((math.inf, "-"), (2.5, "--"), (1.6, "-."), (0.9, ":")):
             thin, thick = (least_thicknesses(alpha, mu, weight).eta for weight in WEIGHTS)
             name = r"\infty" if math.isinf(mu) else f"{mu:g}"
-            more.plot(np.degrees(alpha), 100 * (thick / thin - 1), color="#222222", ls=style,
+            more.plot(np.degrees(alpha), 100 * (thick / thin - 1), color=INK, ls=style,
                       lw=1.4, label=rf"$\mu = {name}$")  # fmt: skip
         more.set(xlabel=r"half-angle $\alpha$ [°]", title="Thickness beyond the centreline's",
                  ylabel=r"$\eta_{sector}/\eta_{centreline} - 1$ [%]")  # fmt: skip
@@ -163,5 +163,4 @@ def _figure() -> Figure:
 
 
 if __name__ == "__main__":
-    result = main(Path(sys.argv[1] if len(sys.argv) > 1 else "sector"), "--quick" in sys.argv)
-    sys.stdout.write(f"{result}\n")
+    run(main)

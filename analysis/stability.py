@@ -18,7 +18,7 @@ Expected: by the rules' own settings nothing is wrong, and undecided only what m
 to twice the step and half the sweeps all releases are right; the onset test needs at most a
 third of the sweeps allowed; nothing that stands moves by 1e-5 r in 500 sqrt(r/g).
 
-    python -m analysis.stability OUT
+    python -m analysis.stability OUT [--engines NAME ...]
 """
 
 from __future__ import annotations
@@ -27,13 +27,15 @@ import json
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
 
+from analysis.command import run
 from analysis.stability_figure import draw
 from blocksim import Arch, motion
 from blocksim.assembly import Assembly, displacement
@@ -337,17 +339,23 @@ def away(engine: str, grid: Grid) -> Iterator[Row]:
                 yield Row("away", engine, case, ratio, at, judged(verdict, ratio), off)
 
 
+def counted(rows: Sequence[Row]) -> str:
+    """Say how many answers were right, undecided and wrong."""
+    counts = Counter(row.outcome for row in rows)
+    return ", ".join(f"{counts[each]} {each}" for each in ("right", "undecided", "wrong"))
+
+
 PARTS = (released, held, lines, energy, away, lasting)
 
 
-def main(out: Path, *, quick: bool = False, engines: tuple[str, ...] = ENGINES) -> list[Row]:
+def main(out: Path, *, quick: bool = False, engines: list[str] | None = None) -> list[Row]:
     """Run the study, write its rows and its figure, and return the rows.
 
     What an earlier run has written of an engine and part is kept, not asked again.
     """
     out.mkdir(parents=True, exist_ok=True)
     rows: list[Row] = []
-    for engine in engines:
+    for engine in engines or ENGINES:
         if remedy(engine):
             continue
         for part in PARTS:
@@ -359,13 +367,8 @@ def main(out: Path, *, quick: bool = False, engines: tuple[str, ...] = ENGINES) 
                 )
                 text = json.dumps([asdict(row) for row in found])
                 write_whole(kept, lambda file, text=text: file.write(text.encode()))
-                counts = {
-                    s: sum(r.outcome == s for r in found)
-                    for s in ("right", "undecided", "wrong")
-                }
-                sys.stderr.write(
-                    f"{engine} {part.__name__}: {counts}, {time.process_time() - began:.0f} s\n"
-                )
+                took = time.process_time() - began
+                sys.stderr.write(f"{engine} {part.__name__}: {counted(found)}, {took:.0f} s\n")
             rows += [
                 Row(**{**row, "case": tuple(row["case"])})
                 for row in json.loads(kept.read_text(encoding="utf-8"))
@@ -375,6 +378,4 @@ def main(out: Path, *, quick: bool = False, engines: tuple[str, ...] = ENGINES) 
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/stability")
-    names = tuple(sys.argv[2:]) or ENGINES
-    main(folder, engines=names)
+    run(main, counted)

@@ -13,13 +13,12 @@ arch is within 1e-5 of the divide or of eta = 2; the same mode farther than 1e-3
 from __future__ import annotations
 
 import math
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.command import run
 from blocksim.arch import Weight
 from blocksim.assembly import Array
 from blocksim.limit.bulk import factors, joints_of, least_thickness_of_joints, thrust_intervals
@@ -175,6 +174,4 @@ def main(out: Path, quick: bool = False) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    began = time.perf_counter()
-    found = main(Path(sys.argv[1] if len(sys.argv) > 1 else "."), "--quick" in sys.argv)
-    sys.stdout.write(f"{found}\n{time.perf_counter() - began:.1f} s\n")
+    run(main)

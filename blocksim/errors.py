@@ -5,6 +5,12 @@ Outcomes (stands, collapses, undecided) are values and never exceptions.
 
 from __future__ import annotations
 
+from reprlib import Repr
+
+_SHORT = Repr()
+_SHORT.maxstring = _SHORT.maxother = 200
+"""Characters shown of a value."""
+
 MISSING = object()
 """Stands for a value that was not given."""
 
@@ -36,7 +42,7 @@ class InputError(BlocksimError, ValueError):
         self.allowed = allowed
         self.where = where
         place = f"{where}: " if where else ""
-        is_so = "is missing" if value is MISSING else f"= {value!r}"
+        is_so = "is missing" if value is MISSING else f"= {_SHORT.repr(value)}"
         super().__init__(f"{place}{field} {is_so}: must be {allowed}")
 
 

@@ -9,25 +9,31 @@ import zipfile
 import zlib
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 
-from blocksim.arch import Arch
+from blocksim.arch import Arch, require, require_friction, require_tilt
 from blocksim.assembly import PLANAR, SPATIAL, Array, displacement
 from blocksim.engines.base import Quality, Settings
 from blocksim.errors import InputError
-from blocksim.files import write_whole
+from blocksim.files import require_file, write_whole
 
 FORMAT = 1
+WRITTEN = "written by blocksim simulate"
 LARGEST_FILE = 1 << 30
 """Bytes; a larger file is not opened."""
+LARGEST_INSIDE = 1 << 32
+"""Bytes of its arrays, which can be packed into a thousandth."""
+FARTHEST = 1e100
+"""Beyond this a square is no number any more [r]."""
 _UNREADABLE = (
     KeyError,
     TypeError,
     ValueError,
     OSError,
     EOFError,
+    MemoryError,
     RuntimeError,
     zipfile.BadZipFile,
     zlib.error,
@@ -123,27 +129,22 @@ def load_recording(path: Path) -> Recording:
         If the file is missing, too large, or no recording.
     """
     where = str(path)
-    if not path.is_file():
-        raise InputError("recording", where, "an existing .npz file")
-    if path.stat().st_size > LARGEST_FILE:
-        raise InputError("recording", where, f"at most {LARGEST_FILE} bytes")
+    require_file(path, "recording", "an existing .npz file", LARGEST_FILE)
     try:
-        # Opened here: np.load leaves the file open where it is no archive.
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            header = json.loads(str(archive["header"]))
-            times, poses = archive["times"], archive["poses"]
+        header, times, poses = _parts(path)
         recording = Recording(
             arch=Arch(**header["arch"]),
             mu=float(header["mu"]),
             engine=str(header["engine"]),
             engine_version=str(header["engine_version"]),
             settings=Settings(**header["settings"]),
-            times=np.asarray(times, dtype=np.float64),
-            poses=np.asarray(poses, dtype=np.float64),
+            times=times,
+            poses=poses,
             quality=Quality(**header.get("quality", {})),
         )
+        _require_header(recording)
     except _UNREADABLE:
-        raise InputError("recording", where, "written by blocksim simulate") from None
+        raise InputError("recording", where, WRITTEN) from None
     expected = (recording.times.size, recording.arch.voussoirs)
     shaped = recording.times.ndim == 1 and recording.poses.shape in {
         (*expected, PLANAR),
@@ -155,4 +156,36 @@ def load_recording(path: Path) -> Recording:
         )
     if header.get("state_hash") != recording.state_hash:
         raise InputError("recording", where, "undamaged (its state hash does not match)")
+    if not _moves(recording):
+        raise InputError("recording", where, "of finite poses at times that grow")
     return recording
+
+
+def _parts(path: Path) -> tuple[dict[str, Any], Array, Array]:
+    """Unpack header, times and poses; what raises here is no recording."""
+    # Opened here: np.load leaves the file open where it is no archive.
+    with path.open("rb") as file:
+        inside = sum(part.file_size for part in zipfile.ZipFile(file).infolist())
+        require(inside <= LARGEST_INSIDE, "size", inside, f"at most {LARGEST_INSIDE} bytes")
+        file.seek(0)
+        with np.load(file, allow_pickle=False) as archive:
+            header = json.loads(str(archive["header"]))
+            times, poses = archive["times"], archive["poses"]
+    kinds = times.dtype.kind + poses.dtype.kind
+    require(kinds == "ff", "arrays", kinds, "of numbers")
+    return header, times.astype(np.float64), poses.astype(np.float64)
+
+
+def _require_header(recording: Recording) -> None:
+    """Raise `InputError` where what is said beside the poses cannot be."""
+    require_friction(recording.mu)
+    require_tilt(recording.settings.tilt, plane_lock=recording.settings.plane_lock)
+    name = f"{recording.engine} {recording.engine_version}"
+    require(name.isascii() and name.isprintable() and len(name) < 80, "engine", name, "a name")
+
+
+def _moves(recording: Recording) -> bool:
+    """Tell whether there is a first frame, and later ones follow it in time and in space."""
+    times, poses = recording.times, recording.poses
+    known = np.isfinite(times).all() and (np.abs(poses) < FARTHEST).all()
+    return bool(times.size and known and (np.diff(times) > 0).all())

@@ -13,6 +13,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from blocksim.arch import Arch, Weight
 from blocksim.errors import MISSING, InputError
+from blocksim.files import require_file
 from blocksim.modes import Mode
 from blocksim.verdict import Verdict
 
@@ -170,35 +171,31 @@ def load_scenario(name: str) -> Scenario:
     known = shipped()
     if path.suffix != ".toml" and name in known:
         path = known[name]
-    if not path.is_file():
-        allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
-        raise InputError("scenario", name, allowed)
-    written = read_table(path, ScenarioFile, "scenario")
-    return _scenario(path.stem, written)
+    allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
+    return _scenario(path.stem, read_table(path, ScenarioFile, "scenario", allowed))
 
 
-def read_table(path: Path, schema: type[Table], what: str) -> Table:
+def read_table(path: Path, schema: type[Table], what: str, allowed: str) -> Table:
     """Read a TOML file as a dataclass says.
 
     Parameters
     ----------
     path : Path
-        An existing file.
     schema : type
         A dataclass; unknown keys are refused where it forbids them.
-    what : str
-        What the file is, for what is said of one too large.
+    what, allowed : str
+        What the file is and has to be, for what is said of one that is not.
 
     Raises
     ------
     InputError
         In one line, with file, field, value and what is allowed.
     """
-    if path.stat().st_size > LARGEST_FILE:
-        raise InputError(what, str(path), f"at most {LARGEST_FILE} bytes")
+    require_file(path, what, allowed, LARGEST_FILE)
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
+        # No TOML or no UTF-8, numbers beyond all bounds, or nested too deeply.
         raise InputError("file", str(error), "valid TOML", where=str(path)) from None
     try:
         return TypeAdapter(schema).validate_python(table)

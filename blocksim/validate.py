@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 
 from blocksim import limit
 from blocksim.arch import Arch
@@ -14,6 +13,7 @@ from blocksim.bracket import ETA_MAX, Bracket, bracket
 from blocksim.engines import get_engine
 from blocksim.ladder import METHODS, missing
 from blocksim.modes import Mode
+from blocksim.processes import crew
 from blocksim.progress import Progress, silent
 from blocksim.recording import Recording
 from blocksim.scenario import Scenario, load_scenario, shipped
@@ -141,15 +141,10 @@ def validate(
             progress(done / len(jobs), job[0].name)
             rows.append(validate_one(*job))
         return rows
-    # spawn: engines are libraries with state of their own, which fork would share.
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        futures = {pool.submit(validate_one, *job): job for job in jobs}
-        try:
-            for done, future in enumerate(as_completed(futures)):
-                progress((done + 1) / len(jobs), futures[future][0].name)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+    with crew(workers) as executor:
+        futures = {executor.submit(validate_one, *job): job for job in jobs}
+        for done, future in enumerate(as_completed(futures)):
+            progress((done + 1) / len(jobs), futures[future][0].name)
         return [future.result() for future in futures]
 
 

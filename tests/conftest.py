@@ -1,8 +1,27 @@
-"""One profile for all properties: the same examples in every run, time not asserted."""
+"""One profile for all properties, and what several files of tests compare with."""
 
 from __future__ import annotations
 
-from hypothesis import settings
+from concurrent.futures import ThreadPoolExecutor
 
+import pytest
+from hypothesis import settings
+from sweeps import SIMULATED, Rows, design_of, rows_of
+
+from blocksim.sweep import sweep
+
+# The same examples in every run, time not asserted.
 settings.register_profile("blocksim", deadline=None, derandomize=True, database=None)
 settings.load_profile("blocksim")
+
+
+@pytest.fixture(scope="session")
+def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
+    """Rows of `SIMULATED` as one sweep writes them."""
+    folder = tmp_path_factory.mktemp("uninterrupted")
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(folder, SIMULATED), folder, executor=executor)
+    rows = rows_of(folder)
+    assert len(rows) == 80
+    assert all(row["error"] is None for row in rows.values())
+    return rows

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import json
 import math
-import sys
 from collections import Counter
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
@@ -22,13 +21,7 @@ STUDIES = Path(__file__).parent.parent / "analysis"
 
 def study(name: str) -> ModuleType:
     """Import a study from the checkout; studies are no part of the package."""
-    spec = importlib.util.spec_from_file_location(f"analysis_{name}", STUDIES / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+    return import_module(f"analysis.{name}")
 
 
 def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> None:
@@ -58,7 +51,7 @@ def test_every_method_is_charted(tmp_path: Path) -> None:
 
 def test_where_engines_stop_working(tmp_path: Path) -> None:
     """By the rules' settings nothing is wrong or open; with far too few sweeps it is open."""
-    rows = study("stability").main(tmp_path, quick=True, engines=("direct", "pymunk"))
+    rows = study("stability").main(tmp_path, quick=True, engines=["direct", "pymunk"])
     assert {row.part for row in rows} == {
         "released",
         "held",
@@ -83,6 +76,27 @@ def test_where_engines_stop_working(tmp_path: Path) -> None:
 def test_every_study_is_listed_with_its_claim() -> None:
     listed = (STUDIES / "README.md").read_text(encoding="utf-8")
     assert [path.name for path in STUDIES.glob("*.py") if path.name not in listed] == []
+
+
+def test_what_a_study_takes_are_its_options(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def main(out: Path, *, quick: bool = False, engines: list[str] | None = None) -> Counter:
+        return Counter({out: quick, **dict.fromkeys(engines or (), 2)})
+
+    given = "study folder --quick --engines direct --engines pymunk"
+    monkeypatch.setattr("sys.argv", given.split())
+    with pytest.raises(SystemExit) as ended:
+        study("command").run(main, lambda counts: counts.total())
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == "5\n"
+
+
+def test_arches_with_an_equilibrium_do_not_move(tmp_path: Path) -> None:
+    outcome = study("direct_coulomb").main(tmp_path, quick=True)
+    assert outcome.cases == 2
+    assert outcome.held == outcome.lowered == 0
+    assert (tmp_path / "direct_coulomb.png").stat().st_size > 0
 
 
 def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:

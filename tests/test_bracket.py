@@ -185,6 +185,7 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
     assert {found.eta_low, found.eta_high} <= set(held)
     assert found.mode is Mode.RRR
     assert found.confirmed is (True if confirm else None)
+    assert f"ends {'confirmed' if confirm else 'not tried'} by moving runs" in found.reason
 
 
 @pytest.mark.parametrize(

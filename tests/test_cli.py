@@ -5,24 +5,15 @@ from __future__ import annotations
 import json
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from running import PROGRAM, blocksim
 
 from blocksim import load_recording
+from blocksim.cli import main
 
 ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
-
-
-def blocksim(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "blocksim", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=cwd,
-    )
 
 
 @pytest.mark.parametrize("method", ["auto", "theory", "limit", "direct", "pymunk"])
@@ -116,6 +107,13 @@ WRONG = {
     "render no picture": ("render", "semicircle", "--out", "x.txt"),
     "map unwritable": ("map", "--out", "none/map.png"),
     "validate unwritable": ("validate", "--quick", "--out", "/proc/none"),
+    "film unwritable": ("render", "semicircle", "--out", "none/film.mp4"),
+    "film of a folder": ("render", "semicircle", "--out", "/proc/self"),
+    "picture of no time": ("render", "semicircle", "--out", "x.png", "--at", "1"),
+    "picture not slow": ("render", "semicircle", "--out", "x.png", "--slow", "9"),
+    "picture by no engine": ("render", "semicircle", "--out", "x.png", "--method", "direct"),
+    "film of a moment": ("render", "semicircle", "--out", "x.gif", "--at", "1"),
+    "name too long": ("simulate", *ARCH, "--eta", ".1", "--out", f"{'x' * 300}/x.npz"),
 }
 
 
@@ -128,6 +126,52 @@ def test_wrong_input_is_one_line_and_leaves_nothing(
     assert done.stdout == ""
     assert re.fullmatch(r"blocksim: [^\n]+\n", done.stderr)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("given", [("--voussoirs", "27.5"), ("--mu", "rough")])
+def test_what_is_no_number_is_named(given: tuple[str, str]) -> None:
+    done = blocksim("check", *ARCH, "--eta", "0.1", *given)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert f"'{given[0]}'" in done.stderr
+    assert f"'{given[1]}'" in done.stderr
+
+
+QUESTION = ("check", *ARCH, "--eta", "0.12")
+
+
+@pytest.mark.parametrize("asked", [QUESTION, ("doctor",)])
+def test_a_reader_that_has_gone_hears_no_verdict(asked: tuple[str, ...]) -> None:
+    with subprocess.Popen([*PROGRAM, *asked], stdout=-1, stderr=-1) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 141
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device")
+def test_a_full_disk_is_no_verdict() -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run([*PROGRAM, *QUESTION], stdout=full, stderr=-1, check=False)
+        assert done.returncode == 2
+        assert done.stderr.endswith(b"No space left on device\n")
+        assert done.stderr.count(b"\n") == 1
+        done = subprocess.run([*PROGRAM, "check", "nothing"], stderr=full, check=False)
+        assert done.returncode == 2
+
+
+def test_a_crash_is_no_verdict(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def crash(**_: object) -> None:
+        message = "cannot happen"
+        raise ZeroDivisionError(message)
+
+    monkeypatch.setattr("blocksim.cli.app", crash)
+    monkeypatch.setattr("blocksim.cli.signal.signal", lambda *_: None)
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 70
+    assert "ZeroDivisionError: cannot happen" in capsys.readouterr().err
 
 
 def test_a_misspelt_key_is_named_with_its_file(tmp_path: Path) -> None:

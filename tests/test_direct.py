@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from arches import arch_at
 
-from blocksim import limit
-from blocksim.arch import Arch
 from blocksim.engines.base import trusted
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.joints import joint_motion
@@ -38,12 +37,6 @@ def held(arch, mu):
     return trial(arch, mu, "direct", moving=False).verdict
 
 
-def built(half_angle_deg, mu, voussoirs, weight="centreline", ratio=1.0):
-    half_angle = math.radians(half_angle_deg)
-    eta = limit.least_thickness(half_angle, mu, voussoirs, weight).eta
-    return Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
-
-
 def world_of(arch, mu, step=0.01):
     engine, assembly = Direct(), arch.assembly()
     return Blocks(assembly, mu, replace(engine.settings(assembly), step=step))
@@ -52,12 +45,12 @@ def world_of(arch, mu, step=0.01):
 @pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "weight"), CASES)
 def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight):
     case = (half_angle_deg, mu, voussoirs, weight)
-    assert held(built(*case, ratio=1 - 1e-9), mu) is Verdict.COLLAPSES
-    assert held(built(*case, ratio=1 + 1e-9), mu) is Verdict.STANDS
+    assert held(arch_at(1 - 1e-9, *case), mu) is Verdict.COLLAPSES
+    assert held(arch_at(1 + 1e-9, *case), mu) is Verdict.STANDS
 
 
 def test_bisection_from_far_away_ends_at_the_limit():
-    arch = built(125, 0.9, 26)
+    arch = arch_at(1.0, 125, 0.9, 26)
     search = Search(lambda eta: Answer(held(replace(arch, eta=eta), 0.9), math.nan))
     search.expand(2 * arch.eta)
     search.bisect(1e-9)
@@ -70,7 +63,7 @@ def test_bisection_from_far_away_ends_at_the_limit():
     ("half_angle_deg", "mu", "ratio"), [(90, 0.9, 0.9), (90, 0.37, 0.97), (145, 1.6, 0.97)]
 )
 def test_energy_falls_in_every_step_of_a_collapse(half_angle_deg, mu, ratio):
-    world = world_of(built(half_angle_deg, mu, 20, ratio=ratio), mu)
+    world = world_of(arch_at(ratio, half_angle_deg, mu, 20), mu)
     world.hold(1)
     energies = [world.energy]
     for _ in range(150):
@@ -84,7 +77,7 @@ def test_energy_falls_in_every_step_of_a_collapse(half_angle_deg, mu, ratio):
 
 
 def test_friction_forces_oppose_the_slip_at_the_edge_of_the_cone():
-    arch, mu = built(145, 1.6, 40, ratio=0.97), 1.6
+    arch, mu = arch_at(0.97, 145, 1.6, 40), 1.6
     world = world_of(arch, mu)
     motion = joint_motion(arch.assembly(), world.poses() + 1e-7 * world.hold(1))
     gap, slip = motion.gap * 1e7, motion.slip * 1e7
@@ -96,7 +89,7 @@ def test_friction_forces_oppose_the_slip_at_the_edge_of_the_cone():
 
 
 def test_what_stands_stays_for_good():
-    arch = built(90, 0.9, 27, ratio=1 + 1e-6)
+    arch = arch_at(1 + 1e-6, 90, 0.9, 27)
     world = world_of(arch, 0.9)
     start = world.poses()
     world.hold(1)
@@ -105,7 +98,7 @@ def test_what_stands_stays_for_good():
 
 
 def test_a_mirrored_arch_moves_as_the_mirror_image():
-    world = world_of(built(90, 0.9, 20, ratio=0.9), 0.9)
+    world = world_of(arch_at(0.9, 90, 0.9, 20), 0.9)
     world.hold(1)
     world.advance(60)
     moved = world.poses()
@@ -115,7 +108,7 @@ def test_a_mirrored_arch_moves_as_the_mirror_image():
 
 
 def test_scale_and_density_change_nothing():
-    arch = built(90, 0.9, 20, ratio=0.9)
+    arch = arch_at(0.9, 90, 0.9, 20)
     other = replace(arch, radius=64.0, depth=0.25, specific_weight=16_000.0)
     runs = []
     for one in (arch, other):
@@ -127,7 +120,7 @@ def test_scale_and_density_change_nothing():
 
 
 def test_it_is_repeatable_bit_by_bit():
-    arch = built(90, 0.37, 20, ratio=0.95)
+    arch = arch_at(0.95, 90, 0.37, 20)
     hashes = {
         simulate(arch, mu=0.37, method="direct", duration=1.0).state_hash for _ in range(2)
     }
@@ -135,7 +128,7 @@ def test_it_is_repeatable_bit_by_bit():
 
 
 def test_over_its_residual_the_answer_is_undecided():
-    setup = Setup.of(built(90, 0.9, 20, ratio=0.9), 0.9, "direct")
+    setup = Setup.of(arch_at(0.9, 90, 0.9, 20), 0.9, "direct")
     settings = replace(setup.settings, residual=0.0)
     world = replace(setup, settings=settings).world()
     assert onset(world, setup.assembly, 0.9, settings).verdict is Verdict.UNDECIDED
@@ -143,7 +136,7 @@ def test_over_its_residual_the_answer_is_undecided():
 
 
 def test_a_recording_keeps_its_quality(tmp_path):
-    recording = simulate(built(90, 0.9, 20, ratio=0.9), mu=0.9, method="direct", duration=1.5)
+    recording = simulate(arch_at(0.9, 90, 0.9, 20), mu=0.9, method="direct", duration=1.5)
     path = tmp_path / "run.npz"
     recording.save(path)
     quality = load_recording(path).quality
@@ -154,6 +147,6 @@ def test_a_recording_keeps_its_quality(tmp_path):
 
 def test_onset_and_motion_agree_close_to_the_limit():
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
-        seen = trial(built(90, 0.9, 12, ratio=ratio), 0.9, "direct")
+        seen = trial(arch_at(ratio, 90, 0.9, 12), 0.9, "direct")
         assert seen.verdict is expected
         assert seen.motion.verdict is expected

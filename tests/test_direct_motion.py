@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from arches import arch_at
 
-from blocksim import limit
 from blocksim.arch import Arch
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.ground import ground_level, piers
@@ -22,12 +22,6 @@ def world_of(assembly, mu, step):
 
 
 FALLS = [(90, 0.9, 20, 0.9), (125, 0.9, 15, 0.9), (150, 2.0, 15, 0.97), (65, 0.35, 12, 0.7)]
-
-
-def arch_of(half_angle_deg, mu, voussoirs, ratio):
-    half_angle = math.radians(half_angle_deg)
-    eta = limit.least_thickness(half_angle, mu, voussoirs).eta
-    return Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs)
 
 
 def clipped(polygon, other):
@@ -55,7 +49,7 @@ def clipped(polygon, other):
 def test_a_collapse_ends_on_the_ground_with_no_block_in_another(
     half_angle_deg, mu, voussoirs, ratio
 ):
-    arch = arch_of(half_angle_deg, mu, voussoirs, ratio)
+    arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
     assembly = arch.assembly()
     world = world_of(assembly, mu, 0.01)
     world.hold(1)
@@ -89,7 +83,7 @@ def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
 
-    setup = Setup.of(arch_of(90, 0.9, 12, 0.9), 0.9, "direct")
+    setup = Setup.of(arch_at(0.9, 90, 0.9, 12), 0.9, "direct")
     # Below the round-off of corners at rest nothing could pass.
     strict = replace(setup, settings=replace(setup.settings, penetration=-1.0))
     world = strict.world()
@@ -103,7 +97,7 @@ def test_deeper_overlap_than_allowed_is_undecided():
 
 
 def test_a_recording_of_a_collapse_goes_to_the_ground():
-    arch = arch_of(90, 0.9, 9, 0.8)
+    arch = arch_at(0.8, 90, 0.9, 9)
     recording = simulate(arch, mu=0.9, method="direct", duration=6.0)
     assert recording.times[-1] == pytest.approx(6.0)
     lowest = recording.poses[-1, :, 1].min() - ground_level(arch.assembly())

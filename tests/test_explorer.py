@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import math
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from running import blocksim
 
 from blocksim.errors import InputError
 from blocksim.modes import Mode
@@ -151,15 +150,6 @@ def test_names_from_elsewhere_are_text_never_markup(tmp_path: Path) -> None:
     page = explorer_page(read_results(written(tmp_path, {"scenario": evil})), evil)
     assert evil not in page
     assert embedded(page)["results"][0]["scenario"] == evil
-
-
-def blocksim(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "blocksim", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
 
 
 def test_the_command_writes_the_page_whole(tmp_path: Path) -> None:

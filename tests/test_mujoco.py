@@ -11,16 +11,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from arches import arch_at, box, held_in, on_a_slope
 
-from blocksim import limit
 from blocksim.arch import Arch
-from blocksim.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.assembly import Array, Assembly
 from blocksim.bracket import bracket
 from blocksim.doctor import examine
 from blocksim.engines import get_engine
 from blocksim.errors import MissingPart
 from blocksim.modes import Mode
-from blocksim.onset import Onset, onset
+from blocksim.onset import onset
 from blocksim.trial import simulate, trial
 from blocksim.validate import installed
 from blocksim.verdict import Verdict
@@ -37,18 +37,8 @@ SIDES = [(0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)]
 SMALL = Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=7)
 
 
-def arch_at(ratio: float, angle: float, mu: float, count: int, weight: str) -> Arch:
-    alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count, weight).eta
-    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
-
-
-def held(assembly: Assembly, mu: float) -> tuple[Onset, np.ndarray]:
-    """Outcome of the onset test, and accelerations."""
-    engine = get_engine("mujoco")
-    settings = engine.settings(assembly)
-    world = engine.build(assembly, mu, settings)
-    return onset(world, assembly, mu, settings), world.hold(1000)
+def held(assembly: Assembly, mu: float) -> tuple[Verdict, Array]:
+    return held_in(get_engine("mujoco"), assembly, mu, sweeps=1000)
 
 
 @pytest.mark.parametrize(("ratio", "expected"), SIDES)
@@ -71,7 +61,7 @@ def test_both_sides_of_the_least_thickness(
     ("ratio", "expected"), [SIDES[0], pytest.param(*SIDES[1], marks=pytest.mark.long)]
 )
 def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict) -> None:
-    seen = trial(arch_at(ratio, 90, 0.7, 7, "centreline"), 0.7, "mujoco")
+    seen = trial(arch_at(ratio, 90, 0.7, 7), 0.7, "mujoco")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -87,49 +77,34 @@ def test_bracket_holds_the_limit() -> None:
 @pytest.mark.parametrize("ratio", [0.99, 1.002])
 def test_few_thick_voussoirs_with_much_friction(ratio: float) -> None:
     """Known limit: below its least thickness, joints slide too fast for its contacts."""
-    seen = trial(arch_at(ratio, 155, 3.0, 11, "centreline"), 3.0, "mujoco", moving=False)
+    seen = trial(arch_at(ratio, 155, 3.0, 11), 3.0, "mujoco", moving=False)
     assert seen.verdict is (Verdict.UNDECIDED if ratio < 1 else Verdict.STANDS)
 
 
 def test_what_still_settles_is_no_collapse() -> None:
     """The first thousand steps of this arch end in a motion that opens joints only."""
-    arch = arch_at(1.005, 145, 1.6, 17, "centreline")
+    arch = arch_at(1.005, 145, 1.6, 17)
     assert trial(arch, 1.6, "mujoco", moving=False).verdict is Verdict.STANDS
 
 
 @pytest.mark.parametrize("ratio", [0.9, 1.1])
 def test_a_thin_shallow_arch_is_not_answered(ratio: float) -> None:
     """Known limit: 30 degrees, eta 0.0015. Its contacts do not come to rest."""
-    arch = arch_at(ratio, 30, 0.7, 27, "centreline")
+    arch = arch_at(ratio, 30, 0.7, 27)
     engine = get_engine("mujoco")
     settings = replace(engine.settings(arch.assembly()), hold_sweeps=1500)
     world = engine.build(arch.assembly(), 0.7, settings)
     assert onset(world, arch.assembly(), 0.7, settings).verdict is Verdict.UNDECIDED
 
 
-def box(angle: float, width: float, height: float) -> Assembly:
-    """A box on a plane that rises to the right."""
-    along = np.array([math.cos(angle), math.sin(angle)])
-    base, rise = along * width, np.array([-along[1], along[0]]) * height
-    block = Block(
-        vertices=np.array([np.zeros(2), base, base + rise, rise]),
-        centre=(base + rise) / 2,
-        mass=width * height,
-        inertia=width * height * (width**2 + height**2) / 12,
-        depth=1.0,
-    )
-    joint = Joint(before=SUPPORT, after=0, inner=base, outer=np.zeros(2))
-    return Assembly(blocks=(block,), joints=(joint,), size=1.0)
-
-
 @pytest.mark.parametrize("degrees", [5, 20, 45])
 def test_friction_threshold_on_a_slope(degrees: float) -> None:
     """Closed form: it slides with g (sin phi - mu cos phi), straight downhill."""
     angle = math.radians(degrees)
-    assembly = box(angle, 1.0, 0.2)
-    assert held(assembly, math.tan(angle) * 1.0005)[0].verdict is Verdict.STANDS
-    seen, start = held(assembly, math.tan(angle) * 0.9995)
-    assert seen.verdict is Verdict.COLLAPSES
+    assembly = on_a_slope(angle, 1.0, 0.2)
+    assert held(assembly, math.tan(angle) * 1.0005)[0] is Verdict.STANDS
+    verdict, start = held(assembly, math.tan(angle) * 0.9995)
+    assert verdict is Verdict.COLLAPSES
     downhill = -np.array([math.cos(angle), math.sin(angle)])
     assert start[0, :2] == pytest.approx(5e-4 * math.sin(angle) * downhill, abs=1e-5)
     assert start[0, 2] == pytest.approx(0.0, abs=1e-5)
@@ -139,8 +114,8 @@ def test_friction_threshold_on_a_slope(degrees: float) -> None:
 def test_tipping_threshold(share: float, expected: str) -> None:
     """Closed form: a box tips where its height is its width over tan phi."""
     angle = math.radians(20)
-    seen, start = held(box(angle, 1.0, share / math.tan(angle)), 50.0)
-    assert seen.verdict.value == expected
+    verdict, start = held(on_a_slope(angle, 1.0, share / math.tan(angle)), 50.0)
+    assert verdict.value == expected
     if share > 1:
         height = share / math.tan(angle)
         inertia = (1.0 + height**2) / 3  # about the lower corner, per mass
@@ -149,9 +124,8 @@ def test_tipping_threshold(share: float, expected: str) -> None:
 
 
 def test_a_block_on_nothing_falls_freely() -> None:
-    standing = box(0.0, 1.0, 1.0)
-    vertices = np.array([[3.0, 5.0], [3.5, 5.0], [3.5, 6.0], [3.0, 6.0]])
-    loose = replace(standing.blocks[0], vertices=vertices, centre=vertices.mean(axis=0))
+    standing = on_a_slope(0.0, 1.0, 1.0)
+    loose = box(np.array([3.0, 5.0]), np.array([1.0, 0.0]), 0.5, 1.0)
     found = held(replace(standing, blocks=(*standing.blocks, loose)), 0.5)[1]
     assert found[1] == pytest.approx([0.0, -1.0, 0.0], abs=1e-9)
     assert found[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-5)
@@ -169,8 +143,8 @@ def test_same_motion_in_every_run() -> None:
 def test_size_and_material_change_nothing(ratio: float, expected: Verdict) -> None:
     arch = arch_at(ratio, *ARCHES[0][:4])
     other = replace(arch, radius=100.0, depth=100.0, specific_weight=10.0)
-    seen, start = held(other.assembly(), 0.7)
-    assert seen.verdict is expected
+    verdict, start = held(other.assembly(), 0.7)
+    assert verdict is expected
     assert start == pytest.approx(held(arch.assembly(), 0.7)[1], abs=1e-6)
 
 

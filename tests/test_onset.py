@@ -10,22 +10,13 @@ import math
 
 import numpy as np
 import pytest
+from arches import arch_at
 
-from blocksim import Arch, bracket, limit
+from blocksim import bracket
 from blocksim.arch import Weight
 from blocksim.engines import get_engine
 from blocksim.trial import hold, trial
 from blocksim.verdict import Verdict
-
-
-def arch_at(
-    ratio: float, angle: float, mu: float, count: int, weight: Weight = "centreline"
-) -> Arch:
-    alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count, weight).eta
-    assert least is not None
-    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
-
 
 TWO_ANSWERS = [
     (125.023, 0.8594, 10, "centreline"),

@@ -14,12 +14,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from arches import arch_at, box, held_in, mirrored, on_a_slope, shuffled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from blocksim import limit
 from blocksim.arch import Arch
-from blocksim.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.assembly import Array, Assembly
 from blocksim.bracket import bracket
 from blocksim.engines import get_engine
 from blocksim.engines.base import Settings
@@ -47,12 +48,6 @@ ARCHES = [
     (155, math.inf, 14, "centreline", Mode.R),
 ]
 SMALL = Arch(half_angle=math.pi / 2, eta=0.11, voussoirs=13)
-
-
-def arch_at(ratio: float, angle: float, mu: float, count: int, weight: str) -> Arch:
-    alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count, weight).eta
-    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
 
 
 @pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
@@ -114,11 +109,8 @@ def test_bracket_holds_the_limit(
 
 def test_thin_arches_are_never_answered_wrongly() -> None:
     """Known limit: thin shallow arches of many voussoirs need more sweeps than allowed."""
-    alpha = math.radians(20)
-    least = limit.least_thickness(alpha, 0.7, 27).eta
     for ratio, right in ((0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)):
-        arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=27)
-        setup = Setup.of(arch, 0.7, "pymunk")
+        setup = Setup.of(arch_at(ratio, 20, 0.7, 27), 0.7, "pymunk")
         for sweeps in (1000, 20_000, 100_000):
             chosen = replace(setup.settings, hold_sweeps=sweeps)
             seen = onset(setup.world(), setup.assembly, setup.mu, chosen)
@@ -132,10 +124,7 @@ def test_thin_arches_are_never_answered_wrongly() -> None:
 @pytest.mark.parametrize("ratio", [0.98, 1.02])
 def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> None:
     """Impulses that overshoot open joints without overlap, but against the weight."""
-    alpha = math.radians(20)
-    least = limit.least_thickness(alpha, 0.7, count).eta
-    arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count)
-    setup = Setup.of(arch, 0.7, "pymunk")
+    setup = Setup.of(arch_at(ratio, 20, 0.7, count), 0.7, "pymunk")
     chosen = replace(setup.settings, hold_sweeps=100_000)
     seen = onset(setup.world(), setup.assembly, setup.mu, chosen)
     assert seen.verdict is Verdict.UNDECIDED
@@ -144,10 +133,8 @@ def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> N
 @pytest.mark.parametrize(("ratio", "right"), [(0.98, "collapses"), (1.02, "stands")])
 def test_twice_as_wide_arches_are_answered(ratio: float, right: str) -> None:
     """The other side of that limit: 40 degrees."""
-    alpha = math.radians(40)
-    least = limit.least_thickness(alpha, 0.7, 12).eta
-    arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=12)
-    assert trial(arch, 0.7, "pymunk", moving=False).verdict.value == right
+    seen = trial(arch_at(ratio, 40, 0.7, 12), 0.7, "pymunk", moving=False)
+    assert seen.verdict.value == right
 
 
 @pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES[:7])
@@ -202,7 +189,7 @@ def test_size_and_material_change_no_bit(
     ratio: float, size: int, mass: int, depth: int
 ) -> None:
     """By powers of two, which round nothing, every pose is the same to the last bit."""
-    arch = arch_at(ratio, 90, 0.6, 13, "centreline")
+    arch = arch_at(ratio, 90, 0.6, 13)
     other = replace(
         arch, radius=2.0**size, specific_weight=20_000 * 2.0**mass, depth=2.0**depth
     )
@@ -231,52 +218,8 @@ def test_size_and_material_change_no_verdict(
     assert trial(arch, 0.9, "pymunk").verdict is expected
 
 
-def held(assembly: Assembly, mu: float) -> tuple[Verdict, np.ndarray]:
-    engine = get_engine("pymunk")
-    chosen = engine.settings(assembly)
-    world = engine.build(assembly, mu, chosen)
-    seen = onset(world, assembly, mu, chosen)
-    return seen.verdict, world.hold(1)
-
-
-def mirrored(assembly: Assembly) -> Assembly:
-    flip = np.array([-1.0, 1.0])
-    return Assembly(
-        blocks=tuple(
-            replace(block, vertices=(block.vertices * flip)[::-1], centre=block.centre * flip)
-            for block in assembly.blocks
-        ),
-        joints=tuple(
-            Joint(
-                before=joint.after,
-                after=joint.before,
-                inner=joint.inner * flip,
-                outer=joint.outer * flip,
-            )
-            for joint in assembly.joints
-        ),
-        size=assembly.size,
-    )
-
-
-def shuffled(assembly: Assembly, seed: int) -> Assembly:
-    random = np.random.default_rng(seed)
-    order = random.permutation(len(assembly.blocks))
-    place = {SUPPORT: SUPPORT, **{int(old): new for new, old in enumerate(order)}}
-    joints = [
-        Joint(
-            before=place[joint.before],
-            after=place[joint.after],
-            inner=joint.inner,
-            outer=joint.outer,
-        )
-        for joint in assembly.joints
-    ]
-    return Assembly(
-        blocks=tuple(assembly.blocks[old] for old in order),
-        joints=tuple(joints[i] for i in random.permutation(len(joints))),
-        size=assembly.size,
-    )
+def held(assembly: Assembly, mu: float) -> tuple[Verdict, Array]:
+    return held_in(get_engine("pymunk"), assembly, mu, sweeps=1)
 
 
 CASES = [(ratio, *ARCHES[i][:4]) for ratio in (0.99, 1.01) for i in (1, 3, 5, 8)]
@@ -297,28 +240,6 @@ def test_order_of_insertion(
     for seed in (1, 2):
         verdict, _ = held(shuffled(assembly, seed), mu)
         assert verdict is (Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES)
-
-
-def box(corner: np.ndarray, along: np.ndarray, width: float, height: float) -> Block:
-    """A box of unit density whose base starts at `corner` and runs `along`."""
-    up = np.array([-along[1], along[0]])
-    base, rise = along * width, up * height
-    return Block(
-        vertices=np.array([corner, corner + base, corner + base + rise, corner + rise]),
-        centre=corner + (base + rise) / 2,
-        mass=width * height,
-        inertia=width * height * (width**2 + height**2) / 12,
-        depth=1.0,
-    )
-
-
-def on_a_slope(angle: float, width: float, height: float) -> Assembly:
-    """A box on a plane that rises to the right."""
-    uphill = np.array([math.cos(angle), math.sin(angle)])
-    block = box(np.zeros(2), uphill, width, height)
-    # Seen from the ground to the block, inner lies to the right: uphill.
-    joint = Joint(before=SUPPORT, after=0, inner=uphill * width, outer=np.zeros(2))
-    return Assembly(blocks=(block,), joints=(joint,), size=1.0)
 
 
 def accelerations(assembly: Assembly, mu: float) -> np.ndarray:

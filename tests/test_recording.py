@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import zipfile
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -172,6 +174,59 @@ def test_altered_contents(tmp_path: Path, changes: dict[str, object], words: str
     path = tmp_path / "run.npz"
     altered(path, **changes)
     assert words in refused(path)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"times": np.array([0.0, 0.1, math.nan, 0.3])},
+        {"times": np.array([0.0, 0.1, 0.1, 0.3])},
+        {"times": np.array([0.3, 0.2, 0.1, 0.0])},
+        {"times": np.zeros(0), "poses": np.zeros((0, 5, 3))},
+        {"poses": np.full((4, 5, 3), math.nan)},
+        {"poses": np.full((4, 5, 3), -math.inf)},
+        {"poses": np.full((4, 5, 3), 1e200)},
+        {"mu": math.nan},
+        {"mu": -1.0},
+        {"engine": "\x1b[31mred"},
+        {"engine": "x" * 5000},
+        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, tilt=math.nan)},
+        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, tilt="much")},
+    ],
+)
+def test_what_is_no_motion_of_an_arch_is_refused(
+    tmp_path: Path, changes: dict[str, object]
+) -> None:
+    """Sound as a file, fingerprint and all."""
+    path = tmp_path / "run.npz"
+    replace(recording(), **changes).save(path)
+    refused(path)
+
+
+def test_arrays_that_are_no_numbers(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    for kind in (complex, int, str, "datetime64[s]"):
+        altered(path, times=recording().times.astype(int).astype(kind))
+        refused(path)
+        altered(path, poses=recording().poses.astype(int).astype(kind))
+        refused(path)
+
+
+def test_small_files_do_not_fill_the_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "run.npz"
+    claimed = BytesIO()
+    shape = {"descr": "<f8", "fortran_order": False, "shape": (10**15,)}
+    np.lib.format.write_array_header_1_0(claimed, shape)
+    with zipfile.ZipFile(path, "w") as packed:
+        for name in ("header", "times", "poses"):
+            packed.writestr(f"{name}.npy", claimed.getvalue())
+    refused(path)
+    replace(recording(), poses=np.zeros((4, 5, 3))).save(path)
+    load_recording(path)
+    monkeypatch.setattr("blocksim.recording.LARGEST_INSIDE", 4 * 5 * 3 * 8)
+    refused(path)
 
 
 def test_header_that_is_no_table(tmp_path: Path) -> None:

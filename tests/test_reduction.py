@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from arches import arch_at
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -56,12 +57,6 @@ def engine(request: pytest.FixtureRequest) -> str:
     if request.param == "pybullet":
         pytest.importorskip("pybullet")
     return request.param
-
-
-def built(half_angle_deg, mu, voussoirs, weight="centreline", ratio=1.0):
-    half_angle = math.radians(half_angle_deg)
-    eta = limit.least_thickness(half_angle, mu, voussoirs, weight).eta
-    return Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
 
 
 def accelerations(held):
@@ -203,7 +198,7 @@ def test_nothing_holds_a_block_on_a_smooth_slope(engine):
 @pytest.mark.parametrize("ratio", [0.98, 1.02])
 @pytest.mark.parametrize("voussoirs", [9, 10])
 def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
-    arch = built(125, 0.9, voussoirs, ratio=ratio)
+    arch = arch_at(ratio, 125, 0.9, voussoirs)
     for reduction in (None, Reduction.of(arch, 0.9)):
         world = Setup.of(arch, 0.9, engine, reduction=reduction).world()
         rates = world.hold(SWEEPS[engine])[:, :3]
@@ -215,7 +210,7 @@ def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
 @pytest.mark.parametrize("voussoirs", [26, 27])
 def test_resultants_are_those_of_all_voussoirs(voussoirs):
     """In a collapse hinges fix the resultants; at rest there is a choice."""
-    arch = built(90, 0.7, voussoirs, ratio=0.97)
+    arch = arch_at(0.97, 90, 0.7, voussoirs)
     every = Setup.of(arch, 0.7, "direct").world()
     few = Setup.of(arch, 0.7, "direct", reduction=Reduction.of(arch, 0.7)).world()
     every.hold(1)
@@ -230,7 +225,7 @@ def test_resultants_are_those_of_all_voussoirs(voussoirs):
 @pytest.mark.parametrize("ratio", [0.97, 0.999, 1.001])
 def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
     """All joints but the springing, and one at the crown, taken for none that move."""
-    arch = built(half_angle_deg, mu, voussoirs, weight, ratio)
+    arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
     crown = () if voussoirs % 2 else (voussoirs // 2,)
     wrong = Reduction(arch.assembly(), (0, *crown))
     held = hold(arch, mu, "direct", reduction=wrong)
@@ -242,7 +237,7 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
 
 
 def test_without_a_second_look_a_wrong_guess_would_stand():
-    arch = built(90, 0.7, 28, ratio=0.98)
+    arch = arch_at(0.98, 90, 0.7, 28)
     wrong = Reduction(arch.assembly(), (0, 14))
     setup = Setup.of(arch, 0.7, "direct", reduction=wrong)
     world = setup.world()
@@ -255,7 +250,7 @@ def test_without_a_second_look_a_wrong_guess_would_stand():
 
 def test_joints_that_slide_are_split_again():
     """At 145 deg an inner joint slides, which is merged here with what lies around it."""
-    arch, mu = built(145, 1.6, 28, ratio=0.99), 1.6
+    arch, mu = arch_at(0.99, 145, 1.6, 28), 1.6
     right = Reduction.of(arch, mu).kept
     assert len(right) == 4
     merged = tuple(joint for joint in right if joint != right[2])
@@ -266,7 +261,7 @@ def test_joints_that_slide_are_split_again():
 
 def test_forces_beyond_a_joint_or_its_friction_are_seen():
     """One arch at rest: its resultants moved by a little more, or less, than there is room."""
-    arch = built(90, 0.7, 28, ratio=1.2)
+    arch = arch_at(1.2, 90, 0.7, 28)
     reduction = Reduction(arch.assembly(), (0, 14))
     joints = reduction.whole.joint_arrays
     middle = joints.ends.mean(axis=1)
@@ -299,7 +294,7 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
 
 def test_limit_analysis_names_the_joints_that_act_at_the_least_thickness():
     for case in CASES:
-        arch, mu = built(*case), case[1]
+        arch, mu = arch_at(1.0, *case), case[1]
         state = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
         angles = half_joints(arch.half_angle, arch.voussoirs)
         named = {angles[k] for k in weakest_joints(arch, mu)}
@@ -315,7 +310,7 @@ def test_limit_analysis_names_the_joints_that_act_at_the_least_thickness():
 @pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "weight"), CASES)
 def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight):
     for ratio, expected in ((1 - 1e-9, Verdict.COLLAPSES), (1 + 1e-9, Verdict.STANDS)):
-        arch = built(half_angle_deg, mu, voussoirs, weight, ratio)
+        arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
         seen = trial(arch, mu, "direct", moving=False, reduce=True)
         assert seen.verdict is expected
         assert seen.blocks <= 6
@@ -345,7 +340,7 @@ def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
 def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, weight):
     """All 301 voussoirs would take it minutes."""
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
-        arch = built(half_angle_deg, mu, voussoirs, weight, ratio)
+        arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
         seen = trial(arch, mu, "pymunk", reduce=True)
         assert seen.verdict is expected, seen.reason
         if expected is Verdict.COLLAPSES:
@@ -359,7 +354,7 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
 def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
     pytest.importorskip("pybullet")
     for ratio, expected in ((0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)):
-        arch = built(half_angle_deg, mu, voussoirs, ratio=ratio)
+        arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
         seen = trial(arch, mu, "pybullet", reduce=True)
         assert seen.verdict is expected, seen.reason
         assert seen.motion.recording.poses.shape[1:] == (voussoirs, 6)
@@ -390,7 +385,7 @@ def test_where_no_thickness_stands_none_is_found():
 
 @pytest.mark.parametrize("voussoirs", [14, 15])
 def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
-    arch = built(125, 0.9, voussoirs, ratio=0.98)
+    arch = arch_at(0.98, 125, 0.9, voussoirs)
     few, every = (trial(arch, 0.9, "direct", reduce=reduce) for reduce in (True, False))
     assert few.verdict is every.verdict is Verdict.COLLAPSES
     assert few.mode is every.mode
@@ -402,7 +397,7 @@ def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
 
 
 def test_the_answer_tells_what_was_simulated(engine):
-    arch = built(90, 0.7, 27, ratio=0.98)
+    arch = arch_at(0.98, 90, 0.7, 27)
     answer = check(arch, mu=0.7, method=engine, reduce=True)
     assert answer.verdict is Verdict.COLLAPSES
     assert (answer.blocks, answer.splits) == (3, 0)
@@ -411,7 +406,7 @@ def test_the_answer_tells_what_was_simulated(engine):
 
 
 def test_scale_and_density_change_nothing():
-    arch = built(125, 0.9, 27, ratio=0.98)
+    arch = arch_at(0.98, 125, 0.9, 27)
     other = replace(arch, radius=64.0, depth=0.25, specific_weight=16_000.0)
     one, two = (hold(a, 0.9, "direct", reduction=Reduction.of(a, 0.9)) for a in (arch, other))
     assert accelerations(one) == pytest.approx(accelerations(two), abs=1e-12)
@@ -420,9 +415,9 @@ def test_scale_and_density_change_nothing():
 @pytest.mark.parametrize("method", ["auto", "theory", "limit"])
 def test_there_is_nothing_to_reduce_where_nothing_is_simulated(method):
     with pytest.raises(InputError, match="reduce"):
-        check(built(90, 0.7, 27), mu=0.7, method=method, reduce=True)
+        check(arch_at(1.0, 90, 0.7, 27), mu=0.7, method=method, reduce=True)
 
 
 def test_out_of_the_plane_nothing_is_reduced():
     with pytest.raises(InputError, match="reduce"):
-        check(built(90, 0.7, 27), mu=0.7, method="pybullet", tilt=0.1, reduce=True)
+        check(arch_at(1.0, 90, 0.7, 27), mu=0.7, method="pybullet", tilt=0.1, reduce=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 
 import numpy as np
@@ -176,8 +177,42 @@ def test_file_that_is_not_there_or_too_large(tmp_path: Path) -> None:
         load_scenario(written(tmp_path, GOOD + padding + "#"))
 
 
-def test_file_that_is_no_text(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"\xff\xfe\x00",
+        b"a = " + b"[" * 30_000 + b"]" * 30_000,
+        b"a = 9" + b"9" * 5000,
+    ],
+)
+def test_file_that_is_no_text_or_beyond_all_bounds(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "scene.toml"
-    path.write_bytes(b"\xff\xfe\x00")
+    path.write_bytes(content)
     with pytest.raises(InputError, match="valid TOML"):
         load_scenario(str(path))
+
+
+@pytest.mark.parametrize("value", ['"' + "x" * 50_000 + '"', "[" + "1, " * 15_000 + "]"])
+def test_of_a_long_value_the_beginning_is_shown(tmp_path: Path, value: str) -> None:
+    with pytest.raises(InputError, match=r"^.*: extra = .*: must be left out") as caught:
+        load_scenario(written(tmp_path, f"extra = {value}\n{GOOD}"))
+    assert len(str(caught.value)) < 1000
+
+
+def test_a_value_may_be_nested_deeply(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"^.*: a = .*: must be left out"):
+        load_scenario(written(tmp_path, f"{GOOD}\n[{'.'.join('a' * 10_000)}]\n"))
+
+
+def test_a_name_too_long_for_a_file(tmp_path: Path) -> None:
+    for name in ("x" * 5000, str(tmp_path / f"{'x' * 300}.toml")):
+        with pytest.raises(InputError, match=r"an existing \.toml file .*File name too long"):
+            load_scenario(name)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_a_file_that_may_not_be_read(tmp_path: Path) -> None:
+    name = written(tmp_path, GOOD)
+    Path(name).chmod(0)
+    with pytest.raises(InputError, match="Permission denied"):
+        load_scenario(name)

@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from blocksim import Arch, limit, motion
-from blocksim.assembly import Array, Assembly
+from analysis.stability import moved_away, setup_of
+from blocksim import motion
+from blocksim.assembly import Array
 from blocksim.engines.base import Quality
 from blocksim.joints import overlap_share
 from blocksim.motion import Motion, moving_run
@@ -27,27 +28,7 @@ SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
 def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> Setup:
     if engine == "pybullet":
         pytest.importorskip("pybullet", exc_type=ImportError)
-    alpha = math.radians(angle)
-    least = limit.least_thickness(alpha, mu, count).eta
-    assert least is not None
-    arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count)
-    return Setup.of(arch, mu, engine)
-
-
-def moved_away(assembly: Assembly, distance: float) -> Assembly:
-    """The same, built elsewhere, by a distance to the right [size]."""
-    by = np.array([distance * assembly.size, 0.0])
-    return replace(
-        assembly,
-        blocks=tuple(
-            replace(block, vertices=block.vertices + by, centre=block.centre + by)
-            for block in assembly.blocks
-        ),
-        joints=tuple(
-            replace(joint, inner=joint.inner + by, outer=joint.outer + by)
-            for joint in assembly.joints
-        ),
-    )
+    return setup_of(engine, (angle, mu, count), ratio)
 
 
 def held(setup: Setup) -> Onset:

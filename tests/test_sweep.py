@@ -4,74 +4,26 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import resource
-import signal
 import subprocess
 import sys
-import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from running import blocksim
+from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
-import blocksim.sweep.answers
-import blocksim.sweep.run
-import blocksim.sweep.table
 from blocksim import Arch, bracket, check
-from blocksim.errors import InputError
-from blocksim.sweep import Case, Design, load_design, read_rows, sweep, write_parquet
+from blocksim.errors import InputError, MissingPart
+from blocksim.sweep import Case, answers, read_rows, run, sweep, write_parquet
+from blocksim.sweep import table as tables
 from blocksim.sweep.answers import Answered, Asked, answer
-from blocksim.sweep.shards import LOCK, identities, locked
+from blocksim.sweep.shards import identities
 
-GRID = """
-alpha_deg = { low = 60, high = 150, steps = 4 }
-mu = [0.5, 0.9, inf]
-voussoirs = [9, 12]
-eta = [0.05, 0.1]
-weight = ["centreline", "sector"]
-method = ["theory", "limit"]
-"""
-SIMULATED = """
-alpha_deg = { low = 60, high = 150 }
-mu = { low = 0.4, high = 2, log = true }
-voussoirs = { low = 7, high = 12 }
-eta = { low = 0.05, high = 0.2 }
-method = ["limit", "direct"]
-[random]
-count = 40
-seed = 7
-"""
 DIRECT = 'alpha_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
 PYMUNK = DIRECT.replace("direct", "pymunk")
-Rows = dict[str, dict[str, object]]
-
-
-def design_of(folder: Path, text: str) -> Design:
-    path = folder / "design.toml"
-    path.write_text(text)
-    return load_design(path)
-
-
-def rows_of(folder: Path) -> Rows:
-    """Rows by identity without their times; none may be there twice."""
-    rows = list(read_rows(folder))
-    found = {str(row["id"]): {**row, "wall_s": None} for row in rows}
-    assert len(found) == len(rows)
-    return found
-
-
-@pytest.fixture(scope="module")
-def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
-    folder = tmp_path_factory.mktemp("uninterrupted")
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design_of(folder, SIMULATED), folder, executor=executor)
-    rows = rows_of(folder)
-    assert len(rows) == 80
-    assert all(row["error"] is None for row in rows.values())
-    return rows
 
 
 def test_a_grid_takes_every_combination(tmp_path: Path) -> None:
@@ -154,19 +106,20 @@ def test_wrong_designs_are_told_in_one_line(
 
 
 def test_the_command_keeps_the_contract(tmp_path: Path) -> None:
-    (tmp_path / "design.toml").write_text(GRID.replace("0.1]", "3]"))
-    done = command(tmp_path, tmp_path / "out")
+    done = blocksim(*written(tmp_path, GRID.replace("0.1]", "3]")))
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "out").exists()
-    done = command(tmp_path, tmp_path / "out", "--scheduler", "nonsense")
+    asked = written(tmp_path, GRID)
+    done = blocksim(*asked, "--scheduler", "nonsense")
     assert done.returncode == 2
-    (tmp_path / "design.toml").write_text(GRID)
-    done = command(tmp_path, tmp_path / "out", "--workers", "1", "--json")
+    assert done.stderr.count("\n") == 1
+    assert "--scheduler = 'nonsense': must be the address of a dask scheduler" in done.stderr
+    done = blocksim(*asked, "--workers", "1", "--json")
     summary = json.loads(done.stdout)
     assert (done.returncode, done.stderr) == (0, "")
     assert (summary["cases"], summary["rows"], summary["failed"]) == (192, 192, 0)
-    done = command(tmp_path, tmp_path / "out", "--workers", "1")
+    done = blocksim(*asked, "--workers", "1")
     assert "192 cases: 192 were there, 0 rows added" in done.stdout
 
 
@@ -267,7 +220,7 @@ def test_a_failing_case_becomes_a_row_that_says_so(
     def fails(arch: Arch, **_: object) -> None:
         raise RuntimeError(f"out of\nluck with {arch.voussoirs}")
 
-    monkeypatch.setattr(blocksim.sweep.answers, "check", fails)
+    monkeypatch.setattr(answers, "check", fails)
     text = 'alpha_deg = 90\nmu = [0.1, 0.7]\nratio = [1, 60]\nmethod = ["limit", "direct"]'
     with ThreadPoolExecutor(1) as executor:
         done = sweep(design_of(tmp_path, text), tmp_path, executor=executor)
@@ -314,7 +267,7 @@ def test_a_case_that_kills_its_process_becomes_a_row(
         made.append(Fragile(poison, error))
         return made[-1]
 
-    monkeypatch.setattr(blocksim.sweep.run._Hands, "_processes", processes)
+    monkeypatch.setattr(run, "processes", processes)
     done = sweep(design_of(tmp_path, GRID), tmp_path)
     rows = rows_of(tmp_path)
     lost = [row for row in rows.values() if row["error"] is not None]
@@ -335,7 +288,7 @@ def test_an_executor_that_breaks_is_not_ours_to_replace(tmp_path: Path) -> None:
 def test_chunks_change_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, uninterrupted: Rows
 ) -> None:
-    monkeypatch.setattr(blocksim.sweep.run, "LARGEST_CHUNK", 7)
+    monkeypatch.setattr(run, "LARGEST_CHUNK", 7)
     with ThreadPoolExecutor(1) as executor:
         sweep(design_of(tmp_path, SIMULATED), tmp_path, executor=executor, in_flight=1)
     assert rows_of(tmp_path) == uninterrupted
@@ -353,28 +306,11 @@ def test_what_occurs_twice_is_asked_once_and_a_larger_design_reuses_rows(
     assert (done.cases, done.found, done.tally.rows) == (256, 192, 64)
 
 
-def test_a_write_that_was_interrupted_loses_nothing(
-    tmp_path: Path, uninterrupted: Rows
-) -> None:
-    design = design_of(tmp_path, SIMULATED)
-    with ThreadPoolExecutor(1) as executor:
-        sweep(design, tmp_path, executor=executor)
-        shards = sorted(tmp_path.glob("rows-*.jsonl"), key=lambda path: path.stat().st_size)
-        whole = shards[-1].read_bytes()
-        (tmp_path / f".{shards[-1].name}.part").write_bytes(whole[:100])
-        shards[-1].write_bytes(whole[:-30])
-        shards[0].write_bytes(b'{"id": "0a')
-        done = sweep(design, tmp_path, executor=executor)
-    assert 0 < done.tally.rows < 80
-    assert rows_of(tmp_path) == uninterrupted
-    assert not list(tmp_path.glob(".rows-*"))
-
-
 def test_a_parquet_table_holds_the_same_rows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
-    monkeypatch.setattr(blocksim.sweep.table, "ROWS_AT_ONCE", 50)
+    monkeypatch.setattr(tables, "ROWS_AT_ONCE", 50)
     out = tmp_path / "out"
     given = f"{PYMUNK}hold_sweeps = 1000"
     for text in (GRID, given, GRID.replace("eta = [0.05, 0.1]", "ratio = [0.9, 60.0]")):
@@ -393,9 +329,8 @@ def test_a_parquet_table_holds_the_same_rows(
 
 
 def test_a_table_is_written_where_it_can_be(tmp_path: Path) -> None:
-    (tmp_path / "design.toml").write_text(GRID)
     without = "import sys; sys.modules['pyarrow'] = None; from blocksim.cli import main; main()"
-    asked = ["sweep", str(tmp_path / "design.toml"), "--out", str(tmp_path / "out")]
+    asked = written(tmp_path, GRID)
     done = subprocess.run(
         [sys.executable, "-c", without, *asked, "--parquet"],
         capture_output=True,
@@ -406,41 +341,9 @@ def test_a_table_is_written_where_it_can_be(tmp_path: Path) -> None:
     assert done.stderr.endswith("not available here: pip install 'blocksim[parquet]'\n")
     assert not (tmp_path / "out").exists()
     pytest.importorskip("pyarrow")
-    done = command(tmp_path, tmp_path / "out", "--workers", "1", "--parquet")
+    done = blocksim(*asked, "--workers", "1", "--parquet")
     assert done.returncode == 0
     assert (tmp_path / "out/rows.parquet").read_bytes()[:4] == b"PAR1"
-
-
-def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
-    (tmp_path / "design.toml").write_text(GRID)
-    out = tmp_path / "out"
-    out.mkdir()
-    part = out / ".rows-x.jsonl.part"
-    part.write_text("what the other is writing")
-    with locked(out):
-        done = command(tmp_path, out, "--workers", "1")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("\n") == 1
-    assert f"--out = '{out}': must be a folder no other sweep is at work in" in done.stderr
-    assert part.exists()
-    assert not list(out.glob("rows-*"))
-
-
-def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
-    holder = [
-        "from blocksim.sweep.shards import locked",
-        "from pathlib import Path",
-        f"with locked(Path({str(tmp_path)!r})): print('held', flush=True); input()",
-    ]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    with subprocess.Popen([sys.executable, "-c", "\n".join(holder)], **pipes) as process:
-        assert process.stdout is not None
-        assert process.stdout.readline() == b"held\n"
-        with pytest.raises(InputError, match="no other sweep"), locked(tmp_path):
-            pass
-        process.kill()
-    with locked(tmp_path):
-        assert (tmp_path / LOCK).exists()
 
 
 def test_what_is_no_row_is_refused(tmp_path: Path) -> None:
@@ -449,106 +352,9 @@ def test_what_is_no_row_is_refused(tmp_path: Path) -> None:
         identities(tmp_path)
 
 
-def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
-    tmp_path: Path, uninterrupted: Rows
-) -> None:
-    (tmp_path / "design.toml").write_text(SIMULATED)
-
-    def small() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
-
-    done = command(tmp_path, tmp_path / "out", "--workers", "1", before=small)
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
-    assert "must be writable" in done.stderr
-    assert not list((tmp_path / "out").glob(".rows-*"))
-    assert len(rows_of(tmp_path / "out")) < 80
-    assert command(tmp_path, tmp_path / "out", "--workers", "1").returncode == 0
-    assert rows_of(tmp_path / "out") == uninterrupted
-
-
-def test_killed_drivers_leave_no_process_and_lose_no_row(
-    tmp_path: Path, uninterrupted: Rows
-) -> None:
-    (tmp_path / "design.toml").write_text(SIMULATED)
-    out = tmp_path / "out"
-    there = 0
-    for _ in range(2):
-        with started(tmp_path, out) as driver:
-            until(lambda seen=there: len(list(out.glob("rows-*"))) > seen, driver)
-            workers = children(driver.pid)
-            assert workers
-            driver.kill()
-        there = len(list(out.glob("rows-*")))
-        until(lambda gone=workers: not any(alive(pid) for pid in gone))
-    rows = rows_of(out)
-    assert 0 < len(rows) < 80
-    assert command(tmp_path, out, "--workers", "1").returncode == 0
-    assert rows_of(out) == uninterrupted
-
-
-def test_a_terminated_sweep_ends_without_a_word(tmp_path: Path) -> None:
-    (tmp_path / "design.toml").write_text(SIMULATED)
-    out = tmp_path / "out"
-    with started(tmp_path, out) as driver:
-        until(lambda: len(list(out.glob("rows-*"))) > 0, driver)
-        workers = children(driver.pid)
-        driver.terminate()
-        assert driver.stderr is not None
-        assert driver.stderr.read() == b""
-        assert driver.wait() == 143
-    until(lambda: not any(alive(pid) for pid in workers))
-    assert 0 < len(rows_of(out)) < 80
-
-
-def test_a_killed_worker_is_replaced(tmp_path: Path, uninterrupted: Rows) -> None:
-    (tmp_path / "design.toml").write_text(SIMULATED)
-    out = tmp_path / "out"
-    with started(tmp_path, out) as driver:
-        until(lambda: len(list(out.glob("rows-*"))) > 1, driver)
-        workers = children(driver.pid)
-        assert workers
-        for pid in workers:
-            os.kill(pid, signal.SIGKILL)
-        assert driver.wait() == 0
-    assert rows_of(out) == uninterrupted
-
-
-def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows) -> None:
-    distributed = pytest.importorskip("distributed")
-    (tmp_path / "design.toml").write_text(SIMULATED)
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as cluster:
-        address = cluster.scheduler_address
-        done = command(tmp_path, tmp_path / "out", "--scheduler", address, "--json")
-    assert done.returncode == 0
-    assert json.loads(done.stdout)["rows"] == 80
-    assert rows_of(tmp_path / "out") == uninterrupted
-
-
-@pytest.mark.long
-def test_a_killed_worker_of_a_dask_cluster_loses_nothing(
-    tmp_path: Path, uninterrupted: Rows
-) -> None:
-    distributed = pytest.importorskip("distributed")
-    (tmp_path / "design.toml").write_text(SIMULATED)
-    out = tmp_path / "out"
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as cluster:
-        address = cluster.scheduler_address
-        with started(tmp_path, out, "--scheduler", address) as driver:
-            until(lambda: len(list(out.glob("rows-*"))) > 1, driver)
-            os.kill(cluster.workers[0].process.pid, signal.SIGKILL)
-            assert len(rows_of(out)) < 80
-            assert driver.wait() == 0
-    assert rows_of(out) == uninterrupted
-
-
 def test_a_worker_of_another_version_is_refused() -> None:
     case = Case(90.0, 0.7, 27, "centreline", 0.1, None, "limit", 0.0, 0.0)
-    with pytest.raises(blocksim.MissingPart, match="install the same"):
+    with pytest.raises(MissingPart, match="install the same"):
         answer([Asked(case.identity("x"), case)], {"limit": "x"})
 
 
@@ -559,52 +365,3 @@ def arch_of(row: dict[str, object], eta: float) -> Arch:
         voussoirs=int(str(row["voussoirs"])),
         weight=row["weight"],
     )
-
-
-def arguments(folder: Path, out: Path) -> list[str]:
-    design = str(folder / "design.toml")
-    return [sys.executable, "-m", "blocksim", "sweep", design, "--out", str(out)]
-
-
-def command(
-    folder: Path, out: Path, *options: str, before: Callable[[], None] | None = None
-) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*arguments(folder, out), *options],
-        capture_output=True,
-        text=True,
-        check=False,
-        preexec_fn=before,
-    )
-
-
-def started(folder: Path, out: Path, *options: str) -> subprocess.Popen[bytes]:
-    options = options or ("--workers", "1")
-    return subprocess.Popen(
-        [*arguments(folder, out), *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-    )
-
-
-def until(true: Callable[[], bool], driver: subprocess.Popen[bytes] | None = None) -> None:
-    deadline = time.monotonic() + 60
-    while not true():
-        assert driver is None or driver.poll() is None, "ended too soon"
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
-
-
-def children(pid: int) -> list[int]:
-    """Workers of a driver."""
-    listed = Path(f"/proc/{pid}/task").glob("*/children")
-    pids = [int(word) for path in listed for word in path.read_text().split()]
-    return [
-        each for each in pids if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
-    ]
-
-
-def alive(pid: int) -> bool:
-    path = Path(f"/proc/{pid}/stat")
-    try:
-        return path.read_text().rpartition(")")[2].split()[0] != "Z"
-    except (FileNotFoundError, ProcessLookupError):
-        return False

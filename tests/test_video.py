@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
+from running import blocksim
 from scipy.spatial.transform import Rotation
 
 from blocksim.arch import GRAVITY, Arch
@@ -369,15 +368,6 @@ def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:
         render([falling()], tmp_path / "none" / "film.png", height=240)
 
 
-def blocksim(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "blocksim", *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
 def test_command_films_recordings(tmp_path: Path) -> None:
     run = str(tmp_path / "run.npz")
     falling().save(Path(run))
@@ -412,6 +402,8 @@ def test_command_films_a_scenario(tmp_path: Path) -> None:
         (("RUN", "--mu", "1"), "--mu = 1.0: must be left out"),
         (("RUN", "--height", "241"), "--height = 241: must be an even number"),
         (("RUN", "--slow", "0"), "--slow = 0.0: must be above 0"),
+        (("RUN", "--method", "direct"), "--method = 'direct': must be left out"),
+        (("RUN", "--at", "1"), "--at = 1.0: must be left out of a film"),
         (("RUN", "--at", "-1"), "--at = -1.0: must be 0 or above"),
         (("RUN", "--beside", "none.npz"), "an existing .npz file"),
         (("semicircle_sliding",), "eta is missing"),

@@ -56,7 +56,7 @@ from blocksim.cli.options import (
 from blocksim.cli.sweeping import run_sweep
 from blocksim.doctor import examine
 from blocksim.engines import ENGINES
-from blocksim.files import make_folder
+from blocksim.files import make_folder, require_place
 from blocksim.report.answers import (
     bracket_lines,
     bracket_record,
@@ -79,6 +79,7 @@ app = typer.Typer(
 )
 
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
+FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0
 """Seconds."""
 
@@ -169,7 +170,7 @@ def simulate(
     asked = question(scene, alpha, mu, voussoirs, weight, tilt)
     arch = arch_of(asked, eta)
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
-    require(out.parent.is_dir(), "--out", str(out), "in an existing folder")
+    require_place(out)
     duration = None
     if seconds is not None:
         ok = is_number(seconds, 0, LONGEST_RECORDING)
@@ -305,13 +306,16 @@ def render(
     recording: a film, a view in 3d, a frame of an .npz file. A scenario is simulated first,
     1 % below its least thickness where none is given.
     """
-    kind = picture_kind(out, ("mp4", "gif", "png", "svg"))
+    kind = picture_kind(out, (*FILMS, "png", "svg"))
     given = Given(alpha, eta, mu, voussoirs, weight)
-    filmed = kind in {"mp4", "gif"} or view == "3d" or beside is not None
+    filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
         shown = RenderOptions(view=view, slow=slow, at=at, height=height)
+        require(at is None or kind not in FILMS, "--at", at, "left out of a film")
         film(out, recordings(scene, given, method, beside), shown)
     else:
+        for name, value in (("slow", slow), ("at", at), ("method", method)):
+            require(value is None, f"--{name}", value, "left out: the picture is of no motion")
         write_arch(out, kind, scene, given)
 
 

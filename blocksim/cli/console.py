@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from blocksim.arch import require
-from blocksim.files import write_whole
+from blocksim.files import require_place, write_whole
 from blocksim.progress import Progress as Report
 from blocksim.report.answers import ratio
 from blocksim.validate import Row, disagreements, numbered
@@ -120,11 +120,12 @@ def _answer(row: Row | None) -> str:
 
 
 def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
-    """Return the kind of a picture, by the file's ending."""
+    """Return the kind of a picture, by the ending of a file that can be written."""
     kind = out.suffix.removeprefix(".")
     *most, last = (f".{each}" for each in kinds)
     allowed = f"a file name ending in {', '.join(most)} or {last}"
     require(kind in kinds, "--out", str(out), allowed)
+    require_place(out)
     return kind
 
 

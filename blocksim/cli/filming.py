@@ -89,7 +89,7 @@ def recordings(
     """Read recordings, or simulate the scenario."""
     second = [] if beside is None else [load_recording(beside)]
     if scene is not None and scene.endswith(".npz"):
-        for name, value in zip(given._fields, given, strict=True):
+        for name, value in {**given._asdict(), "method": method}.items():
             require(value is None, f"--{name}", value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
     asked = question(scene, given.alpha, given.mu, given.voussoirs, given.weight)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Generator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any
 
+from blocksim.arch import require
 from blocksim.errors import InputError, MissingPart
 
 CONNECT_SECONDS = 10
@@ -39,6 +41,9 @@ def cluster(address: str) -> Generator[tuple[Executor, int]]:
         raise MissingPart("dask", "pip install 'blocksim[dask]'")
     from distributed import Client
 
+    # One that is none leaves a client behind that complains when it is collected.
+    known = re.fullmatch(r"(tcp://|tls://)?[^\s/]+:\d{1,5}", address) is not None
+    require(known, "--scheduler", address, "the address of a dask scheduler, tcp://host:8786")
     try:
         client: Any = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:

@@ -270,9 +270,7 @@ def load_design(path: Path) -> Design:
     InputError
         In one line, with file, field, value and what is allowed.
     """
-    if not path.is_file():
-        raise InputError("design", str(path), "an existing .toml file")
-    design = read_table(path, Design, "design")
+    design = read_table(path, Design, "design", "an existing .toml file")
     try:
         _require_ranges(design)
     except InputError as error:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
-import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -13,17 +10,16 @@ from concurrent.futures import (
     BrokenExecutor,
     Executor,
     Future,
-    ProcessPoolExecutor,
     wait,
 )
 from dataclasses import dataclass
-from multiprocessing import get_context, parent_process
 from pathlib import Path
 
 from blocksim.arch import require
 from blocksim.errors import MissingPart
 from blocksim.files import make_folder
 from blocksim.ladder import STATIC
+from blocksim.processes import processes
 from blocksim.progress import Progress, silent
 from blocksim.sweep.answers import (
     Answered,
@@ -214,7 +210,7 @@ class _Hands:
     def __init__(self, given: Executor | None, workers: int) -> None:
         self._given = given
         self._workers = workers
-        self._executor = given or self._processes()
+        self._executor = given or processes(workers)
 
     def submit(self, chunk: Chunk, versions: dict[str, str]) -> Future[Answered]:
         """Hand a chunk out."""
@@ -225,30 +221,13 @@ class _Hands:
         if self._given is not None:
             return False
         self._executor.shutdown(wait=False, cancel_futures=True)
-        self._executor = self._processes()
+        self._executor = processes(self._workers)
         return True
 
     def leave(self, *, wait: bool = False) -> None:
         """Let go of processes, their work unfinished or not."""
         if self._given is None:
             self._executor.shutdown(wait=wait, cancel_futures=True)
-
-    def _processes(self) -> Executor:
-        # spawn: engines are libraries with state of their own, which fork would share.
-        return ProcessPoolExecutor(
-            self._workers, mp_context=get_context("spawn"), initializer=_begin_worker
-        )
-
-
-def _begin_worker() -> None:
-    """See that a worker ends with its parent, and without a word where both are interrupted.
-
-    It would wait for work for ever after a kill of its parent.
-    """
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    parent = parent_process()
-    if parent is not None:
-        threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
 
 
 def _work(

@@ -10,6 +10,7 @@ from typing import Any
 
 from blocksim.arch import WEIGHTS, is_number
 from blocksim.errors import InputError
+from blocksim.files import require_file
 from blocksim.modes import Mode
 
 LARGEST_FILE = 20_000_000
@@ -73,16 +74,12 @@ def read_results(path: Path) -> list[Result]:
     InputError
         If the file is missing, too large, or no such results.
     """
-    where = str(path)
-    if not path.is_file():
-        raise InputError("--results", where, f"an existing {WRITTEN}")
-    if path.stat().st_size > LARGEST_FILE:
-        raise InputError("--results", where, f"at most {LARGEST_FILE} bytes")
+    require_file(path, "--results", f"an existing {WRITTEN}", LARGEST_FILE)
     try:
         rows = json.loads(path.read_bytes())["rows"]
         found = [_result(row) for row in rows]
     except (KeyError, TypeError, ValueError, AttributeError, RecursionError):
-        raise InputError("--results", where, WRITTEN) from None
+        raise InputError("--results", str(path), WRITTEN) from None
     return [result for result in found if result is not None]
 
 

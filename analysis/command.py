@@ -1,0 +1,22 @@
+"""The command line of the studies: what `main` takes are its argument and its options."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+import typer
+
+Asked = ParamSpec("Asked")
+Found = TypeVar("Found")
+
+
+def run(main: Callable[Asked, Found], show: Callable[[Found], object] = str) -> None:
+    """Run a study as the command line says, and print what it returns."""
+
+    @wraps(main)
+    def command(*args: Asked.args, **options: Asked.kwargs) -> None:
+        typer.echo(show(main(*args, **options)))
+
+    typer.run(command)

@@ -1,0 +1,161 @@
+"""Sweeps that are killed, run out of disk or meet each other lose no row."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from running import alive, blocksim, children, started, until
+from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
+
+from blocksim.errors import InputError
+from blocksim.sweep import sweep
+from blocksim.sweep.shards import LOCK, locked
+
+
+def test_a_write_that_was_interrupted_loses_nothing(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    design = design_of(tmp_path, SIMULATED)
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design, tmp_path, executor=executor)
+        shards = sorted(tmp_path.glob("rows-*.jsonl"), key=lambda path: path.stat().st_size)
+        whole = shards[-1].read_bytes()
+        (tmp_path / f".{shards[-1].name}.part").write_bytes(whole[:100])
+        shards[-1].write_bytes(whole[:-30])
+        shards[0].write_bytes(b'{"id": "0a')
+        done = sweep(design, tmp_path, executor=executor)
+    assert 0 < done.tally.rows < 80
+    assert rows_of(tmp_path) == uninterrupted
+    assert not list(tmp_path.glob(".rows-*"))
+
+
+def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
+    asked, out = written(tmp_path, GRID), tmp_path / "out"
+    out.mkdir()
+    part = out / ".rows-x.jsonl.part"
+    part.write_text("what the other is writing")
+    with locked(out):
+        done = blocksim(*asked, "--workers", "1")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert f"--out = '{out}': must be a folder no other sweep is at work in" in done.stderr
+    assert part.exists()
+    assert not list(out.glob("rows-*"))
+
+
+def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
+    holder = [
+        "from blocksim.sweep.shards import locked",
+        "from pathlib import Path",
+        f"with locked(Path({str(tmp_path)!r})): print('held', flush=True); input()",
+    ]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", "\n".join(holder)], **pipes) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"held\n"
+        with pytest.raises(InputError, match="no other sweep"), locked(tmp_path):
+            pass
+        process.kill()
+    with locked(tmp_path):
+        assert (tmp_path / LOCK).exists()
+
+
+def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
+
+    def small() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
+
+    done = blocksim(*asked, "--workers", "1", before=small)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "must be writable" in done.stderr
+    assert not list(out.glob(".rows-*"))
+    assert len(rows_of(out)) < 80
+    assert blocksim(*asked, "--workers", "1").returncode == 0
+    assert rows_of(out) == uninterrupted
+
+
+def test_killed_drivers_leave_no_process_and_lose_no_row(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
+    there = 0
+    for _ in range(2):
+        with started(*asked, "--workers", "1") as driver:
+            until(lambda seen=there: len(list(out.glob("rows-*"))) > seen, driver)
+            workers = children(driver.pid)
+            assert workers
+            driver.kill()
+        there = len(list(out.glob("rows-*")))
+        until(lambda gone=workers: not any(alive(pid) for pid in gone))
+    rows = rows_of(out)
+    assert 0 < len(rows) < 80
+    assert blocksim(*asked, "--workers", "1").returncode == 0
+    assert rows_of(out) == uninterrupted
+
+
+def test_a_terminated_sweep_ends_without_a_word(tmp_path: Path) -> None:
+    asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
+    with started(*asked, "--workers", "1") as driver:
+        until(lambda: len(list(out.glob("rows-*"))) > 0, driver)
+        workers = children(driver.pid)
+        driver.terminate()
+        assert driver.stderr is not None
+        assert driver.stderr.read() == b""
+        assert driver.wait() == 143
+    until(lambda: not any(alive(pid) for pid in workers))
+    assert 0 < len(rows_of(out)) < 80
+
+
+def test_a_killed_worker_is_replaced(tmp_path: Path, uninterrupted: Rows) -> None:
+    asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
+    with started(*asked, "--workers", "1") as driver:
+        until(lambda: len(list(out.glob("rows-*"))) > 1, driver)
+        workers = children(driver.pid)
+        assert workers
+        for pid in workers:
+            os.kill(pid, signal.SIGKILL)
+        assert driver.wait() == 0
+    assert rows_of(out) == uninterrupted
+
+
+def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows) -> None:
+    distributed = pytest.importorskip("distributed")
+    asked = written(tmp_path, SIMULATED)
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        done = blocksim(*asked, "--scheduler", address, "--json")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["rows"] == 80
+    assert rows_of(tmp_path / "out") == uninterrupted
+
+
+@pytest.mark.long
+def test_a_killed_worker_of_a_dask_cluster_loses_nothing(
+    tmp_path: Path, uninterrupted: Rows
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        with started(*asked, "--scheduler", address) as driver:
+            until(lambda: len(list(out.glob("rows-*"))) > 1, driver)
+            os.kill(cluster.workers[0].process.pid, signal.SIGKILL)
+            assert len(rows_of(out)) < 80
+            assert driver.wait() == 0
+    assert rows_of(out) == uninterrupted
