@@ -25,8 +25,8 @@ that slides is therefore believed only where no forces exist that would balance 
 arch stands: the forces are not taken on trust. An engine that cannot be given any is undecided.
 So it goes where sweeps run out (from `LATE` on) over what is a mechanism to a thousandth: a
 mode of sliding can take 10^6 sweeps to die away (125.02 deg, mu 0.8594, n = 10).
-Without sliding the answer is unique, and none of this is asked; nor is it of engines that state
-the residual of their contacts, which look for rest first.
+Without sliding the answer is unique, and none of this is asked; nor is it of an engine that
+looks for rest first.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ def onset(
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
     total, sweeps, forces = 0, first, None
-    unasked = world.quality().residual is None and not settings.tilt
+    unasked = not (world.finds_rest or settings.tilt)
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps

@@ -247,6 +247,11 @@ class ReducedWorld:
         """Solve the contacts of one step from rest."""
         return self._reduction.rates(self._world.hold(sweeps))
 
+    @property
+    def finds_rest(self) -> bool:
+        """Whether rest is found wherever it is possible, from any beginning."""
+        return self._world.finds_rest
+
     def begin(self, forces: Array) -> bool:
         """Begin anew, with forces in the joints of the blocks that are simulated."""
         return self._world.begin(forces)

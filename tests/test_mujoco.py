@@ -21,7 +21,7 @@ from blocksim.engines import get_engine
 from blocksim.errors import MissingPart
 from blocksim.modes import Mode
 from blocksim.onset import onset
-from blocksim.trial import simulate, trial
+from blocksim.trial import hold, simulate, trial
 from blocksim.validate import installed
 from blocksim.verdict import Verdict
 
@@ -158,3 +158,10 @@ def test_doctor_tells_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_validate_is_of_the_two_impulse_engines() -> None:
     assert "mujoco" not in installed()
+
+
+def test_where_friction_allows_both_it_does_not_say_that_an_arch_falls() -> None:
+    """Begun from blocks that fall, it slides 2 % above the limit, and rests at 10 %."""
+    verdicts = [hold(arch_at(ratio, 155, 4.0, 9), 4.0, "mujoco").onset for ratio in (1.02, 1.1)]
+    assert [seen.verdict for seen in verdicts] == [Verdict.UNDECIDED, Verdict.STANDS]
+    assert verdicts[0].may_rest

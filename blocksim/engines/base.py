@@ -88,6 +88,11 @@ class Quality:
 class World(Protocol):
     """Blocks in an engine, at rest where they were built until let go."""
 
+    @property
+    def finds_rest(self) -> bool:
+        """Whether rest is found wherever it is possible, from any beginning."""
+        ...
+
     def hold(self, sweeps: int) -> Array:
         """Solve the contacts of one step from rest, then put every block back.
 

@@ -270,6 +270,11 @@ class _Bodies:
             bullet.resetBaseVelocity(body, nothing, nothing, physicsClientId=self._client)
         return accelerations
 
+    @property
+    def finds_rest(self) -> bool:
+        """Not where motion is possible, too."""
+        return False
+
     def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
         """Decline: Bullet forgets impulses of friction."""
         return False

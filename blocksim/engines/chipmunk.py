@@ -155,6 +155,11 @@ class _Space:
             body.angular_velocity = 0.0
         return np.array(rates) / self._settings.step
 
+    @property
+    def finds_rest(self) -> bool:
+        """Not where motion is possible, too."""
+        return False
+
     def begin(self, forces: Array) -> bool:
         """Write the impulses of given forces into the contacts."""
         self.hold(1)

@@ -102,8 +102,13 @@ class Blocks:
         touch = self._touch(self._poses, self._step)
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
+    @property
+    def finds_rest(self) -> bool:
+        """It does: rest is looked for first."""
+        return True
+
     def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
-        """Decline: rest is looked for first."""
+        """Decline: no beginning is needed."""
         return False
 
     def advance(self, steps: int) -> None:

@@ -177,8 +177,13 @@ class _Bodies:
         library.mj_step(self._model, self._state)
         return self._state.qacc.copy()
 
+    @property
+    def finds_rest(self) -> bool:
+        """Not where motion is possible, too."""
+        return False
+
     def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
-        """Decline: the contacts' problem is convex, and has one answer."""
+        """Decline: how far each contact had given way would have to be known."""
         return False
 
     def advance(self, steps: int) -> None:
