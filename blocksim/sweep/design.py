@@ -14,78 +14,18 @@ from pydantic import BeforeValidator, Field
 
 from blocksim.arch import WEIGHTS, Weight, is_number, require
 from blocksim.bracket import ETA_MAX
-from blocksim.errors import MISSING, InputError
+from blocksim.errors import InputError
 from blocksim.ladder import CHOICES, METHODS, STATIC
 from blocksim.scenario import read_table
 from blocksim.setup import SETTINGS, require_setting
+from blocksim.sweep.axis import DRAWN_AT_ONCE, Axis, AxisField, Number, require_axis
 from blocksim.sweep.case import AUTO_ENGINE, Case
 
 LARGEST_DESIGN = 20_000_000
 """Cases of one sweep: their identities are held in memory, about 0.1 kB each."""
-DRAWN_AT_ONCE = 4096
-"""Arches drawn together; a longer random design begins with those of a shorter one."""
 AUTO_BAND = 0.001
 """Share of the least thickness within which `auto` simulates."""
-
-Number = Annotated[float, Field(strict=True, allow_inf_nan=True)]
-
-
-def _as_table(written: object) -> object:
-    """Take a number or a list for an axis of values."""
-    if isinstance(written, list):
-        return {"values": cast("list[object]", written)}
-    return cast("object", written) if isinstance(written, dict) else {"values": [written]}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Axis:
-    """Values of one quantity: a list, or a range of evenly spaced ones.
-
-    Parameters
-    ----------
-    values : tuple of float
-    low, high : float, optional
-        Range, both ends included.
-    steps : int, optional
-        Number of values in the range; a random design draws from anywhere in it.
-    log : bool
-        Evenly spaced in the logarithm.
-    """
-
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
-
-    values: Annotated[tuple[Number, ...], Field(max_length=10_000)] = ()
-    low: Annotated[float, Field(strict=True, allow_inf_nan=False)] | None = None
-    high: Annotated[float, Field(strict=True, allow_inf_nan=False)] | None = None
-    steps: Annotated[int, Field(ge=2, le=1_000_000, strict=True)] | None = None
-    log: Annotated[bool, Field(strict=True)] = False
-
-    @property
-    def ends(self) -> tuple[float, ...]:
-        """Values, or the ends of the range: all are in range where these are."""
-        if self.low is not None and self.high is not None:
-            return self.low, self.high
-        return self.values
-
-    def every(self) -> list[float]:
-        """Values in order."""
-        if self.low is None or self.high is None or self.steps is None:
-            return list(self.values)
-        spaced = np.geomspace if self.log else np.linspace
-        return spaced(self.low, self.high, self.steps).tolist()
-
-    def draw(self, generator: np.random.Generator, whole: bool) -> list[float]:
-        """Values at random, evenly spread; whole numbers include both ends."""
-        count = DRAWN_AT_ONCE
-        if self.low is None or self.high is None:
-            return generator.choice(np.array(self.values), count).tolist()
-        low, high = (self.low - 0.5, self.high + 0.5) if whole else (self.low, self.high)
-        share = generator.random(count)
-        drawn = low * (high / low) ** share if self.log else low + (high - low) * share
-        return np.clip(drawn, self.low, self.high).tolist()
-
-
-AxisField = Annotated[Axis, BeforeValidator(_as_table)]
+USUAL_VOUSSOIRS = Axis(values=(27.0,))
 
 
 def _as_list(written: object) -> object:
@@ -159,7 +99,7 @@ class Design:
 
     alpha_deg: AxisField
     mu: AxisField
-    voussoirs: AxisField = Axis(values=(27.0,))
+    voussoirs: AxisField = USUAL_VOUSSOIRS
     weight: Words = ("centreline",)
     eta: AxisField | None = None
     ratio: AxisField | None = None
@@ -291,7 +231,7 @@ def _require_ranges(design: Design) -> None:
         axis = cast("Axis | None", getattr(design, field))
         if axis is None:
             continue
-        _require_axis(field, axis, spaced)
+        require_axis(field, axis, spaced)
         for value in axis.ends:
             require(is_number(value, 0, top), field, value, allowed)
         if field == "voussoirs":
@@ -305,7 +245,7 @@ def _require_ranges(design: Design) -> None:
             require(word in known, field, word, f"one of {', '.join(known)}")
     for name, axis in design.settings.axes.items():
         field = f"settings.{name}"
-        _require_axis(field, axis, spaced)
+        require_axis(field, axis, spaced)
         for value in axis.ends if not spaced else axis.every():
             require_setting(name, value)
         taken = any(name in design.taken(method) for method in design.method)
@@ -323,18 +263,3 @@ def _require_ranges(design: Design) -> None:
     count = design.size
     ok = 0 < count <= LARGEST_DESIGN
     require(ok, "design", f"{count} cases", f"at most {LARGEST_DESIGN} cases")
-
-
-def _require_axis(field: str, axis: Axis, spaced: bool) -> None:
-    """Raise `InputError` unless an axis is either a list or a whole range."""
-    if axis.low is None and axis.high is None and axis.steps is None:
-        require(bool(axis.values), field, list(axis.values), "a value, a list or a range")
-        require(not axis.log, f"{field}.log", axis.log, "left out of a list")
-        return
-    require(not axis.values, f"{field}.values", list(axis.values), "left out of a range")
-    for name, value in (("low", axis.low), ("high", axis.high)):
-        require(value is not None, f"{field}.{name}", MISSING, "given in a range")
-    low, high = axis.low or 0.0, axis.high or 0.0
-    require(low < high, f"{field}.high", high, f"above low = {low}")
-    if spaced:
-        require(axis.steps is not None, f"{field}.steps", MISSING, "given in a grid")

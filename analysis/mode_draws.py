@@ -1,0 +1,152 @@
+"""The arches of the study of the whole map (`mode_sweep.py`).
+
+Of ten arches five lie anywhere: half-angle even from 30 to 159 deg, friction
+log-uniform from what lets any thickness stand to 4, the right edge of the map. Four have one
+of the mixed modes each (srr, rrs, rsr, rs), which have little room: they are drawn in the same
+way until one comes that has it. All of these stand at some thickness, and are put to
+the engine 0.5 % below and 0.5 % above the least thickness of their voussoirs. The tenth lies on
+the line where purely sliding arches are published, and is 1.1 to 3 times as thick as the
+least there: not its thickness is critical but its friction, which is 0.5 % less and 0.5 % more
+than the voussoirs need. Purely overturning arches (r) need boundless friction, of which engines
+take 1000: they are left out. Voussoirs are 20 to 40, weight is on the centreline.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from blocksim.assembly import Array
+from blocksim.limit import least_thickness
+from blocksim.limit.bulk import which_stand
+from blocksim.modes import Mode
+from blocksim.search import ETA_MAX
+from blocksim.sweep import Case
+from blocksim.theory.arrays import least_thicknesses
+from blocksim.theory.map import divide_friction
+from blocksim.theory.regions import at_inner_sliding
+
+SEED = 2024
+TOL = {"pymunk": 1e-3, "direct": 1e-8, "pybullet": 4e-3}
+ANYWHERE = None
+TURNS = (ANYWHERE, Mode.SRR, ANYWHERE, Mode.RRS, ANYWHERE, Mode.RSR, ANYWHERE, Mode.RS)
+TURNS += (ANYWHERE, Mode.SS)
+"""What ten arches in a row are drawn from."""
+NARROWEST, WIDEST, MOST_FRICTION = 30.0, 159.0, 4.0
+BLOCK = 4096
+"""Arches drawn together."""
+ASIDE = 0.005
+"""Share of the critical thickness, or friction, that arches let go have less or more."""
+NEAR = 0.003
+"""Share of alpha or mu within which the mode changes, near a line."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """An arch; `eta` where friction is critical, not thickness, with that friction in `mu`."""
+
+    alpha_deg: float
+    mu: float
+    voussoirs: int
+    published: Mode
+    near: bool
+    eta: float | None = None
+
+    def cases(self, engine: str) -> list[Case]:
+        """Ask an engine: with less, with more than is critical, and for a bracket."""
+        start, factors = (self.voussoirs, "centreline"), (1 - ASIDE, 1 + ASIDE)
+        if self.eta is not None:
+            rest = *start, self.eta, None, engine, math.inf, 0.0
+            return [Case(self.alpha_deg, self.mu * factor, *rest) for factor in factors]
+        arch = self.alpha_deg, self.mu, *start, None
+        beside = [Case(*arch, factor, engine, math.inf, 0.0) for factor in factors]
+        return [*beside, Case(*arch, None, engine, 0.0, TOL[engine], confirm=False)]
+
+
+@dataclass(frozen=True)
+class Draws:
+    """The cases of a number of arches; more of them begin with the same."""
+
+    arches: int
+    method: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of cases: purely sliding arches are not bracketed."""
+        purely_sliding = self.arches // len(TURNS)
+        return len(self.method) * (3 * self.arches - purely_sliding)
+
+    def cases(self) -> Iterator[Case]:
+        """Draw the arches; those that take fewest sweeps come first."""
+        for drawn in sorted(itertools.islice(draw(), self.arches), key=_sweeps):
+            for engine in self.method:
+                yield from drawn.cases(engine)
+
+
+def _sweeps(drawn: Drawn) -> float:
+    """How many sweeps an onset test takes: like n^2 over the length of a joint."""
+    least = least_thickness(math.radians(drawn.alpha_deg), drawn.mu, drawn.voussoirs).eta
+    return drawn.voussoirs**2 / (drawn.eta or least or ETA_MAX)
+
+
+def draw() -> Iterator[Drawn]:
+    """Draw arches, without end."""
+    streams = {turn: _stream(turn) for turn in TURNS}
+    for turn in itertools.cycle(TURNS):
+        yield next(streams[turn])
+
+
+def _stream(turn: Mode | None) -> Iterator[Drawn]:
+    """Draw arches of one kind, independently of the others."""
+    random = np.random.default_rng([SEED, TURNS.index(turn)])
+    while True:
+        alpha_deg = random.uniform(NARROWEST, WIDEST, BLOCK)
+        least = np.interp(alpha_deg, *divide())
+        mu = least * (MOST_FRICTION / least) ** random.random(BLOCK)
+        voussoirs = random.integers(20, 41, BLOCK)
+        thicker = random.uniform(1.1, 3.0, BLOCK)
+        if turn is Mode.SS:
+            yield from map(_on_divide, alpha_deg, voussoirs, thicker)
+        else:
+            yield from _critical(turn, alpha_deg, mu, voussoirs)
+
+
+@cache
+def divide() -> tuple[Array, Array]:
+    """Half-angles [deg] and the friction below which no thickness stands."""
+    angles = np.linspace(NARROWEST, WIDEST, 200)
+    return angles, np.array([divide_friction(math.radians(angle)) for angle in angles])
+
+
+def _critical(
+    turn: Mode | None, alpha_deg: Array, mu: Array, voussoirs: Array
+) -> Iterator[Drawn]:
+    """Those that stand at some thickness and have the mode asked for."""
+    there = least_thicknesses(np.radians(alpha_deg), mu)
+    wanted = (there.eta < ETA_MAX / (1 + ASIDE)) & ((there.mode == turn) | (turn is ANYWHERE))
+    for k in np.flatnonzero(wanted):
+        mode, half_angle = Mode(str(there.mode[k])), math.radians(alpha_deg[k])
+        # As far to either side as the mode may not change.
+        alphas = half_angle * np.array([1 - NEAR, 1 + NEAR, 1.0, 1.0])
+        mus = mu[k] * np.array([1.0, 1.0, 1 - NEAR, 1 + NEAR])
+        near = bool((least_thicknesses(alphas, mus).mode != mode).any())
+        yield Drawn(float(alpha_deg[k]), float(mu[k]), int(voussoirs[k]), mode, near)
+
+
+def _on_divide(alpha_deg: float, voussoirs: int, thicker: float) -> Drawn:
+    """Draw an arch on the line of purely sliding ones, and the friction its voussoirs need."""
+    half_angle, count = math.radians(alpha_deg), int(voussoirs)
+    mu = divide_friction(half_angle)
+    least, _ = at_inner_sliding(mu, half_angle, "centreline")
+    eta = float(min(thicker * least, ETA_MAX))
+    low, high = mu / 2, mu * 2
+    for _ in range(40):
+        middle = (low + high) / 2
+        stands = bool(which_stand(half_angle, eta, middle, count))
+        low, high = (low, middle) if stands else (middle, high)
+    return Drawn(float(alpha_deg), high, count, Mode.SS, False, eta)

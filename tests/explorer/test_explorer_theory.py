@@ -1,0 +1,228 @@
+"""What the map explorer computes in a browser: its numbers and its mechanisms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from blocksim import theory
+from blocksim.arch import centroid_factor
+from blocksim.limit.mechanism import least_thickness_by_program
+from blocksim.modes import Mode
+from blocksim.theory.lines import critical_moment, friction_line, thrust_line
+from blocksim.theory.map import at_points, divide_friction
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+WEIGHTS = ("centreline", "sector")
+COUNT = 1000
+TOLERANCE = 1e-9
+
+
+def sample(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Half-angle, friction (a tenth of it unbounded) and thickness of random arches."""
+    random = np.random.default_rng(seed)
+    alpha = random.uniform(0.02, 2.78, COUNT)
+    mu = np.tan(random.uniform(0.02, 1.45, COUNT))
+    mu[::10] = math.inf
+    return alpha, mu, random.uniform(0.001, 2.0, COUNT)
+
+
+CALL = """([rows, weight]) => rows.map(
+  (row) => {{ const [a, m, e] = row.map(Number); return {expression}; }})"""
+
+
+def evaluate(
+    page: playwright.Page, expression: str, rows: np.ndarray, weight: str
+) -> list[dict]:
+    """Evaluate an expression in a, m, e (and weight) for every row, in the page."""
+    texts = [["Infinity" if math.isinf(v) else repr(float(v)) for v in row] for row in rows]
+    return page.evaluate(CALL.format(expression=expression), [texts, weight])
+
+
+def column(found: list[dict], key: str) -> np.ndarray:
+    return np.array([math.nan if row[key] is None else row[key] for row in found], dtype=float)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_least_thickness_at_1000_points(page: playwright.Page, weight: str) -> None:
+    alpha, mu, eta = sample(1)
+    expected = theory.least_thicknesses(alpha, mu, weight)
+    rows = np.column_stack([alpha, mu, eta])
+    found = evaluate(page, "theory.leastThickness(a, m, weight)", rows, weight)
+    assert [row["mode"] for row in found] == expected.mode.tolist()
+    np.testing.assert_allclose(column(found, "eta"), expected.eta, rtol=TOLERANCE)
+    for key in ("thrust", "beta_r", "beta_s"):
+        script = key.replace("_r", "R").replace("_s", "S")
+        exact = getattr(expected, key)
+        np.testing.assert_allclose(column(found, script), exact, rtol=TOLERANCE, atol=TOLERANCE)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_points_of_the_map_at_1000_points(page: playwright.Page, weight: str) -> None:
+    _, mu, eta = sample(2)
+    expected = at_points(eta, mu, weight)
+    rows = np.column_stack([eta, mu, eta])
+    found = evaluate(page, "theory.atPoint(e, m, weight)", rows, weight)
+    modes = [[Mode(mode) for mode in row["modes"]] for row in found]
+    assert modes == [list(names) for names in expected.regions]
+    np.testing.assert_allclose(column(found, "halfAngle"), expected.half_angle, rtol=TOLERANCE)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_lines_of_thrust_and_friction(page: playwright.Page, weight: str) -> None:
+    """At a random joint of each arch at its least thickness."""
+    alpha, mu, share = sample(3)
+    rows = np.column_stack([alpha, mu, share / 2])
+    expression = """(() => {
+      const { eta, thrust, betaR } = theory.leastThickness(a, m, weight);
+      if (eta === null) return null;
+      // The line of thrust touches the intrados at the inner hinge.
+      const unforced = theory.sectionMoment(betaR, thrust, 0, eta, weight);
+      const moment = -theory.normalForce(betaR, thrust) * eta / 2 - unforced;
+      return [theory.thrustLine(a * e, thrust, moment, eta, weight),
+              theory.frictionLine(a * e, thrust, m)];
+    })()"""
+    found = evaluate(page, expression, rows, weight)
+    compared = 0
+    for (half_angle, friction, place), lines in zip(rows.tolist(), found, strict=True):
+        critical = theory.least_thickness(half_angle, friction, weight)
+        assert (lines is None) == (critical.eta is None)
+        # Flatter, the thickness drowns in the round-off of the lever arms.
+        if lines is None or half_angle < 0.3:
+            continue
+        moment = critical_moment(half_angle, critical, weight)
+        angle, thrust = half_angle * place, critical.thrust
+        expected = [
+            thrust_line(angle, thrust, moment, critical.eta, weight),
+            friction_line(angle, thrust, friction),
+        ]
+        assert lines == pytest.approx(expected, rel=1e-7, abs=1e-7)
+        compared += 1
+    assert compared > COUNT / 2
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_least_friction_is_the_divide(page: playwright.Page, weight: str) -> None:
+    alpha = np.linspace(0.4, 2.9, 40)
+    rows = np.column_stack([alpha, alpha, alpha])
+    found = evaluate(page, "theory.leastFriction(a, Infinity, weight)", rows, weight)
+    expected = [divide_friction(angle) for angle in alpha.tolist()]
+    np.testing.assert_allclose(found, expected, rtol=TOLERANCE)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_equilibrium_needs_the_share_it_says(page: playwright.Page, weight: str) -> None:
+    """The lines shown reach just that share of the faces; it is 1 where theory says so."""
+    alpha, mu, eta = sample(4)
+    alpha = 0.3 + alpha * 0.85
+    rows = np.column_stack([alpha, mu, eta])
+    found = evaluate(page, "theory.equilibrium(a, m, e, weight)", rows, weight)
+    least = theory.least_thicknesses(alpha, mu, weight).eta
+    for (half_angle, friction, ratio), critical, balance in zip(
+        rows.tolist(), least.tolist(), found, strict=True
+    ):
+        stands = ratio >= critical  # False for nan
+        assert stands == (balance is not None and balance["share"] <= 1)
+        if balance is None:
+            continue
+        angles = np.linspace(0, half_angle, 2001)
+        thrust, moment = balance["thrust"], balance["crownMoment"]
+        if thrust < 1e-6:  # without thrust the crown bears no force
+            angles = angles[1:]
+        pressure = thrust_line(angles, thrust, moment, ratio, weight)
+        shear = friction_line(angles, thrust, friction)
+        reached = max(np.abs(pressure).max(), np.abs(shear).max())
+        assert reached == pytest.approx(balance["share"], rel=2e-3)
+
+
+def test_share_against_limit_analysis(page: playwright.Page) -> None:
+    """Both scaled by 1 % less than the share, many voussoirs fall; by 1 % more they stand."""
+    alpha = np.array([1.0, 1.6, 2.2, 2.45, 2.55])
+    mu = np.array([0.6, 0.5, 0.95, 1.5, 2.2])
+    eta = np.array([0.2, 0.09, 0.9, 0.5, 1.2])
+    rows = np.column_stack([alpha, mu, eta])
+    found = evaluate(page, "theory.equilibrium(a, m, e, weight)", rows, "centreline")
+    for (half_angle, friction, ratio), balance in zip(rows.tolist(), found, strict=True):
+        for change, stands in ((0.99, False), (1.01, True)):
+            share = change * balance["share"]
+            built = least_thickness_by_program(half_angle, share * friction, 300)
+            assert (built is not None and built <= share * ratio) == stands
+
+
+# --- mechanisms ----------------------------------------------------------------------------
+
+MOVE = """(() => {
+  const point = theory.atPoint(e, m, weight);
+  const halfAngle = point.halfAngle * (1 - 1e-9);
+  const critical = theory.leastThickness(halfAngle, m, weight);
+  const { mode, eta, betaR, betaS } = critical;
+  const joints = mechanism.activeJoints(mode, halfAngle, betaR, betaS);
+  const far = mechanism.amountFor(joints, eta, 0.16);
+  return { halfAngle, ...critical, joints, pieces: mechanism.pieces(joints),
+    small: mechanism.pose(joints, eta, 1e-6), large: mechanism.pose(joints, eta, far) };
+})()"""
+
+
+def moved(motion: dict, points: np.ndarray) -> np.ndarray:
+    sine, cosine = math.sin(motion["turn"]), math.cos(motion["turn"])
+    turned = points @ np.array([[cosine, -sine], [sine, cosine]])
+    return turned + np.array([motion["x"], motion["y"]])
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_mechanisms_balance_weight_and_friction(page: playwright.Page, weight: str) -> None:
+    """Virtual power at the onset: what the weight does is what friction takes."""
+    _, mu, eta = sample(5)
+    rows = np.column_stack([eta, mu, eta])[:400]
+    rows[:40, 1], rows[:40, 2] = math.inf, np.linspace(1.02, 1.9, 40)  # overturning
+    rows[40:80, 1], rows[40:80, 2] = 1.8, np.linspace(0.9, 1.0, 40)  # rrs, rsr and rs
+    seen = set()
+    for row, friction in zip(evaluate(page, MOVE, rows, weight), rows[:, 1], strict=True):
+        seen.add(row["mode"])
+        assert min(row["small"]["amounts"]) >= 0
+        assert min(row["large"]["amounts"]) >= 0
+        assert row["large"]["closed"]
+        lever, power, drop = centroid_factor(row["eta"], weight), 0.0, 0.0
+        for (lower, upper), motion in zip(row["pieces"], row["small"]["motions"], strict=True):
+            nodes, weights = np.polynomial.legendre.leggauss(20)
+            angles = (lower + upper) / 2 + (lower - upper) / 2 * nodes
+            points = lever * np.column_stack([np.sin(angles), np.cos(angles)])
+            fall = points[:, 1] - moved(motion, points)[:, 1]
+            power += (lower - upper) / 2 * weights @ fall
+            drop = max(drop, float(np.abs(fall).max()))
+        active = [joint for joint in row["joints"] if joint["angle"] > 0]
+        for joint, amount in zip(active, row["small"]["amounts"], strict=True):
+            if joint["kind"] in {"in", "out"}:
+                angle, thrust = joint["angle"], row["thrust"]
+                force = thrust * math.cos(angle) + angle * math.sin(angle)
+                power -= friction * force * amount
+        assert abs(power) < 2e-5 * drop
+    assert seen >= {"rrr", "srr", "rrs", "rs", "r"}
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_large_motions_keep_the_pieces_together(page: playwright.Page, weight: str) -> None:
+    """Hinges stay at their edges, faces that slide stay in line, the halves meet."""
+    _, mu, eta = sample(6)
+    rows = np.column_stack([eta, mu, eta])[:200]
+    for row in evaluate(page, MOVE, rows, weight):
+        motions = [{"turn": 0, "x": 0, "y": 0}, *row["large"]["motions"]]
+        active = [joint for joint in row["joints"] if joint["angle"] > 0]
+        for joint, below, above in zip(active, motions, motions[1:], strict=False):
+            ray = np.array([math.sin(joint["angle"]), math.cos(joint["angle"])])
+            if joint["kind"] in {"extrados", "intrados"}:
+                side = 1 if joint["kind"] == "extrados" else -1
+                edge = (1 + side * row["eta"] / 2) * ray[None]
+                np.testing.assert_allclose(moved(below, edge), moved(above, edge), atol=1e-12)
+            else:
+                face = np.array([0.8, 1.2])[:, None] * ray
+                along, slid = moved(below, face), moved(above, face)
+                across = np.array([along[1, 1] - along[0, 1], along[0, 0] - along[1, 0]])
+                assert np.abs((slid - along[0]) @ across).max() < 1e-12
+        if row["mode"] != "r":
+            radius = 1 - row["eta"] / 2 if row["mode"] == "rs" else 1 + row["eta"] / 2
+            crown = moved(motions[-1], np.array([[0.0, radius]]))
+            assert abs(crown[0, 0]) < 1e-11
