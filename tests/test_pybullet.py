@@ -193,3 +193,9 @@ def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
     assert again.state_hash == recording.state_hash
     assert again.settings.tilt == 0.7
     assert again.beyond_plane[-1] > 1e-2
+
+
+def test_the_thinnest_arches_are_given_up_soon() -> None:
+    """Sweeps would grow without end as joints shorten; what few can tell is undecided."""
+    arch = Arch(half_angle=math.radians(60), eta=1e-9, voussoirs=3)
+    assert trial(arch, 1.0, "pybullet").verdict is Verdict.UNDECIDED

@@ -74,8 +74,8 @@ MOST_BREAKING = 0.02
 LOCK = 1e6
 """Factor on inertias out of the plane where blocks are locked in it."""
 STEP = 0.1
-SHORT = 0.1
-"""Length of a joint below which errors shrink more slowly [size]."""
+SHORT, SHORTEST = 0.1, 1e-3
+"""Length of a joint below which errors shrink more slowly, and shortest measured [size]."""
 SWEEPS = 100
 """Most sweeps of a step, for each pair of blocks."""
 HOLD_SWEEPS = 300
@@ -142,7 +142,7 @@ class Bullet:
 
 def _pairs(assembly: Assembly) -> float:
     """Pairs of bodies, as many more as short joints count for."""
-    return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / assembly.shortest)
+    return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / max(assembly.shortest, SHORTEST))
 
 
 class _Bodies:
