@@ -23,8 +23,8 @@ does not stand at any thickness under this weight.
 from __future__ import annotations
 
 import math
+import os
 import sys
-import time
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -37,12 +37,12 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import linprog
 
-from blocksim.arch import Arch
+from blocksim.arch import GRAVITY, Arch
 from blocksim.assembly import SUPPORT, Array
-from blocksim.bracket import Search
 from blocksim.report.chart import write_points
+from blocksim.search import Answer, Search
 from blocksim.verdict import Verdict
-from blocksim.workprec import LONG, START, Case, Point, cases
+from blocksim.workprec import LONG, REPEATS, START, Case, Point, cases
 
 REMEDY = "LMGC90 is missing: pip install compas_lmgc90"
 RADIUS, DEPTH = 10.0, 5.0
@@ -87,21 +87,46 @@ def main(out: Path, *, quick: bool = False) -> Result:
             point = measured(case, exact, step, 1e-2 if quick else TOL)
             points.append(point)
             errors.setdefault(case.name, {})[step] = point.error
-            seconds.setdefault(case.name, {})[step] = point.wall_s
+            seconds.setdefault(case.name, {})[step] = point.time
             write_points(points, out / "lmgc90.json")
             sys.stderr.write(
-                f"{case.name}, {step:g} s: {point.error:.1e}, {point.wall_s:.1f} s\n"
+                f"{case.name}, {step:g} s: {point.error:.1e}, {point.time:.1f} s\n"
             )
-            if point.wall_s > 5 * LONG:
+            if point.time > 5 * LONG:
                 break
     return Result(errors, seconds)
 
 
 def measured(case: Case, exact: float, step: float, tol: float) -> Point:
-    """Bracket one arch at one time step."""
+    """Bracket one arch at one time step, again and again if that does not take long."""
+    processor_s: list[float] = []
+    wall_s: list[float] = []
+    while len(processor_s) < REPEATS and max(processor_s, default=0.0) <= LONG:
+        started = os.times()
+        search, work = bracketed(case, exact, step, tol)
+        ended = os.times()
+        # User and system, of this process and of those it has ended.
+        processor_s.append(sum(ended[:4]) - sum(started[:4]))
+        wall_s.append(ended.elapsed - started.elapsed)
+    ends = (search.low, search.high)
+    return Point(
+        case=case.name,
+        method="lmgc90",
+        knob="step",
+        value=step * math.sqrt(GRAVITY / RADIUS),
+        error=max(math.inf if end is None else abs(end / exact - 1) for end in ends),
+        undecided=search.undecided,
+        work=work,
+        processor_s=tuple(processor_s),
+        wall_s=tuple(wall_s),
+    )
+
+
+def bracketed(case: Case, exact: float, step: float, tol: float) -> tuple[Search, float]:
+    """Bracket one arch, and count contacts solved times the sweeps over them."""
     work = 0.0
 
-    def judge(eta: float) -> Verdict:
+    def judge(eta: float) -> Answer:
         nonlocal work
         try:
             # What it cannot do ends its process; a fork finds this file whatever it is called.
@@ -109,25 +134,14 @@ def measured(case: Case, exact: float, step: float, tol: float) -> Point:
                 run = pool.submit(let_go, polygons(case, eta), case.mu, step)
                 moved, taken = run.result()
         except BrokenProcessPool:
-            return Verdict.UNDECIDED
+            return Answer(Verdict.UNDECIDED, math.nan)
         work += 4.0 * (case.voussoirs + 1) * taken
-        return Verdict.COLLAPSES if moved > MOVED else Verdict.STANDS
+        return Answer(Verdict.COLLAPSES if moved > MOVED else Verdict.STANDS, math.nan)
 
     search = Search(judge)
-    started = time.perf_counter()
     search.expand(exact * START)
     search.bisect(tol)
-    wall = time.perf_counter() - started
-    ends = (search.low, search.high)
-    return Point(
-        case=case.name,
-        method="lmgc90",
-        tol=tol,
-        error=max(math.inf if end is None else abs(end / exact - 1) for end in ends),
-        undecided=search.undecided,
-        work=work,
-        seconds=(wall,),
-    )
+    return search, work
 
 
 def arch_of(case: Case, eta: float) -> Arch:
