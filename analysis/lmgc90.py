@@ -115,6 +115,8 @@ def measured(case: Case, exact: float, step: float, tol: float) -> Point:
         knob="step",
         value=step * math.sqrt(GRAVITY / RADIUS),
         error=max(math.inf if end is None else abs(end / exact - 1) for end in ends),
+        low=search.low,
+        high=search.high,
         undecided=search.undecided,
         work=work,
         processor_s=tuple(processor_s),

@@ -2,8 +2,8 @@
 
 Question: what does accuracy cost, how much does solving each step's contacts to their end gain
 over sweeping them, and how far off is an engine that is used without the onset test? The chart
-of `blocksim chart`: five arches, hard ones too (thin, long, steep); error is that of the farther
-end of a bracket against limit analysis.
+of `blocksim chart`: five arches, hard ones too (thin, long, steep); error is that of a
+bracket's farther end against limit analysis.
 
 The bisection is the same for all, so at equal tolerance errors are equal and times compare.
 

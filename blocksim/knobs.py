@@ -88,7 +88,7 @@ KNOBS = {
             "pybullet": (1e3, 3e3, 1e4, 3e4, 1e5),
             "mujoco": (3e2, 1e3, 3e3, 1e4),
         },
-        arches=3,
+        arches=2,
     ),
     "voussoirs": Knob(
         words="number of voussoirs, at the finest tolerance",

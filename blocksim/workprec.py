@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from blocksim import limit, theory
 from blocksim.arch import Arch
@@ -66,6 +66,8 @@ class Point:
         To what.
     error : float
         Of the bracket's farther end, relative; inf where there is no bracket.
+    low, high : float or None
+        The bracket's ends, thickness over radius; None where there is none, or not told.
     undecided : int
         Ratios without an answer.
     work : float
@@ -79,6 +81,8 @@ class Point:
     knob: str
     value: float
     error: float
+    low: float | None
+    high: float | None
     undecided: int
     work: float
     processor_s: tuple[float, ...]
@@ -191,58 +195,71 @@ def gain(points: Sequence[Point], method: str, over: str) -> float:
     return finest.error / min(affordable, default=math.inf)
 
 
+class _Found(NamedTuple):
+    """A bracket, and what it cost."""
+
+    low: float | None = None
+    high: float | None = None
+    undecided: int = 0
+    work: int = 0
+
+
 def _measured(case: Case, method: str, knob: str, value: float, repeats: int) -> Point:
     """Bracket one arch by one method with one setting, again and again."""
-    count = int(value) if knob == "voussoirs" else case.voussoirs
-    start = _least(case, count)
-    truth = start
+    built = replace(case, voussoirs=int(value)) if knob == "voussoirs" else case
+    exact = truth = _exact(built)
     if KNOBS[knob].against == "theory":
         truth = theory.least_thickness(case.half_angle, case.mu).eta
-    if start is None or truth is None:
+    if exact is None or truth is None:
         message = "an arch that nothing lets stand has no error to measure"
         raise ValueError(message)
-    finest = KNOBS["tolerance"].values.get(method, (0.0,))[-1]
-    tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
-    work = 0
-
-    def judge(eta: float) -> Answer:
-        nonlocal work
-        arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=count)
-        seen = look(arch, case.mu, method, knob, value)
-        work += seen.work
-        return Answer(seen.verdict, seen.acceleration)
-
     processor_s: list[float] = []
     wall_s: list[float] = []
-    ends: tuple[float | None, ...] = ()
-    undecided = 0
-    for _ in range(repeats):
-        work = 0
+    found = _Found()
+    while len(wall_s) < repeats and max(processor_s, default=0.0) <= LONG:
         wall, processor = time.perf_counter(), time.process_time()
         if method == "limit":
-            ends = (_least(case, count),)
+            eta = _exact(built)
+            found = _Found(eta, eta)
         else:
-            search = Search(judge)
-            search.expand(start * START)
-            search.bisect(tol)
-            ends, undecided = (search.low, search.high), search.undecided
+            found = _bracketed(built, exact * START, method, knob, value)
         processor_s.append(time.process_time() - processor)
         wall_s.append(time.perf_counter() - wall)
-        if processor_s[-1] > LONG:
-            break
+    ends = found.low, found.high
     return Point(
         case=case.name,
         method=method,
         knob=knob,
         value=value,
         error=max(math.inf if end is None else abs(end / truth - 1) for end in ends),
-        undecided=undecided,
-        work=work,
+        low=found.low,
+        high=found.high,
+        undecided=found.undecided,
+        work=found.work,
         processor_s=tuple(processor_s),
         wall_s=tuple(wall_s),
     )
 
 
-def _least(case: Case, voussoirs: int) -> float | None:
-    """Exact least thickness of so many voussoirs."""
-    return limit.least_thickness(case.half_angle, case.mu, voussoirs).eta
+def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -> _Found:
+    """Search for the least thickness of one arch by an engine."""
+    finest = KNOBS["tolerance"].values[method][-1]
+    tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
+    work = 0
+
+    def judge(eta: float) -> Answer:
+        nonlocal work
+        arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
+        seen = look(arch, case.mu, method, knob, value)
+        work += seen.work
+        return Answer(seen.verdict, seen.acceleration)
+
+    search = Search(judge)
+    search.expand(start)
+    search.bisect(tol)
+    return _Found(search.low, search.high, search.undecided, work)
+
+
+def _exact(case: Case) -> float | None:
+    """Return the least thickness by limit analysis."""
+    return limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta

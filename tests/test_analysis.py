@@ -49,6 +49,7 @@ def test_what_limits_pybullet(tmp_path: Path) -> None:
     assert result.moved[0.1] < result.moved[0.01] / 30
 
 
+@pytest.mark.long
 def test_every_method_is_charted(tmp_path: Path) -> None:
     """What the figures are depends on the machine; `test_workprec` has the errors."""
     result = study("speed_accuracy").main(tmp_path, quick=True)

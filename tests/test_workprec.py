@@ -31,6 +31,8 @@ def point(method: str, error: float, *seconds: float, knob: str = "tolerance") -
         knob=knob,
         value=1e-3,
         error=error,
+        low=None,
+        high=None,
         undecided=0,
         work=1 / seconds[0],
         processor_s=seconds,
@@ -120,20 +122,19 @@ def test_an_onset_test_cut_short_is_open_rather_than_wrong(case: Case, sweeps: i
             assert seen.verdict is truth
 
 
-def test_brackets_of_an_onset_test_cut_short_are_wider() -> None:
-    """What is open widens the bracket, which holds the exact value all the same."""
-    wide, fine = (
-        replace(KNOBS["hold_sweeps"], values={"pymunk": (sweeps,)}) for sweeps in (300, 3000)
-    )
-    with pytest.MonkeyPatch.context() as patch:
-        errors = []
-        for knob in (wide, fine):
-            patch.setitem(KNOBS, "hold_sweeps", knob)
-            (found,) = measure([SMALL], ["pymunk"], ["hold_sweeps"])
-            errors.append((found.error, found.undecided))
-    assert errors[0][0] > 10 * errors[1][0]
-    assert errors[0][1] > 0 == errors[1][1]
-    assert errors[1][0] <= 1e-3
+def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    knob = replace(KNOBS["hold_sweeps"], values={"pymunk": (300, 600, 3000)})
+    monkeypatch.setitem(KNOBS, "hold_sweeps", knob)
+    for case in (SMALL, SLIDING):
+        points = measure([case], ["pymunk"], ["hold_sweeps"])
+        for each in points:
+            assert (each.low or 0) < least(case, case.voussoirs) < (each.high or math.inf)
+        coarse, _, fine = points
+        assert coarse.undecided > 0 == fine.undecided
+        assert coarse.error > 10 * fine.error
+        assert fine.error <= 1e-3
 
 
 @pytest.mark.parametrize("method", ["direct", "pymunk"])
@@ -167,7 +168,12 @@ def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
         for knob in KNOBS
         for error in (math.inf, 1e-2)
     ]
-    assert set(chart_figures(points)) == {"chart", "chart_settings", "chart_voussoirs"}
+    assert set(chart_figures(points)) == {
+        "chart",
+        "chart_let_go",
+        "chart_cut_short",
+        "chart_voussoirs",
+    }
     write_chart(points, tmp_path)
     document = json.loads((tmp_path / "chart.json").read_text())
     assert [record["error"] for record in document["points"][:2]] == ["inf", 0.01]

@@ -64,7 +64,7 @@ def read_points(path: Path) -> list[Point]:
     """Read points of another run or program, written by `write_points`.
 
     Files of before there were knobs are read, too: a tolerance `tol`, and `seconds` by the
-    clock, which are taken for the processor's.
+    clock, which are taken for the processor's. The ends of brackets need not be told.
 
     Raises
     ------
@@ -99,8 +99,14 @@ def _point(record: dict[str, Any]) -> Point:
         knob=str(record["knob"]),
         value=float(record["value"]),
         error=float(record["error"]),
+        low=_end(record.get("low")),
+        high=_end(record.get("high")),
         undecided=int(record["undecided"]),
         work=float(record["work"]),
         processor_s=processor_s,
         wall_s=wall_s,
     )
+
+
+def _end(value: Any) -> float | None:
+    return None if value is None else float(value)

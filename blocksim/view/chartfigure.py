@@ -30,8 +30,8 @@ class _Quantity(NamedTuple):
 TIME = _Quantity("processor time [s]", attrgetter("time"), "time")
 WORK = _Quantity("contact solves", attrgetter("work"), "work")
 NUMBER = _Quantity("voussoirs", attrgetter("value"))
+ALLOWED = _Quantity("sweeps allowed", attrgetter("value"))
 ERROR = _Quantity("error", attrgetter("error"))
-OFF_THEORY = _Quantity("error against theory", attrgetter("error"))
 
 
 class _Row(NamedTuple):
@@ -40,7 +40,14 @@ class _Row(NamedTuple):
     points: Sequence[Point]
     x: _Quantity
     y: _Quantity = ERROR
-    title: str = ""
+    labelled: bool = False
+
+
+class _Picture(NamedTuple):
+    """Rows of panels over each other."""
+
+    title: str
+    rows: Sequence[_Row]
 
 
 DASHED = {"sweeps"}
@@ -50,8 +57,8 @@ DOT: dict[str, Any] = {"ls": "", "marker": ".", "ms": 3}
 CROSS: dict[str, Any] = {"ls": "", "marker": "x", "ms": 5}
 BAND = 0.14
 """Share of a panel's height, above what has an error, for brackets that were not found."""
-WIDTH, HEIGHT = 2.2, 2.1
-"""Of a panel [inch]."""
+WIDTH, HEIGHT, NARROWEST = 2.2, 2.1, 4
+"""Of a panel [inch], and panels a picture is wide at least."""
 
 
 def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
@@ -65,9 +72,9 @@ def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
     -------
     dict of str to Figure
         By name, those for which there are points: `chart`, methods at their best, by tolerance
-        or by what else another program has; `chart_settings`, the other settings;
-        `chart_voussoirs`, their number. The front in a panel is that of all points of its arch
-        with the same reference, those of other pictures too.
+        or by what else another program has, and one picture for each other way to set them.
+        The front in a panel is that of all points of its arch with the same reference, those
+        of other pictures too.
     """
     by_tolerance = {p.method for p in points if p.knob == "tolerance"}
     as_built = [p for p in points if p.against == "limit"]
@@ -75,32 +82,39 @@ def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
     let_go = [p for p in as_built if p.knob in {"step", "sweeps"}]
     cut_short = [p for p in as_built if p.knob == "hold_sweeps"]
     counted = [p for p in points if p.against == "theory"]
-    rows = {
-        "chart": (_Row(best, TIME), _Row(best, WORK)),
-        "chart_settings": (
-            _Row(let_go, TIME, title="Moving runs alone, let go at once"),
-            _Row(let_go, WORK),
-            _Row(cut_short, TIME, title="Onset tests alone, cut short"),
-            _Row(cut_short, WORK),
+    wanted = {
+        "chart": _Picture(
+            "Onset tests alone, to finer tolerances", [_Row(best, TIME), _Row(best, WORK)]
         ),
-        "chart_voussoirs": (
-            _Row(counted, NUMBER, OFF_THEORY),
-            _Row(counted, TIME, OFF_THEORY),
-            _Row(counted, NUMBER, TIME),
+        "chart_let_go": _Picture(
+            "Moving runs alone, let go at once",
+            [_Row(let_go, TIME, labelled=True), _Row(let_go, WORK)],
+        ),
+        "chart_cut_short": _Picture(
+            "Onset tests alone, cut short",
+            [_Row(cut_short, ALLOWED), _Row(cut_short, TIME), _Row(cut_short, WORK)],
+        ),
+        "chart_voussoirs": _Picture(
+            "Arches of more and more voussoirs, against the continuous one",
+            [_Row(counted, NUMBER), _Row(counted, TIME), _Row(counted, NUMBER, TIME)],
         ),
     }
-    drawn = {name: [row for row in each if row.points] for name, each in rows.items()}
-    return {name: _figure(each, points) for name, each in drawn.items() if each}
+    return {
+        name: _figure(picture, points)
+        for name, picture in wanted.items()
+        if picture.rows[0].points
+    }
 
 
-def _figure(rows: Sequence[_Row], everything: Sequence[Point]) -> Figure:
-    """Draw rows of panels, a column for each arch they have points of."""
-    shown = [point for row in rows for point in row.points]
+def _figure(picture: _Picture, everything: Sequence[Point]) -> Figure:
+    """Draw a column of panels for each arch there are points of."""
+    rows, shown = picture.rows, picture.rows[0].points
     names = list(dict.fromkeys(point.case for point in shown))
-    size = WIDTH * max(len(names), 4), HEIGHT * len(rows) + 0.9
+    size = WIDTH * max(len(names), NARROWEST), HEIGHT * len(rows) + 1.1
     with mpl.rc_context(FONT):
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
+        figure.suptitle(picture.title, x=0.01, ha="left", fontsize=11, fontweight="bold")
         panels = figure.subplots(
             len(rows), len(names), sharex="row", sharey="row", squeeze=False
         )
@@ -108,11 +122,11 @@ def _figure(rows: Sequence[_Row], everything: Sequence[Point]) -> Figure:
             for axes, name in zip(line, names, strict=True):
                 _draw_panel(axes, row, name, [p for p in everything if p.case == name])
             line[0].set_ylabel(row.y.label)
-            line[0].set_title(row.title, fontsize=10)
         for axes, name in zip(panels[0], names, strict=True):
             title = name.replace(": ", "\n")
-            above = f"{rows[0].title}\n\n" if axes is panels[0][0] and rows[0].title else ""
-            axes.set_title(above + title, fontsize=9)
+            if rows[0].x is NUMBER:
+                title = title.partition(", n ")[0]
+            axes.set_title(title, fontsize=9, fontweight="normal")
         handles = _legend(shown)
         place = "outside lower center"
         figure.legend(handles=handles, loc=place, ncols=min(len(handles), 6), frameon=False)
@@ -146,6 +160,17 @@ def _draw_panel(axes: Axes, row: _Row, name: str, peers: Sequence[Point]) -> Non
             lw=1.2,
             mfc="white" if knob in DASHED else style.colour,
         )
+        for point in found[-1:] if row.labelled else ():
+            value = f"1/{1 / point.value:.0f}" if knob == "step" else f"{point.value:g}"
+            place = row.x.of(point), row.y.of(point)
+            axes.annotate(
+                value,
+                place,
+                (4, 3),
+                textcoords="offset points",
+                fontsize=6.5,
+                color=style.colour,
+            )
         top = high / (high / low) ** (BAND / 2)
         axes.plot(
             [row.x.of(p) for p in missing], [top] * len(missing), color=style.colour, **CROSS
