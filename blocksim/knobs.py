@@ -151,12 +151,16 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
     return Look(verdict=seen.verdict, acceleration=seen.onset.acceleration, work=work)
 
 
-def let_go(setup: Setup) -> Look:
+def let_go(setup: Setup, moved: float = MOVED, until: float = QUIET) -> Look:
     """Let an arch go that nothing has held before, and see whether it moves.
 
     Parameters
     ----------
     setup : Setup
+    moved : float
+        Displacement from which it counts as collapsing [size].
+    until : float
+        Time it is watched for [sqrt(size/g)].
 
     Returns
     -------
@@ -165,14 +169,14 @@ def let_go(setup: Setup) -> Look:
     """
     world, settings = setup.world(), setup.settings
     built, taken = world.poses(), 0
-    stride, count = max(1, round(FRAME / settings.step)), math.ceil(QUIET / settings.step)
+    stride, count = max(1, round(FRAME / settings.step)), math.ceil(until / settings.step)
     verdict = Verdict.STANDS
     while taken < count and verdict is Verdict.STANDS:
         steps = min(stride, count - taken)
         world.advance(steps)
         taken += steps
         # What has become nan has moved, too.
-        if not displacement(world.poses() - built, setup.assembly) <= MOVED:
+        if not displacement(world.poses() - built, setup.assembly) <= moved:
             verdict = Verdict.COLLAPSES
     joints = len(setup.assembly.joints)
     return Look(

@@ -59,6 +59,8 @@ BAND = 0.14
 """Share of a panel's height, above what has an error, for brackets that were not found."""
 WIDTH, HEIGHT, NARROWEST = 2.2, 2.1, 4
 """Of a panel [inch], and panels a picture is wide at least."""
+MOST_ABREAST = 7
+"""Entries in a line of the legend."""
 
 
 def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
@@ -128,8 +130,9 @@ def _figure(picture: _Picture, everything: Sequence[Point]) -> Figure:
                 title = title.partition(", n ")[0]
             axes.set_title(title, fontsize=9, fontweight="normal")
         handles = _legend(shown)
+        ncols = math.ceil(len(handles) / math.ceil(len(handles) / MOST_ABREAST))
         place = "outside lower center"
-        figure.legend(handles=handles, loc=place, ncols=min(len(handles), 6), frameon=False)
+        figure.legend(handles=handles, loc=place, ncols=ncols, frameon=False)
     return figure
 
 
