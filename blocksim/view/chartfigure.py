@@ -31,7 +31,7 @@ TIME = _Quantity("processor time [s]", attrgetter("time"), "time")
 WORK = _Quantity("contact solves", attrgetter("work"), "work")
 NUMBER = _Quantity("voussoirs", attrgetter("value"))
 ALLOWED = _Quantity("sweeps allowed", attrgetter("value"))
-ERROR = _Quantity("error", attrgetter("error"))
+ERROR = _Quantity("error of least thickness", attrgetter("error"))
 
 
 class _Row(NamedTuple):
@@ -85,9 +85,7 @@ def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
     cut_short = [p for p in as_built if p.knob == "hold_sweeps"]
     counted = [p for p in points if p.against == "theory"]
     wanted = {
-        "chart": _Picture(
-            "Onset tests alone, to finer tolerances", [_Row(best, TIME), _Row(best, WORK)]
-        ),
+        "chart": _Picture("Methods at their best", [_Row(best, TIME), _Row(best, WORK)]),
         "chart_let_go": _Picture(
             "Moving runs alone, let go at once",
             [_Row(let_go, TIME, labelled=True), _Row(let_go, WORK)],
