@@ -4,6 +4,9 @@ Most knobs are those of the onset test. Two are of a *moving run alone*, which i
 an engine do who have no such test: the arch is let go at once, with impulses that nothing has
 found yet, and stands if it has not moved. What counts as moved, and how long is waited, are
 those of `motion`; an arch that has neither fallen by then nor been seen to rest stands here.
+
+Work is counted as it is asked for. pybullet ends the sweeps of a step early where they change
+next to nothing; the steps in which mujoco's contacts take up the weight are left out.
 """
 
 from __future__ import annotations

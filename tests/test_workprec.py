@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from blocksim import Arch, limit, theory
+from blocksim.cli.console import chart_table
 from blocksim.errors import InputError
 from blocksim.knobs import CONTACTS, KNOBS, let_go, look
 from blocksim.motion import QUIET
@@ -178,6 +179,7 @@ def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
     document = json.loads((tmp_path / "chart.json").read_text())
     assert [record["error"] for record in document["points"][:2]] == ["inf", 0.01]
     assert set(document["knobs"]) == set(KNOBS)
+    assert list(chart_table(points).columns[4].cells) == ["none", "1.0e-02"] * len(KNOBS)
 
 
 def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
