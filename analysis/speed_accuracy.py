@@ -9,10 +9,9 @@ The bisection is the same for all, so at equal tolerance errors are equal and ti
 
 Expected: at the time pymunk needs for its finest bracket, `direct` is a hundred times nearer
 in every arch; so it is at the time pybullet needs. Let go at once, with the usual steps and
-sweeps, impulse engines let arches fall that are several times as thick as they need be. In
-pymunk, which keeps impulses from step to step, work is better spent on shorter steps, until
-there are sweeps enough to solve a step from nothing; in pybullet, which forgets friction's, on
-sweeps.
+sweeps, arches fall in impulse engines at every thickness. In pymunk, which keeps impulses from
+step to step, work is better spent on shorter steps, until there are sweeps enough to solve a
+step from nothing; in pybullet, which forgets friction's, on sweeps.
 
     python analysis/speed_accuracy.py OUT
 """

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from blocksim.engines import ENGINES, get_engine, remedy
 from blocksim.errors import InputError
 from blocksim.files import make_folder, write_whole
 from blocksim.knobs import KNOBS
@@ -56,7 +57,17 @@ def write_points(points: Sequence[Point], path: Path) -> None:
         for point in points
     ]
     knobs = {name: KNOBS[name].words for name in dict.fromkeys(p.knob for p in points)}
-    document = {"machine": machine(), "knobs": knobs, "points": records}
+    drawn = {p.method for p in points}
+    document = {
+        "machine": machine(),
+        "libraries": {
+            name: get_engine(name).version
+            for name in ENGINES
+            if name in drawn and remedy(name) is None
+        },
+        "knobs": knobs,
+        "points": records,
+    }
     write_whole(path, lambda file: file.write(as_json(document)))
 
 

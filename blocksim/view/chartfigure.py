@@ -40,7 +40,6 @@ class _Row(NamedTuple):
     points: Sequence[Point]
     x: _Quantity
     y: _Quantity = ERROR
-    labelled: bool = False
 
 
 class _Picture(NamedTuple):
@@ -81,14 +80,15 @@ def chart_figures(points: Sequence[Point]) -> dict[str, Figure]:
     by_tolerance = {p.method for p in points if p.knob == "tolerance"}
     as_built = [p for p in points if p.against == "limit"]
     best = [p for p in as_built if p.knob == "tolerance" or p.method not in by_tolerance]
-    let_go = [p for p in as_built if p.knob in {"step", "sweeps"}]
-    cut_short = [p for p in as_built if p.knob == "hold_sweeps"]
+    others = [p for p in as_built if p not in best]
+    let_go = [p for p in others if p.knob in {"step", "sweeps"}]
+    cut_short = [p for p in others if p.knob == "hold_sweeps"]
     counted = [p for p in points if p.against == "theory"]
     wanted = {
         "chart": _Picture("Methods at their best", [_Row(best, TIME), _Row(best, WORK)]),
         "chart_let_go": _Picture(
             "Moving runs alone, let go at once",
-            [_Row(let_go, TIME, labelled=True), _Row(let_go, WORK)],
+            [_Row(let_go, TIME), _Row(let_go, WORK)],
         ),
         "chart_cut_short": _Picture(
             "Onset tests alone, cut short",
@@ -161,17 +161,6 @@ def _draw_panel(axes: Axes, row: _Row, name: str, peers: Sequence[Point]) -> Non
             lw=1.2,
             mfc="white" if knob in DASHED else style.colour,
         )
-        for point in found[-1:] if row.labelled else ():
-            value = f"1/{1 / point.value:.0f}" if knob == "step" else f"{point.value:g}"
-            place = row.x.of(point), row.y.of(point)
-            axes.annotate(
-                value,
-                place,
-                (4, 3),
-                textcoords="offset points",
-                fontsize=6.5,
-                color=style.colour,
-            )
         top = high / (high / low) ** (BAND / 2)
         axes.plot(
             [row.x.of(p) for p in missing], [top] * len(missing), color=style.colour, **CROSS
