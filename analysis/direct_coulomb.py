@@ -17,7 +17,7 @@ past 0.02 r; no arch that slides needed a larger margin to resist it than the on
 turns. So nothing here needs the friction law to explain it, but push and friction law were
 not told apart.
 
-Run: python analysis/direct_coulomb.py OUT
+Run: python -m analysis.direct_coulomb OUT
 """
 
 from __future__ import annotations

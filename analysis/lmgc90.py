@@ -8,41 +8,43 @@ An arch of r = 10 m is let go for a second, 1 sqrt(r/g); it stands if no voussoi
 5e-4 m, 5e-5 r. Gravity, density and the law of contact (IQS_CLB) are the package's. Its least
 thickness is bracketed to 0.1 % at time steps from coarse to fine, and held against exact limit
 analysis of the same polyhedra: their weight is at their own centroids, which is neither of
-blocksim's two models (up to 1 % in the least thickness), so the exact value is found here, by
-linear programming.
+blocksim's two models (up to 1 % in the least thickness), so the exact value is found here, from
+forces of equilibrium.
 
 Expected: an error that falls with the time step, 1.2 % at 4 ms and 0.06 % at 0.5 ms for the
-semicircle of 27 voussoirs, several times that where joints slide. The steep arch of the chart
-does not stand at any thickness under this weight.
+semicircle of 27 voussoirs, several times that where joints slide. The thin arch is off by
+40 % at the finest; of 101 voussoirs no thickness stands. The steep arch of the chart does not
+stand at any thickness under this weight.
 
     pip install compas_lmgc90
-    python analysis/lmgc90.py OUT
+    python -m analysis.lmgc90 OUT
     blocksim chart --beside OUT/lmgc90.json
 """
 
 from __future__ import annotations
 
 import math
+import os
 import sys
-import time
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import linprog
 
-from blocksim.arch import Arch
-from blocksim.assembly import SUPPORT, Array
-from blocksim.bracket import Search
+from analysis.command import run
+from blocksim.arch import GRAVITY, Arch
+from blocksim.assembly import SUPPORT, Array, Block
+from blocksim.limit import equilibrium
 from blocksim.report.chart import write_points
+from blocksim.search import Answer, Search
 from blocksim.verdict import Verdict
-from blocksim.workprec import LONG, START, Case, Point, cases
+from blocksim.workprec import LONG, REPEATS, START, Case, Point, cases
 
 REMEDY = "LMGC90 is missing: pip install compas_lmgc90"
 RADIUS, DEPTH = 10.0, 5.0
@@ -87,21 +89,48 @@ def main(out: Path, *, quick: bool = False) -> Result:
             point = measured(case, exact, step, 1e-2 if quick else TOL)
             points.append(point)
             errors.setdefault(case.name, {})[step] = point.error
-            seconds.setdefault(case.name, {})[step] = point.wall_s
+            seconds.setdefault(case.name, {})[step] = point.time
             write_points(points, out / "lmgc90.json")
             sys.stderr.write(
-                f"{case.name}, {step:g} s: {point.error:.1e}, {point.wall_s:.1f} s\n"
+                f"{case.name}, {step:g} s: {point.error:.1e}, {point.time:.1f} s\n"
             )
-            if point.wall_s > 5 * LONG:
+            if point.time > 5 * LONG:
                 break
     return Result(errors, seconds)
 
 
 def measured(case: Case, exact: float, step: float, tol: float) -> Point:
-    """Bracket one arch at one time step."""
+    """Bracket one arch at one time step, again and again if that does not take long."""
+    processor_s: list[float] = []
+    wall_s: list[float] = []
+    while len(processor_s) < REPEATS and max(processor_s, default=0.0) <= LONG:
+        started = os.times()
+        search, work = bracketed(case, exact, step, tol)
+        ended = os.times()
+        # User and system, of this process and of those it has ended.
+        processor_s.append(sum(ended[:4]) - sum(started[:4]))
+        wall_s.append(ended.elapsed - started.elapsed)
+    ends = (search.low, search.high)
+    return Point(
+        case=case.name,
+        method="lmgc90",
+        knob="step",
+        value=step * math.sqrt(GRAVITY / RADIUS),
+        error=max(math.inf if end is None else abs(end / exact - 1) for end in ends),
+        low=search.low,
+        high=search.high,
+        undecided=search.undecided,
+        work=work,
+        processor_s=tuple(processor_s),
+        wall_s=tuple(wall_s),
+    )
+
+
+def bracketed(case: Case, exact: float, step: float, tol: float) -> tuple[Search, float]:
+    """Bracket one arch, and count contacts solved times the sweeps over them."""
     work = 0.0
 
-    def judge(eta: float) -> Verdict:
+    def judge(eta: float) -> Answer:
         nonlocal work
         try:
             # What it cannot do ends its process; a fork finds this file whatever it is called.
@@ -109,25 +138,14 @@ def measured(case: Case, exact: float, step: float, tol: float) -> Point:
                 run = pool.submit(let_go, polygons(case, eta), case.mu, step)
                 moved, taken = run.result()
         except BrokenProcessPool:
-            return Verdict.UNDECIDED
+            return Answer(Verdict.UNDECIDED, math.nan)
         work += 4.0 * (case.voussoirs + 1) * taken
-        return Verdict.COLLAPSES if moved > MOVED else Verdict.STANDS
+        return Answer(Verdict.COLLAPSES if moved > MOVED else Verdict.STANDS, math.nan)
 
     search = Search(judge)
-    started = time.perf_counter()
     search.expand(exact * START)
     search.bisect(tol)
-    wall = time.perf_counter() - started
-    ends = (search.low, search.high)
-    return Point(
-        case=case.name,
-        method="lmgc90",
-        tol=tol,
-        error=max(math.inf if end is None else abs(end / exact - 1) for end in ends),
-        undecided=search.undecided,
-        work=work,
-        seconds=(wall,),
-    )
+    return search, work
 
 
 def arch_of(case: Case, eta: float) -> Arch:
@@ -227,54 +245,28 @@ def least(case: Case, *, centroids: bool = True) -> float | None:
         Weight at the polygons' centroids; otherwise where blocksim's arch has it, by which
         this is held to `limit`.
     """
+
+    def stands(eta: float) -> bool:
+        assembly = arch_of(case, eta).assembly()
+        if centroids:
+            blocks = (_even(block) for block in assembly.blocks)
+            assembly = replace(assembly, blocks=tuple(blocks))
+        return equilibrium(assembly, case.mu) is not None
+
     low, high = 1e-4, THICKEST
-    if not _balanced(case, high, centroids=centroids):
+    if not stands(high):
         return None
     while high / low > 1 + EXACT:
         middle = math.sqrt(low * high)
-        stands = _balanced(case, middle, centroids=centroids)
-        low, high = (low, middle) if stands else (middle, high)
+        low, high = (low, middle) if stands(middle) else (middle, high)
     return high
 
 
-def _balanced(case: Case, eta: float, *, centroids: bool) -> bool:
-    """Tell whether joint forces exist that balance the weight: two pressures, one friction."""
-    assembly = arch_of(case, eta).assembly()
-    blocks, joints = assembly.blocks, assembly.joints
-    rows = np.zeros((3 * len(blocks), 3 * len(joints)))
-    load = np.zeros(3 * len(blocks))
-    limits = np.zeros((2 * len(joints), 3 * len(joints)))
-    for index, block in enumerate(blocks):
-        middle, area = centroid(np.array(block.vertices))
-        load[3 * index + 1] = area
-        centre = middle if centroids else block.centre
-        for k, joint in enumerate(joints):
-            if index not in (joint.before, joint.after):
-                continue
-            sign = 1.0 if joint.after == index else -1.0
-            acting = ((joint.inner, joint.normal), (joint.outer, joint.normal))
-            for column, (at, along) in enumerate((*acting, (joint.inner, joint.tangent))):
-                arm = at - centre
-                moment = arm[0] * along[1] - arm[1] * along[0]
-                rows[3 * index : 3 * index + 3, 3 * k + column] += sign * np.array(
-                    [along[0], along[1], moment / RADIUS]
-                )
-    for k in range(len(joints)):
-        limits[2 * k, 3 * k : 3 * k + 3] = [-case.mu, -case.mu, 1.0]
-        limits[2 * k + 1, 3 * k : 3 * k + 3] = [-case.mu, -case.mu, -1.0]
-    scale = load.max()
-    bounds = [(0, None), (0, None), (None, None)] * len(joints)
-    found = linprog(
-        np.zeros(rows.shape[1]),
-        A_ub=limits,
-        b_ub=np.zeros(len(limits)),
-        A_eq=rows,
-        b_eq=load / scale,
-        bounds=bounds,
-    )
-    return found.status == 0
+def _even(block: Block) -> Block:
+    """Return a block whose mass is spread evenly over its outline."""
+    centre, area = centroid(np.array(block.vertices))
+    return replace(block, centre=centre, mass=area)
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/lmgc90")
-    sys.stdout.write(f"{main(folder)}\n")
+    run(main)

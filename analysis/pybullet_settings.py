@@ -15,7 +15,7 @@ different length at equal work; friction impulses start from nothing in every st
 Expected: as built, residual accelerations fall below 1e-9 g in both arches, and below
 1e-8 r of motion; no variant does as well in both.
 
-    python analysis/pybullet_settings.py OUT
+    python -m analysis.pybullet_settings OUT
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Speed against accuracy: how near each method comes to the exact answer, in what time.
 
-The least thickness of a few arches is bracketed by onset test alone, to finer and finer
-tolerances. The error is that of the bracket's farther end against limit analysis of the same
-voussoirs (its centre may be right by luck); the time is all of it, the work the contacts
-solved times the sweeps over them.
+The least thickness of a few arches is bracketed with settings from coarse to fine (`knobs`).
+The error is that of the bracket's farther end (its centre may be right by luck) against limit
+analysis of the same voussoirs; where the number of voussoirs is what is varied, against theory.
+Time is all it takes, of the processor and by the clock; work is the contacts solved times the
+sweeps over them.
 """
 
 from __future__ import annotations
@@ -11,28 +12,26 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median
+from typing import Literal, NamedTuple
 
-from blocksim import limit
+from blocksim import limit, theory
 from blocksim.arch import Arch
-from blocksim.engines import remedy
+from blocksim.engines import ENGINES, remedy
+from blocksim.knobs import KNOBS, TOL, look
 from blocksim.progress import Progress, silent
 from blocksim.search import Answer, Search
-from blocksim.trial import trial
 
-TOLERANCES = {
-    "direct": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
-    "pymunk": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
-    "pybullet": (1e-2, 3e-3, 1e-3),
-    "mujoco": (1e-2, 3e-3, 1e-3),
-}
-"""Methods that simulate, and the relative widths of their brackets."""
 START = 1.0037
 """Where brackets start, over the exact value: so that no tolerance is met by luck."""
 REPEATS = 3
+QUICK = slice(None, -1, 2)
+"""Every other setting, and not the finest."""
 LONG = 20.0
-"""A bracket that takes longer is not repeated, and no finer one is tried [s]."""
+"""Processor time above which a bracket is not repeated, and no finer setting is tried [s]."""
+
+Cost = Literal["time", "work"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,30 +60,43 @@ class Point:
     Parameters
     ----------
     case, method : str
-    tol : float
-        Relative width asked for.
+    knob : str
+        What was set, of `knobs.KNOBS`.
+    value : float
+        To what.
     error : float
         Of the bracket's farther end, relative; inf where there is no bracket.
+    low, high : float or None
+        The bracket's ends, thickness over radius; None where there is none, or not told.
     undecided : int
         Ratios without an answer.
     work : float
         Contacts solved, times the sweeps over them.
-    seconds : tuple of float
-        Of every repeat.
+    processor_s, wall_s : tuple of float
+        Time of the processor and by the clock [s], of every repeat.
     """
 
     case: str
     method: str
-    tol: float
+    knob: str
+    value: float
     error: float
+    low: float | None
+    high: float | None
     undecided: int
     work: float
-    seconds: tuple[float, ...]
+    processor_s: tuple[float, ...]
+    wall_s: tuple[float, ...]
 
     @property
-    def wall_s(self) -> float:
-        """Median of the repeats [s]."""
-        return median(self.seconds)
+    def time(self) -> float:
+        """Processor time, median of the repeats [s]: other work on the machine adds little."""
+        return median(self.processor_s)
+
+    @property
+    def against(self) -> str:
+        """What the error is measured from."""
+        return KNOBS[self.knob].against
 
 
 def cases(*, quick: bool) -> tuple[Case, ...]:
@@ -95,8 +107,8 @@ def cases(*, quick: bool) -> tuple[Case, ...]:
         else (
             ("semicircle", 90, 0.7, 27),
             ("sliding shoulder", 125, 0.9, 26),
-            ("steep", 154, 2.6, 27),
             ("thin", 40, 0.9, 27),
+            ("steep", 154, 2.6, 27),
             ("long", 90, 0.7, 101),
         )
     )
@@ -114,91 +126,140 @@ def cases(*, quick: bool) -> tuple[Case, ...]:
 def measure(
     chosen: Sequence[Case],
     methods: Iterable[str] | None = None,
+    knobs: Iterable[str] = tuple(KNOBS),
     *,
-    repeats: int = REPEATS,
+    quick: bool = False,
     progress: Progress = silent,
 ) -> list[Point]:
-    """Bracket every arch by every method, to finer and finer tolerances.
+    """Bracket arches by every method, with settings from coarse to fine.
 
     Parameters
     ----------
     chosen : sequence of Case
     methods : iterable of str, optional
-        Of `TOLERANCES`; by default those installed here.
-    repeats : int
+        By default limit analysis and the engines installed here.
+    knobs : iterable of str
+        Of `KNOBS`.
+    quick : bool
+        With fewer settings, each once.
     progress : Progress, optional
 
     Returns
     -------
     list of Point
     """
-    names = [name for name in TOLERANCES if remedy(name) is None]
-    asked = [(case, name) for case in chosen for name in (methods or names)]
+    names = tuple(methods or ("limit", *(name for name in ENGINES if remedy(name) is None)))
+    asked = [
+        (case, knob, name)
+        for knob in knobs
+        for case in chosen[: KNOBS[knob].arches]
+        for name in names
+        if name in KNOBS[knob].values
+    ]
     points: list[Point] = []
-    for done, (case, name) in enumerate(asked):
-        for tol in TOLERANCES[name]:
-            progress(done / len(asked), f"{case.name}, {name} to {tol:g}")
-            points.append(_measured(case, name, tol, repeats))
-            if points[-1].wall_s > LONG:
+    for done, (case, knob, name) in enumerate(asked):
+        values = KNOBS[knob].values[name]
+        for value in values[QUICK] if quick else values:
+            progress(done / len(asked), f"{case.name}, {name}, {knob} {value:.3g}")
+            points.append(_measured(case, name, knob, value, 1 if quick else REPEATS))
+            if points[-1].time > LONG:
                 break
     return points
 
 
-def front(points: Sequence[Point]) -> list[Point]:
-    """Return the points that no other beats in both time and error, fastest first."""
+def front(points: Sequence[Point], cost: Cost = "time") -> list[Point]:
+    """Return the points that no other beats in both cost and error, cheapest first."""
+
+    def spent(point: Point) -> float:
+        return point.time if cost == "time" else point.work
+
     best: list[Point] = []
-    for point in sorted(points, key=lambda each: (each.wall_s, each.error)):
+    for point in sorted(points, key=lambda each: (spent(each), each.error)):
         if math.isfinite(point.error) and (not best or point.error < best[-1].error):
             best.append(point)
     return best
 
 
-def on_front(points: Sequence[Point]) -> set[Point]:
-    """Return the points that are on the front of their own arch."""
-    names = {point.case for point in points}
-    return {best for name in names for best in front([p for p in points if p.case == name])}
+def on_front(points: Sequence[Point], cost: Cost = "time") -> set[Point]:
+    """Return the points on the front of their own arch and of what they are held against."""
+    peers: dict[tuple[str, str], list[Point]] = {}
+    for point in points:
+        peers.setdefault((point.case, point.against), []).append(point)
+    return {best for group in peers.values() for best in front(group, cost)}
 
 
 def gain(points: Sequence[Point], method: str, over: str) -> float:
     """Finest error of one method over that of another in the same time or less."""
     finest = min((p for p in points if p.method == over), key=lambda p: p.error)
-    affordable = [p.error for p in points if p.method == method and p.wall_s <= finest.wall_s]
+    affordable = [p.error for p in points if p.method == method and p.time <= finest.time]
     return finest.error / min(affordable, default=math.inf)
 
 
-def _measured(case: Case, method: str, tol: float, repeats: int) -> Point:
-    exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta
-    if exact is None:
+class _Found(NamedTuple):
+    """A bracket, and what it cost."""
+
+    low: float | None = None
+    high: float | None = None
+    undecided: int = 0
+    work: int = 0
+
+
+def _measured(case: Case, method: str, knob: str, value: float, repeats: int) -> Point:
+    """Bracket one arch by one method with one setting, again and again."""
+    built = replace(case, voussoirs=int(value)) if knob == "voussoirs" else case
+    exact = truth = _exact(built)
+    if KNOBS[knob].against == "theory":
+        truth = theory.least_thickness(case.half_angle, case.mu).eta
+    if exact is None or truth is None:
         message = "an arch that nothing lets stand has no error to measure"
         raise ValueError(message)
-    work = 0.0
+    processor_s: list[float] = []
+    wall_s: list[float] = []
+    found = _Found()
+    while len(wall_s) < repeats and max(processor_s, default=0.0) <= LONG:
+        wall, processor = time.perf_counter(), time.process_time()
+        if method == "limit":
+            eta = _exact(built)
+            found = _Found(eta, eta)
+        else:
+            found = _bracketed(built, exact * START, method, knob, value)
+        processor_s.append(time.process_time() - processor)
+        wall_s.append(time.perf_counter() - wall)
+    ends = found.low, found.high
+    return Point(
+        case=case.name,
+        method=method,
+        knob=knob,
+        value=value,
+        error=max(math.inf if end is None else abs(end / truth - 1) for end in ends),
+        low=found.low,
+        high=found.high,
+        undecided=found.undecided,
+        work=found.work,
+        processor_s=tuple(processor_s),
+        wall_s=tuple(wall_s),
+    )
+
+
+def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -> _Found:
+    """Search for the least thickness of one arch by an engine."""
+    finest = KNOBS["tolerance"].values[method][-1]
+    tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
+    work = 0
 
     def judge(eta: float) -> Answer:
         nonlocal work
         arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
-        seen = trial(arch, case.mu, method, moving=False)
-        work += 2.0 * (case.voussoirs + 1) * seen.onset.sweeps
-        return Answer(seen.verdict, seen.onset.acceleration)
+        seen = look(arch, case.mu, method, knob, value)
+        work += seen.work
+        return Answer(seen.verdict, seen.acceleration)
 
-    seconds: list[float] = []
     search = Search(judge)
-    for _ in range(repeats):
-        work, search = 0.0, Search(judge)
-        started = time.perf_counter()
-        search.expand(exact * START)
-        search.bisect(tol)
-        seconds.append(time.perf_counter() - started)
-        if seconds[-1] > LONG:
-            break
-    low, high = search.low, search.high
-    ends = (low, high)
-    error = max(math.inf if end is None else abs(end / exact - 1) for end in ends)
-    return Point(
-        case=case.name,
-        method=method,
-        tol=tol,
-        error=error,
-        undecided=search.undecided,
-        work=work,
-        seconds=tuple(seconds),
-    )
+    search.expand(start)
+    search.bisect(tol)
+    return _Found(search.low, search.high, search.undecided, work)
+
+
+def _exact(case: Case) -> float | None:
+    """Return the least thickness by limit analysis."""
+    return limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta

@@ -43,7 +43,7 @@ def inside(forces: Array, mu: float) -> bool:
     return bool(np.all(np.abs(forces[..., 1]) <= mu * forces[..., 0] * (1 + 1e-12)))
 
 
-@given(angles, frictions, counts, weights, st.sampled_from([0.98, 0.9999, 1.0001, 1.1]))
+@given(angles, frictions, counts, weights, st.sampled_from([0.98, 1 - 1e-8, 1 + 1e-8, 1.1]))
 def test_arches_have_forces_of_equilibrium_above_their_least_thickness(
     angle: float, mu: float, count: int, weight: Weight, ratio: float
 ) -> None:
@@ -57,7 +57,7 @@ def test_arches_have_forces_of_equilibrium_above_their_least_thickness(
     assert (forces is not None) == (ratio > 1)
     if forces is not None:
         assert inside(forces, mu)
-        assert imbalance(assembly, forces) < 1e-6
+        assert imbalance(assembly, forces) < 1e-9
 
 
 @given(st.floats(0.0, 60.0), st.floats(0.05, 2.0), st.floats(0.1, 5.0), st.booleans())

@@ -1,28 +1,61 @@
-"""The speed-accuracy chart: its front, its gain, and errors that are true."""
+"""The speed-accuracy chart: its fronts, its gain, and errors and work that are true."""
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from blocksim import Arch, limit, theory
+from blocksim.cli.console import chart_table
 from blocksim.errors import InputError
+from blocksim.knobs import CONTACTS, KNOBS, let_go, look
+from blocksim.motion import QUIET
 from blocksim.report.chart import read_points, write_chart, write_points
-from blocksim.workprec import Case, Point, front, gain, measure
+from blocksim.setup import Setup
+from blocksim.verdict import Verdict
+from blocksim.view.chartfigure import chart_figures
+from blocksim.workprec import Case, Point, front, gain, measure, on_front
+
+SMALL = Case(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
+SLIDING = Case(name="sliding: 125 deg", half_angle=math.radians(125), mu=0.9, voussoirs=10)
 
 
-def point(method: str, error: float, *seconds: float) -> Point:
+def point(method: str, error: float, *seconds: float, knob: str = "tolerance") -> Point:
     return Point(
         case="an arch",
         method=method,
-        tol=error,
+        knob=knob,
+        value=1e-3,
         error=error,
+        low=None,
+        high=None,
         undecided=0,
-        work=1.0,
-        seconds=seconds,
+        work=1 / seconds[0],
+        processor_s=seconds,
+        wall_s=seconds,
     )
+
+
+def least(case: Case, voussoirs: int) -> float:
+    eta = limit.least_thickness(case.half_angle, case.mu, voussoirs).eta
+    assert eta is not None
+    return eta
+
+
+def arch(case: Case, ratio: float) -> Arch:
+    eta = ratio * least(case, case.voussoirs)
+    return Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
+
+
+def off_theory(case: Case, voussoirs: int) -> float:
+    continuous = theory.least_thickness(case.half_angle, case.mu).eta
+    assert continuous is not None
+    return abs(least(case, voussoirs) / continuous - 1)
 
 
 POINTS = [
@@ -36,6 +69,14 @@ POINTS = [
 
 def test_the_front_is_what_nothing_beats() -> None:
     assert front(POINTS) == [POINTS[0], POINTS[2], POINTS[3]]
+    # What took longest has least work.
+    assert front(POINTS, "work") == [POINTS[3]]
+
+
+def test_what_is_held_against_theory_has_a_front_of_its_own() -> None:
+    counted = point("limit", 1e-1, 20.0, knob="voussoirs")
+    assert counted not in front([*POINTS, counted])
+    assert on_front([*POINTS, counted]) == {*front(POINTS), counted}
 
 
 def test_gain_is_taken_at_equal_time() -> None:
@@ -44,18 +85,101 @@ def test_gain_is_taken_at_equal_time() -> None:
 
 
 def test_brackets_hold_the_exact_value_and_narrow(tmp_path: Path) -> None:
-    case = Case(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
-    points = measure([case], ["direct", "pymunk"], repeats=2)
+    points = measure([SMALL], ["direct", "pymunk"], ["tolerance"])
     for each in points:
         # The farther end of a bracket that holds the exact value.
-        assert each.tol / 8 < each.error <= each.tol
-        assert len(each.seconds) == 2
+        assert each.value / 8 < each.error <= each.value
+        assert len(each.processor_s) == len(each.wall_s) == 3
         assert each.undecided == 0
     made = write_chart(points, tmp_path)
     assert {path.name for path in made} == {"chart.json", "chart.png", "chart.svg"}
     document = json.loads((tmp_path / "chart.json").read_text(), parse_constant=pytest.fail)
     assert len(document["points"]) == len(points)
     assert document["machine"]["python"]
+    assert read_points(tmp_path / "chart.json") == points
+
+
+def test_an_arch_of_n_voussoirs_nears_the_continuous_one_like_one_over_n_squared() -> None:
+    """How near depends on where joints fall, too: the worst of neighbouring n is looked at."""
+    for case in (SMALL, SLIDING):
+        worst = [
+            max(off_theory(case, n) for n in range(low, 3 * low // 2))
+            for low in (20, 40, 80, 160)
+        ]
+        for coarse, fine in itertools.pairwise(worst):
+            assert coarse / fine == pytest.approx(4, rel=0.3)
+    points = measure([SMALL], ["limit"], ["voussoirs"], quick=True)
+    assert [p.value for p in points] == [7, 27, 101]
+    assert [p.error for p in points] == [off_theory(SMALL, n) for n in (7, 27, 101)]
+
+
+@pytest.mark.parametrize("sweeps", [30, 100, 300, 1000, 5000])
+@pytest.mark.parametrize("case", [SMALL, SLIDING], ids=["turning", "sliding"])
+def test_an_onset_test_cut_short_is_open_rather_than_wrong(case: Case, sweeps: int) -> None:
+    for ratio, truth in ((0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)):
+        seen = look(arch(case, ratio), case.mu, "pymunk", "hold_sweeps", sweeps)
+        assert seen.verdict in {truth, Verdict.UNDECIDED}
+        if sweeps == 5000:
+            assert seen.verdict is truth
+
+
+def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    knob = replace(KNOBS["hold_sweeps"], values={"pymunk": (300, 600, 5000)})
+    monkeypatch.setitem(KNOBS, "hold_sweeps", knob)
+    for case in (SMALL, SLIDING):
+        points = measure([case], ["pymunk"], ["hold_sweeps"])
+        for each in points:
+            assert (each.low or 0) < least(case, case.voussoirs) < (each.high or math.inf)
+        coarse, _, fine = points
+        assert coarse.undecided > 0 == fine.undecided
+        assert coarse.error > 10 * fine.error
+        assert fine.error <= 1e-3
+
+
+@pytest.mark.parametrize("method", ["direct", "pymunk"])
+def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
+    """What stands is watched to the end."""
+    setup = Setup.of(
+        arch(SMALL, 1.5), SMALL.mu, method, settings={"step": 1 / 480, "sweeps": 20}
+    )
+    seen = let_go(setup)
+    assert seen.verdict is Verdict.STANDS
+    assert seen.work == CONTACTS[method] * 10 * 20 * QUIET * 480
+    held = look(arch(SMALL, 1.5), SMALL.mu, method, "tolerance", 1e-2)
+    assert held.work % (CONTACTS[method] * 10) == 0
+
+
+def test_a_moving_run_alone_is_right_when_fine_and_wrong_when_coarse() -> None:
+    """With few sweeps the blocks fall before they bear, and what stands comes down."""
+    for method, value, verdict in (
+        ("pymunk", 1 / 15, Verdict.COLLAPSES),
+        ("pymunk", 1 / 3840, Verdict.STANDS),
+        ("direct", 1 / 15, Verdict.STANDS),
+    ):
+        assert look(arch(SMALL, 1.02), SMALL.mu, method, "step", value).verdict is verdict
+        below = look(arch(SMALL, 0.98), SMALL.mu, method, "step", value)
+        assert below.verdict is Verdict.COLLAPSES
+
+
+def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
+    points = [
+        point("pymunk", error, 1.0, 2.0, 3.0, knob=knob)
+        for knob in KNOBS
+        for error in (math.inf, 1e-2)
+    ]
+    assert set(chart_figures(points)) == {
+        "chart",
+        "chart_let_go",
+        "chart_cut_short",
+        "chart_voussoirs",
+    }
+    write_chart(points, tmp_path)
+    document = json.loads((tmp_path / "chart.json").read_text())
+    assert [record["error"] for record in document["points"][:2]] == ["inf", 0.01]
+    assert set(document["knobs"]) == set(KNOBS)
+    assert list(chart_table(points).columns[4].cells) == ["none", "1.0e-02"] * len(KNOBS)
 
 
 def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
@@ -67,8 +191,33 @@ def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
     assert "elsewhere" in (tmp_path / "chart.json").read_text()
 
 
+def test_files_of_before_there_were_knobs_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "points.json"
+    record = {
+        "case": "an arch",
+        "method": "elsewhere",
+        "tol": 1e-3,
+        "error": "inf",
+        "undecided": 2,
+        "work": 7.0,
+        "seconds": [2.0, 3.0],
+    }
+    path.write_text(json.dumps({"points": [record]}))
+    (old,) = read_points(path)
+    assert (old.knob, old.value, old.error) == ("tolerance", 1e-3, math.inf)
+    assert old.processor_s == old.wall_s == (2.0, 3.0)
+
+
 @pytest.mark.parametrize(
-    "text", ["", "[]", '{"points": [{"case": "an arch"}]}', '{"points": 1}']
+    "text",
+    [
+        "",
+        "[]",
+        '{"points": [{"case": "an arch"}]}',
+        '{"points": 1}',
+        '{"points": [{"knob": "luck"}]}',
+        '{"points": [{"tol": 1, "seconds": []}]}',
+    ],
 )
 def test_what_holds_no_points_is_refused(text: str, tmp_path: Path) -> None:
     path = tmp_path / "points.json"

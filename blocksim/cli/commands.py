@@ -227,14 +227,14 @@ def chart(
         Path | None, typer.Option(help="Points of another program: JSON like chart.json.")
     ] = None,
 ) -> None:
-    """Chart the accuracy of every method that simulates against its time."""
+    """Chart the error of every method, from coarse to fine, against time and work."""
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.report.chart import read_points, write_chart
 
     foreign = read_points(beside) if beside else []
     make_folder(out)
     with progress() as report:
-        points = measure(cases(quick=quick), progress=report) + foreign
+        points = measure(cases(quick=quick), quick=quick, progress=report) + foreign
     paths = write_chart(points, out)
     show(chart_table(points))
     say("wrote " + ", ".join(str(path) for path in paths))

@@ -93,8 +93,17 @@ def validation_lines(rows: list[Row]) -> list[str]:
 def chart_table(points: list[Point]) -> Table:
     """Lay out what was measured for the chart, one line a bracket."""
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for heading in ("arch", "method", "tol", "error", "s", "contact solves", ""):
-        side = "left" if heading in {"arch", "method", ""} else "right"
+    for heading in (
+        "arch",
+        "method",
+        "knob",
+        "value",
+        "error",
+        "s",
+        "contact solves",
+        "",
+    ):
+        side = "left" if heading in {"arch", "method", "knob", ""} else "right"
         table.add_column(heading, justify=side, no_wrap=True)
     best = on_front(points)
     for point in points:
@@ -102,9 +111,10 @@ def chart_table(points: list[Point]) -> Table:
         table.add_row(
             point.case,
             point.method,
-            f"{point.tol:g}",
+            point.knob,
+            f"{point.value:.4g}",
             error,
-            f"{point.wall_s:.3g}",
+            f"{point.time:.3g}",
             f"{point.work:.1e}",
             "on the front" if point in best else "",
         )

@@ -69,7 +69,8 @@ class Chipmunk:
 
         A hinge that turns for a step overlaps by about 100 step^2 / thickness of its
         motion (measured), which asks for short steps. Sliding asks for many sweeps in a
-        step: at equal work, long steps keep friction converged where short ones do not.
+        step: released from converged impulses, at equal work long steps keep friction
+        converged where short ones do not. (Released from nothing it is the other way round.)
 
         The onset test needs about 40 sweeps for each pair of blocks, and in thin arches 10 to
         20 over the length of a joint: a small moment at it is a large change of its

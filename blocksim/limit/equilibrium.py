@@ -14,6 +14,8 @@ from blocksim.assembly import PLANAR, SUPPORT, Array, Assembly
 
 SPARE = 1.0
 """Most that is asked for along every edge of a cone [mean weights]."""
+FINEST = 1e-10
+"""HiGHS's own least tolerance."""
 SIGNS = np.array([1.0, -1.0])
 
 
@@ -50,6 +52,7 @@ def equilibrium(assembly: Assembly, mu: float) -> Array | None:
         b_eq=np.tile([0.0, 1.0, 0.0], len(assembly.blocks)),
         bounds=[(0.0, None)] * parts + [(0.0, SPARE)],
         method="highs",
+        options={"primal_feasibility_tolerance": FINEST},
     )
     if found.x is None or not found.success:
         return None

@@ -6,12 +6,15 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
+from blocksim.engines import ENGINES, get_engine, remedy
 from blocksim.errors import InputError
 from blocksim.files import make_folder, write_whole
+from blocksim.knobs import KNOBS
 from blocksim.report.answers import plain
 from blocksim.report.tables import as_json, machine, pictures, write_contents
-from blocksim.view.chartfigure import chart_figure
+from blocksim.view.chartfigure import chart_figures
 from blocksim.workprec import Point, on_front
 
 LARGEST_FILE = 1 << 24
@@ -19,7 +22,7 @@ LARGEST_FILE = 1 << 24
 
 
 def write_chart(points: Sequence[Point], folder: Path) -> list[Path]:
-    """Write chart.json, chart.png and chart.svg into a folder.
+    """Write chart.json and the pictures of `chart_figures`, .png and .svg, into a folder.
 
     Raises
     ------
@@ -29,7 +32,9 @@ def write_chart(points: Sequence[Point], folder: Path) -> list[Path]:
     make_folder(folder)
     made = [folder / "chart.json"]
     write_points(points, made[0])
-    return made + write_contents(folder, pictures("chart", chart_figure(points)))
+    for name, figure in chart_figures(points).items():
+        made += write_contents(folder, pictures(name, figure))
+    return made
 
 
 def write_points(points: Sequence[Point], path: Path) -> None:
@@ -41,21 +46,36 @@ def write_points(points: Sequence[Point], path: Path) -> None:
         If they cannot be written.
     """
     make_folder(path.parent)
-    best = on_front(points)
+    by_time, by_work = on_front(points), on_front(points, "work")
     records = [
         {
-            **{key: plain(value) for key, value in asdict(point).items() if key != "seconds"},
-            "seconds": list(point.seconds),
-            "on_front": point in best,
+            **{key: plain(value) for key, value in asdict(point).items()},
+            "against": point.against,
+            "on_front": point in by_time,
+            "on_front_of_work": point in by_work,
         }
         for point in points
     ]
-    document = {"machine": machine(), "points": records}
+    knobs = {name: KNOBS[name].words for name in dict.fromkeys(p.knob for p in points)}
+    drawn = {p.method for p in points}
+    document = {
+        "machine": machine(),
+        "libraries": {
+            name: get_engine(name).version
+            for name in ENGINES
+            if name in drawn and remedy(name) is None
+        },
+        "knobs": knobs,
+        "points": records,
+    }
     write_whole(path, lambda file: file.write(as_json(document)))
 
 
 def read_points(path: Path) -> list[Point]:
     """Read points of another run or program, written by `write_points`.
+
+    Files of before there were knobs are read, too: a tolerance `tol`, and `seconds` by the
+    clock, which are taken for the processor's. The ends of brackets need not be told.
 
     Raises
     ------
@@ -66,18 +86,38 @@ def read_points(path: Path) -> list[Point]:
     if not path.is_file() or path.stat().st_size > LARGEST_FILE:
         raise InputError("points", where, f"a file of at most {LARGEST_FILE} bytes")
     try:
-        records = json.loads(path.read_text(encoding="utf-8"))["points"]
-        return [
-            Point(
-                case=str(record["case"]),
-                method=str(record["method"]),
-                tol=float(record["tol"]),
-                error=float(record["error"]),
-                undecided=int(record["undecided"]),
-                work=float(record["work"]),
-                seconds=tuple(float(each) for each in record["seconds"]),
-            )
-            for record in records
-        ]
+        return [_point(record) for record in json.loads(path.read_text("utf-8"))["points"]]
     except (KeyError, TypeError, ValueError, RecursionError):
         raise InputError("points", where, "written by blocksim chart, or like it") from None
+
+
+def _point(record: dict[str, Any]) -> Point:
+    """Return a record as a point; `KeyError`, `TypeError` or `ValueError` if it is none."""
+    if "tol" in record:
+        seconds = record["seconds"]
+        now = {"knob": "tolerance", "value": record["tol"]}
+        record = {**record, **now, "processor_s": seconds, "wall_s": seconds}
+    if record["knob"] not in KNOBS:
+        raise KeyError(record["knob"])
+    processor_s, wall_s = (
+        tuple(float(each) for each in record[key]) for key in ("processor_s", "wall_s")
+    )
+    if not processor_s:
+        raise ValueError(processor_s)
+    return Point(
+        case=str(record["case"]),
+        method=str(record["method"]),
+        knob=str(record["knob"]),
+        value=float(record["value"]),
+        error=float(record["error"]),
+        low=_end(record.get("low")),
+        high=_end(record.get("high")),
+        undecided=int(record["undecided"]),
+        work=float(record["work"]),
+        processor_s=processor_s,
+        wall_s=wall_s,
+    )
+
+
+def _end(value: Any) -> float | None:
+    return None if value is None else float(value)

@@ -37,12 +37,13 @@ MODES = {
     Mode.R: Style("#332288", "#d8d3ea", "P"),
 }
 METHODS = {
+    "limit": Style("#E69F00", "#fbeccc", "v"),
     "direct": Style("#0072B2", "#cfe3f0", "o"),
     "pymunk": Style("#D55E00", "#f8dcc9", "s"),
     "pybullet": Style("#009E73", "#cdebe2", "^"),
     "mujoco": Style("#AA4499", "#efd8ec", "D"),
 }
-"""Of engines, where they are compared."""
+"""Of methods, where they are compared."""
 UNNAMED = Style("#000000", "#ffffff", "*")
 MISS = "#c00000"
 
