@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from arches import arch_at
 
-from blocksim import bracket
+from blocksim import Arch, bracket, limit
 from blocksim.arch import Weight
 from blocksim.engines import get_engine
+from blocksim.theory.map import divide_friction
 from blocksim.trial import hold, trial
 from blocksim.verdict import Verdict
 
@@ -111,3 +112,26 @@ def test_pybullet_says_why_it_is_undecided() -> None:
     assert found.eta_low == pytest.approx(arch_at(1.0, *case).eta, rel=4e-3)
     assert found.eta_high is not None
     assert found.eta_high > arch_at(1.01, *case).eta
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("reduce", [False, True])
+def test_pymunk_is_right_where_two_answers_are_likeliest(reduce: bool) -> None:
+    """Steep arches with little more friction than stands at all; a fifth of them let go."""
+    random = np.random.default_rng(11)
+    arches = given = 0
+    while arches < 150:
+        alpha = math.radians(random.uniform(115, 158))
+        mu = divide_friction(alpha) * random.uniform(1, 1.3)
+        count, sector = int(random.integers(4, 26)), random.random() < 0.5
+        weight: Weight = "sector" if sector else "centreline"
+        least = limit.least_thickness(alpha, mu, count, weight).eta if mu <= 8 else None
+        if least is None or least * 1.1 > 2:
+            continue
+        arches += 1
+        for ratio in (0.97, 0.99, 0.998, 1.0005, 1.002, 1.01, 1.03, 1.1):
+            arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
+            seen = trial(arch, mu, "pymunk", moving=arches % 5 == 0, reduce=reduce)
+            assert seen.verdict is (Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES)
+            given += seen.onset.forces is not None
+    assert given > 5
