@@ -25,6 +25,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from analysis.command import run
 from analysis.drawing import Draw, draws
@@ -32,7 +33,7 @@ from blocksim import Arch, Bracket, Mode, bracket
 from blocksim.arch import Weight
 from blocksim.onset import PROBE, Onset
 from blocksim.trial import Trial, trial
-from blocksim.view.style import FONT, METHODS
+from blocksim.view.style import FONT, INK, METHODS
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (154, 2.6))
 """Half-angles [deg] and friction: rrr, srr, rrs, rs."""
@@ -251,24 +252,29 @@ def _figure(rows: list[Row], path: Path) -> None:
         for axes, engine in zip(panels, engines, strict=True):
             style = METHODS[engine]
             own = [row for row in rows if row.engine == engine]
-            for name, marker, line, times in (
-                ("all voussoirs", style.marker, "-", [row.whole_s for row in own]),
-                ("reduced", style.marker, "--", [row.reduced_s for row in own]),
+            for face, line, times in (
+                ("white", "-", [row.whole_s for row in own]),
+                (style.colour, "--", [row.reduced_s for row in own]),
             ):
-                face = style.colour if name == "reduced" else "white"
                 sizes = sorted({row.voussoirs for row in own})
                 count = np.array([row.voussoirs for row in own])
                 taken = np.array(times)
-                axes.loglog(count, taken, marker, mfc=face, mec=style.colour, ms=5, alpha=0.7)
+                axes.loglog(
+                    count, taken, style.marker, mfc=face, mec=style.colour, ms=5, alpha=0.7
+                )
                 middle = [float(np.median(taken[count == size])) for size in sizes]
-                axes.loglog(sizes, middle, line, color=style.colour, lw=1.4, label=name)
+                axes.loglog(sizes, middle, line, color=style.colour, lw=1.4)
             axes.set_title(f"{engine}, brackets to {TOLERANCES[engine]:g}", fontsize=9.5)
             axes.set_xlabel("voussoirs")
             axes.set_xticks(sizes, [str(size) for size in sizes])
             axes.minorticks_off()
             axes.grid(alpha=0.3)
-            axes.legend(frameon=False, fontsize=8, loc="upper left")
         panels[0].set_ylabel("processor time of a bracket [s]")
+        names = [
+            Line2D([], [], marker="o", color=INK, mfc="white", label="all voussoirs"),
+            Line2D([], [], marker="o", color=INK, ls="--", label="reduced; lines join medians"),
+        ]
+        figure.legend(handles=names, frameon=False, ncols=2, loc="outside lower center")
         figure.savefig(path, dpi=150)
 
 

@@ -98,7 +98,7 @@ def held(axes: Axes, rows: Sequence[Row]) -> None:
     axes.set(xscale="log", yscale="log")
     axes.set_xlabel("length of the shortest joint [r]")
     axes.set_ylabel("sweeps allowed / n$^2$")
-    axes.legend(frameon=False, fontsize=SMALL)
+    axes.legend(edgecolor="none", framealpha=0.9, fontsize=SMALL)
 
 
 def values_of_n(rows: Sequence[Row]) -> list[int]:
@@ -162,7 +162,8 @@ def lasting(axes: Axes, rows: Sequence[Row]) -> None:
     axes.set_xlabel("time since release [$\\sqrt{r/g}$]")
     axes.set_ylabel("largest motion, 0.5 % above [r]")
     if own_labels(axes):
-        axes.legend(frameon=False, fontsize=SMALL, loc="center right")
+        place = {"loc": "center right", "bbox_to_anchor": (1.0, 0.38)}
+        axes.legend(frameon=False, fontsize=SMALL, **place)
 
 
 def energy(axes: Axes, rows: Sequence[Row]) -> None:
