@@ -98,7 +98,8 @@ class Onset:
         size = f"{self.acceleration:.1e} g after {self.sweeps} sweeps"
         match self.verdict:
             case Verdict.STANDS if self.forces is not None:
-                return f"held at rest, it keeps forces of equilibrium it was given, to {size}"
+                given = "held at rest, it keeps forces of equilibrium it was given"
+                return f"{given}, to {size} (friction may let it move, too)"
             case Verdict.STANDS:
                 return f"held at rest, contact forces balance the weight to {size}"
             case Verdict.COLLAPSES:
