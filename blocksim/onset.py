@@ -73,7 +73,7 @@ class Onset:
     may_jam : bool
         Whether it starts to move where rest may be possible, too.
     may_rest : bool
-        Whether it starts to move where these exist.
+        Whether it starts to move where forces of equilibrium exist.
     too_far : bool
         Whether it was built too far from the origin to be looked at.
     """
@@ -152,7 +152,8 @@ def onset(
     allowed, built = settings.hold_sweeps, world.poses()
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
-    total, sweeps, forces = 0, first, None
+    total, sweeps = 0, first
+    forces = given = None
     unasked = not (world.finds_rest or settings.tilt)
     while True:
         accelerations = world.hold(sweeps)
@@ -166,9 +167,9 @@ def onset(
             unasked = False
             forces = equilibrium(simulated or assembly, mu)
             if forces is not None and world.begin(forces):
-                sweeps = first
+                sweeps, given = first, forces
                 continue
-        seen = replace(seen, forces=forces)
+        seen = replace(seen, forces=given)
         if falls and forces is not None:
             return replace(seen, verdict=Verdict.UNDECIDED, may_rest=True)
         if seen.verdict is not Verdict.UNDECIDED or total >= allowed:

@@ -89,6 +89,7 @@ def test_an_engine_that_cannot_be_given_forces_says_no_wrong_thing(case: Case) -
     above = hold(arch_at(1.0005, *case), case[1], "pybullet").onset
     assert below.verdict is not Verdict.STANDS
     assert above.verdict is not Verdict.COLLAPSES
+    assert "given" not in below.reason + above.reason
 
 
 def test_pybullet_says_why_it_is_undecided() -> None:
