@@ -70,8 +70,8 @@ class Onset:
         Poses after a small displacement (`PROBE`) along the accelerations.
     sweeps : int
         Sweeps spent.
-    may_jam : bool
-        Whether it starts to move where rest may be possible, too.
+    forces : (joints, 2, 2) float or None
+        Forces of equilibrium (`limit.equilibrium`) it was given, if it was.
     may_rest : bool
         Whether it starts to move where forces of equilibrium exist.
     too_far : bool
