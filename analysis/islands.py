@@ -176,7 +176,11 @@ def _figure(asked: Sequence[Case], rows: Sequence[Row], engine: str, path: Path)
             at = zip(*wrong, strict=True)
             axes.plot(*at, "o", mfc="none", mec=MISS, ms=8, mew=0.9, label="wrong")
         ticks = [angle for angle in range(30, 160, 10) if angles[0] <= angle <= angles[-1]]
-        axes.set_xticks(np.searchsorted(angles, ticks), [str(angle) for angle in ticks])
+        places = np.searchsorted(angles, ticks)
+        # The last of those too near to each other to be read.
+        apart = np.append(np.diff(places) > len(angles) / 25, True)
+        shown = [str(angle) for angle, far in zip(ticks, apart, strict=True) if far]
+        axes.set_xticks(places[apart], shown)
         axes.set_xlabel("arches in the order of half-angle [deg]")
         axes.set_ylabel("thickness over the least")
         count = len(asked) // len(RATIOS)
