@@ -10,6 +10,7 @@ import numpy as np
 from blocksim import limit
 from blocksim.arch import Arch, Weight
 from blocksim.assembly import SUPPORT, Array, Assembly, Block, Joint
+from blocksim.bracket import Bracket, bracket
 from blocksim.engines.base import Engine
 from blocksim.onset import onset
 from blocksim.verdict import Verdict
@@ -23,6 +24,26 @@ def arch_at(
     least = limit.least_thickness(alpha, mu, count, weight).eta
     assert least is not None
     return Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
+
+
+def bracket_at(
+    angle: float,
+    mu: float,
+    count: int,
+    weight: Weight = "centreline",
+    *,
+    method: str,
+    tol: float,
+) -> Bracket:
+    """The bracket of an arch whose half-angle is given in degrees."""
+    return bracket(
+        half_angle=math.radians(angle),
+        mu=mu,
+        voussoirs=count,
+        weight=weight,
+        method=method,
+        tol=tol,
+    )
 
 
 def held_in(

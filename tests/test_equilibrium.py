@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from arches import on_a_slope
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from blocksim import Arch, limit
 from blocksim.arch import Weight
-from blocksim.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
+from blocksim.assembly import PLANAR, Array, Assembly
 from blocksim.engines import get_engine
 from blocksim.limit import equilibrium
 from blocksim.reduction import Reduction
@@ -68,18 +70,9 @@ def test_a_block_on_a_slope_rests_unless_it_slides_or_tips(
     slope = math.radians(angle)
     steepest = min(0.0 if smooth else mu, 1 / height)
     assume(abs(math.tan(slope) - steepest) > 1e-4)
-    along = np.array([math.cos(slope), math.sin(slope)])
-    up = np.array([-along[1], along[0]])
-    corners = [-along / 2, along / 2, along / 2 + height * up, -along / 2 + height * up]
-    block = Block(
-        vertices=np.array(corners),
-        centre=height / 2 * up,
-        mass=3.0,
-        inertia=0.25 * (1 + height**2),
-        depth=1.0,
-    )
-    joint = Joint(SUPPORT, 0, inner=corners[1], outer=corners[0], smooth=smooth)
-    assembly = Assembly(blocks=(block,), joints=(joint,), size=2.0)
+    assembly = on_a_slope(slope, 1.0, height)
+    joints = tuple(replace(joint, smooth=smooth) for joint in assembly.joints)
+    assembly = replace(assembly, joints=joints)
     forces = equilibrium(assembly, mu)
     assert (forces is not None) == (math.tan(slope) < steepest)
     if forces is not None:

@@ -10,9 +10,9 @@ import math
 
 import numpy as np
 import pytest
-from arches import arch_at
+from arches import arch_at, bracket_at
 
-from blocksim import Arch, bracket, limit
+from blocksim import Arch, limit
 from blocksim.arch import Weight
 from blocksim.engines import get_engine
 from blocksim.theory.map import divide_friction
@@ -54,16 +54,8 @@ def test_an_arch_stands_if_it_can_rest(
 
 @every_case
 def test_brackets_close_where_there_are_two_answers(case: Case) -> None:
-    angle, mu, count, weight = case
     exact = arch_at(1.0, *case).eta
-    found = bracket(
-        half_angle=math.radians(angle),
-        mu=mu,
-        voussoirs=count,
-        weight=weight,
-        method="pymunk",
-        tol=2e-4,
-    )
+    found = bracket_at(*case, method="pymunk", tol=2e-4)
     assert found.confirmed
     assert found.undecided == 0
     assert found.eta_low is not None
@@ -100,15 +92,7 @@ def test_pybullet_says_why_it_is_undecided() -> None:
         seen = hold(arch_at(ratio, *case), case[1], "pybullet").onset
         assert ("friction allows both" in seen.reason) == both
         assert seen.verdict is (Verdict.UNDECIDED if both else Verdict.COLLAPSES)
-    angle, mu, count, weight = case
-    found = bracket(
-        half_angle=math.radians(angle),
-        mu=mu,
-        voussoirs=count,
-        weight=weight,
-        method="pybullet",
-        tol=4e-3,
-    )
+    found = bracket_at(*case, method="pybullet", tol=4e-3)
     assert "friction allows both" in found.reason
     assert found.eta_low == pytest.approx(arch_at(1.0, *case).eta, rel=4e-3)
     assert found.eta_high is not None

@@ -10,13 +10,14 @@ from typing import Any
 
 from blocksim.engines import ENGINES, get_engine, remedy
 from blocksim.errors import InputError
-from blocksim.files import make_folder, write_whole
+from blocksim.files import make_folder, require_file, write_whole
 from blocksim.knobs import KNOBS
 from blocksim.report.answers import plain
 from blocksim.report.tables import as_json, machine, pictures, write_contents
 from blocksim.view.chartfigure import chart_figures
 from blocksim.workprec import Point, on_front
 
+WRITTEN = "a file written by blocksim chart, or like it"
 LARGEST_FILE = 1 << 24
 """Bytes; a larger file of points is not opened."""
 
@@ -82,13 +83,11 @@ def read_points(path: Path) -> list[Point]:
     InputError
         If the file is missing, too large, or holds no points.
     """
-    where = str(path)
-    if not path.is_file() or path.stat().st_size > LARGEST_FILE:
-        raise InputError("points", where, f"a file of at most {LARGEST_FILE} bytes")
+    require_file(path, "points", WRITTEN, LARGEST_FILE)
     try:
         return [_point(record) for record in json.loads(path.read_text("utf-8"))["points"]]
     except (KeyError, TypeError, ValueError, RecursionError):
-        raise InputError("points", where, "written by blocksim chart, or like it") from None
+        raise InputError("points", str(path), WRITTEN) from None
 
 
 def _point(record: dict[str, Any]) -> Point:
