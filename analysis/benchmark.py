@@ -33,6 +33,7 @@ from blocksim.engines import ENGINES, remedy
 from blocksim.files import make_folder, write_whole
 from blocksim.limit import least_thickness
 from blocksim.limit.bulk import which_stand
+from blocksim.report.tables import processor
 from blocksim.theory.arrays import least_thicknesses
 from blocksim.trial import hold, simulate
 from blocksim.view.film import Film
@@ -84,7 +85,7 @@ def main(out: Path = TIMINGS, *, quick: bool = False) -> Result:
         sys.stderr.write(f"{name}\n")
         done[name] = measured(task, 1 if quick else REPEATS)
     record = Record(
-        cpu=_cpu(),
+        cpu=processor(),
         cores=os.cpu_count() or 1,
         python=platform.python_version(),
         libraries={name: found for name in LIBRARIES if (found := _version(name))},
@@ -165,16 +166,6 @@ def table(result: Result) -> str:
         said = "new" if ratio is None else f"{ratio:.2f} of the last"
         lines.append(f"  {name:32} {seconds:9.4f} s   {said}")
     return "\n".join([*lines, f"stored in {result.path}"])
-
-
-def _cpu() -> str:
-    """Return the model of the processor, as far as the system tells."""
-    told = Path("/proc/cpuinfo")
-    if told.exists():
-        for line in told.read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()
 
 
 def _version(library: str) -> str | None:

@@ -37,7 +37,7 @@ def as_record(row: Row) -> dict[str, object]:
 def machine() -> dict[str, str]:
     """Tell what the figures were measured on."""
     return {
-        "processor": _processor(),
+        "processor": processor(),
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
         "blocksim": blocksim.__version__,
@@ -45,7 +45,8 @@ def machine() -> dict[str, str]:
     }
 
 
-def _processor() -> str:
+def processor() -> str:
+    """Model of the processor, as far as the system tells."""
     info = Path("/proc/cpuinfo")
     if info.is_file():
         for line in info.read_text(encoding="utf-8").splitlines():
