@@ -25,6 +25,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import matplotlib as mpl
@@ -42,6 +43,8 @@ from blocksim.view.style import FONT
 ARCHES = {"semicircle": (90.0, 0.35, 27), "thin": (45.0, 0.9, 13)}
 """Half-angle [deg], friction, voussoirs."""
 VARIANTS = ("as built", "plane lock", "breaking 0.02", "slop 5e-5")
+LOCK = 1e6
+"""Factor on inertias out of the plane where blocks are locked in it."""
 STEPS = ((0.001, 300), (0.01, 3000), (0.1, 30000))
 """Time step and sweeps in it: the same sweeps in a unit of time."""
 
@@ -72,29 +75,40 @@ def variant(name: str) -> Generator[None]:
             parameters["contactSlop"] = 5e-5
         real(**parameters)
 
+    real_dynamics = bullet.bullet.changeDynamics
+
+    def locked(*body: int, **changes: Any) -> None:
+        if "localInertiaDiagonal" in changes:
+            *across, inertia = changes["localInertiaDiagonal"]
+            changes["localInertiaDiagonal"] = [*(LOCK * each for each in across), inertia]
+        real_dynamics(*body, **changes)
+
     if name == "breaking 0.02":
         with patch.object(bullet, "BREAKING", math.inf):
             yield
     elif name == "slop 5e-5":
         with patch.object(bullet.bullet, "setPhysicsEngineParameter", slack):
             yield
+    elif name == "plane lock":
+        with patch.object(bullet.bullet, "changeDynamics", locked):
+            yield
     else:
         yield
 
 
-def setup(arch: str, ratio: float, *, plane_lock: bool = False) -> Setup:
+def setup(arch: str, ratio: float) -> Setup:
     """Return an arch at a ratio of its least thickness."""
     degrees, mu, voussoirs = ARCHES[arch]
     alpha = math.radians(degrees)
     least = least_thickness(alpha, mu, voussoirs).eta or 0.0
     built = Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs)
-    return Setup.of(built, mu, "pybullet", plane_lock=plane_lock)
+    return Setup.of(built, mu, "pybullet")
 
 
 def left_over(arch: str, name: str, sweeps: Array) -> list[float]:
     """Acceleration after single solves with ever more sweeps, each in a new world."""
     with variant(name):
-        case = setup(arch, 1.002, plane_lock=name == "plane lock")
+        case = setup(arch, 1.002)
         found: list[float] = []
         for count in sweeps:
             world = case.world()

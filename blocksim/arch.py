@@ -38,11 +38,10 @@ def require_friction(mu: object) -> None:
     require(is_number(mu, 0, math.inf), "mu", mu, "above 0 (inf for unbounded friction)")
 
 
-def require_tilt(tilt: object, *, plane_lock: bool) -> None:
+def require_lean(lean: object) -> None:
     """Raise `InputError` unless gravity leans by less than a right angle, or not at all."""
-    upright = is_number(tilt, -math.pi / 2, math.nextafter(math.pi / 2, 0))
-    require(upright, "tilt", tilt, "above -pi/2 and below pi/2")
-    require(not (tilt and plane_lock), "plane_lock", plane_lock, "left out with a tilt")
+    upright = is_number(lean, -math.pi / 2, math.nextafter(math.pi / 2, 0))
+    require(upright, "lean", lean, "above -pi/2 and below pi/2")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass
 
 from blocksim import limit, theory
-from blocksim.arch import Arch, require_friction, require_tilt
+from blocksim.arch import Arch, require_friction, require_lean
 from blocksim.joints import JointState, ObservedJoint, closed_joints
 from blocksim.ladder import choose, chosen_words
 from blocksim.modes import Mode
@@ -68,8 +68,7 @@ def check(
     *,
     mu: float,
     method: str = "auto",
-    tilt: float = 0.0,
-    plane_lock: bool = False,
+    lean: float = 0.0,
     settings: Overrides = BY_RULE,
     reduce: bool = False,
     progress: Progress = silent,
@@ -83,11 +82,9 @@ def check(
         Friction coefficient, above 0, inf allowed.
     method : str
         `auto`, `theory`, `limit`, or the name of an engine.
-    tilt : float
+    lean : float
         Angle by which gravity leans out of the plane [rad]; `eta_limit` and `eta_theory`
         are those without it.
-    plane_lock : bool
-        Keep the voussoirs in the plane by large inertias out of it (pybullet).
     settings : mapping of str to float
         Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
     reduce : bool
@@ -107,8 +104,8 @@ def check(
     """
     started = time.perf_counter()
     require_friction(mu)
-    require_tilt(tilt, plane_lock=plane_lock)
-    spatial = tilt != 0 or plane_lock
+    require_lean(lean)
+    spatial = lean != 0
     rung = choose(method, spatial=spatial, settings=settings, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
@@ -128,8 +125,7 @@ def check(
             arch,
             mu,
             rung.name,
-            tilt=tilt,
-            plane_lock=plane_lock,
+            lean=lean,
             settings=settings,
             reduce=reduce,
             progress=progress,

@@ -146,7 +146,7 @@ def choose(
     else:
         rung = METHODS[method]
     if spatial and not rung.is_spatial:
-        raise InputError("method", method, f"{SPATIAL} with a tilt or a plane lock")
+        raise InputError("method", method, f"{SPATIAL} with a lean")
     if moving and rung.is_static:
         able = ", ".join(engines.ENGINES)
         raise InputError("method", method, f"one of {able}: others move nothing")

@@ -154,7 +154,7 @@ def onset(
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
     total, sweeps = 0, first
     forces = given = None
-    unasked = not (world.finds_rest or settings.tilt)
+    unasked = not (world.finds_rest or settings.lean)
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
@@ -195,16 +195,16 @@ def _look(
             verdict = Verdict.STANDS
         elif overlap_share(assembly, mechanism) < settings.closing and (
             world.quality().residual is not None
-            or _driven(assembly, accelerations, settings.tilt)
+            or _driven(assembly, accelerations, settings.lean)
         ):
             verdict = Verdict.COLLAPSES
     return Onset(verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=sweeps)
 
 
-def _driven(assembly: Assembly, accelerations: Array, tilt: float) -> bool:
+def _driven(assembly: Assembly, accelerations: Array, lean: float) -> bool:
     """Tell whether the weight does the work of the motion, from rest over one step."""
     masses = assembly.spatial_masses[:, : accelerations.shape[1]]
-    weight = np.array([0.0, -math.cos(tilt), 0.0, math.sin(tilt), 0.0, 0.0])
+    weight = np.array([0.0, -math.cos(lean), 0.0, math.sin(lean), 0.0, 0.0])
     of_weight = float((masses * accelerations * weight[: accelerations.shape[1]]).sum())
     of_motion = float((masses * accelerations**2).sum())
     return of_weight > WORK * of_motion

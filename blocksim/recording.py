@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from blocksim.arch import Arch, require, require_friction, require_tilt
+from blocksim.arch import Arch, require, require_friction, require_lean
 from blocksim.assembly import PLANAR, SPATIAL, Array, displacement
 from blocksim.engines.base import Quality, Settings
 from blocksim.errors import InputError
@@ -137,7 +137,7 @@ def load_recording(path: Path) -> Recording:
             mu=float(header["mu"]),
             engine=str(header["engine"]),
             engine_version=str(header["engine_version"]),
-            settings=Settings(**header["settings"]),
+            settings=_settings(header["settings"]),
             times=times,
             poses=poses,
             quality=Quality(**header.get("quality", {})),
@@ -161,6 +161,13 @@ def load_recording(path: Path) -> Recording:
     return recording
 
 
+def _settings(written: dict[str, Any]) -> Settings:
+    """Read settings, those of older recordings, too: they called the lean a tilt."""
+    named = {"lean" if name == "tilt" else name: value for name, value in dict(written).items()}
+    named.pop("plane_lock", None)
+    return Settings(**named)
+
+
 def _parts(path: Path) -> tuple[dict[str, Any], Array, Array]:
     """Unpack header, times and poses; what raises here is no recording."""
     # Opened here: np.load leaves the file open where it is no archive.
@@ -179,7 +186,7 @@ def _parts(path: Path) -> tuple[dict[str, Any], Array, Array]:
 def _require_header(recording: Recording) -> None:
     """Raise `InputError` where what is said beside the poses cannot be."""
     require_friction(recording.mu)
-    require_tilt(recording.settings.tilt, plane_lock=recording.settings.plane_lock)
+    require_lean(recording.settings.lean)
     name = f"{recording.engine} {recording.engine_version}"
     require(name.isascii() and name.isprintable() and len(name) < 80, "engine", name, "a name")
 

@@ -54,7 +54,7 @@ class GravityTable:
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    tilt_deg: Annotated[float, Field(gt=-90, lt=90, strict=True)] = 0.0
+    lean_deg: Annotated[float, Field(gt=-90, lt=90, strict=True)] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +110,7 @@ class Scenario:
     eta : float or None
         Thickness-to-radius ratio, where the scenario sets one.
     radius, depth, specific_weight : float
-    tilt : float
+    lean : float
         Angle by which gravity leans out of the plane [rad].
     expected_modes : tuple of Mode
         Empty where nothing is said.
@@ -132,7 +132,7 @@ class Scenario:
     radius: float
     depth: float
     specific_weight: float
-    tilt: float
+    lean: float
     expected_modes: tuple[Mode, ...]
     expected_eta: float | None
     expected_verdict: Verdict | None
@@ -232,7 +232,7 @@ def _scenario(name: str, written: ScenarioFile) -> Scenario:
         radius=arch.radius,
         depth=arch.depth,
         specific_weight=arch.specific_weight,
-        tilt=math.radians(written.gravity.tilt_deg),
+        lean=math.radians(written.gravity.lean_deg),
         expected_modes=expect.modes if expect else (),
         expected_eta=expect.eta if expect else None,
         expected_verdict=expect.verdict if expect else None,

@@ -99,14 +99,13 @@ class Setup:
         mu: float,
         engine: str,
         *,
-        tilt: float = 0.0,
-        plane_lock: bool = False,
+        lean: float = 0.0,
         settings: Overrides = BY_RULE,
         reduction: Reduction | None = None,
     ) -> Setup:
         """Take the settings that the engine chooses for the arch, or those given.
 
-        Tilt [rad] and plane lock as in `Settings`, for engines in three dimensions.
+        Lean [rad] as in `Settings`, for engines in three dimensions.
         """
         library = get_engine(engine)
         given = {
@@ -118,7 +117,7 @@ class Setup:
             arch=arch,
             mu=mu,
             engine=library,
-            settings=replace(chosen, tilt=tilt, plane_lock=plane_lock, **given),
+            settings=replace(chosen, lean=lean, **given),
             given=settings,
             reduction=reduction,
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from blocksim.arch import Arch, require_friction, require_tilt
+from blocksim.arch import Arch, require_friction, require_lean
 from blocksim.engines.base import World
 from blocksim.joints import ObservedJoint, classify, closed_joints, observed_mode
 from blocksim.ladder import choose
@@ -79,8 +79,7 @@ def trial(
     engine: str,
     *,
     moving: bool = True,
-    tilt: float = 0.0,
-    plane_lock: bool = False,
+    lean: float = 0.0,
     settings: Overrides = BY_RULE,
     reduce: bool = False,
     progress: Progress = silent,
@@ -95,7 +94,7 @@ def trial(
     moving : bool
         Let the arch go after the onset test. It is not let go where that test is
         undecided: unbalanced impulses would throw it.
-    tilt, plane_lock : float, bool
+    lean : float
         As in `Settings`, for engines in three dimensions.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
@@ -111,8 +110,7 @@ def trial(
         arch,
         mu,
         engine,
-        tilt=tilt,
-        plane_lock=plane_lock,
+        lean=lean,
         settings=settings,
         reduction=Reduction.of(arch, mu) if reduce else None,
         progress=progress,
@@ -125,8 +123,7 @@ def hold(
     mu: float,
     engine: str,
     *,
-    tilt: float = 0.0,
-    plane_lock: bool = False,
+    lean: float = 0.0,
     settings: Overrides = BY_RULE,
     reduction: Reduction | None = None,
     progress: Progress = silent,
@@ -142,8 +139,7 @@ def hold(
             arch,
             mu,
             engine,
-            tilt=tilt,
-            plane_lock=plane_lock,
+            lean=lean,
             settings=settings,
             reduction=reduction,
         )
@@ -173,7 +169,7 @@ def hold(
 def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
     """Do the second part of a trial: the moving run if asked for, and what all of it shows."""
     setup, first = held.setup, held.onset
-    arch, tilt = setup.arch, setup.settings.tilt
+    arch, lean = setup.arch, setup.settings.lean
     verdict, reason, motion = first.verdict, first.reason, None
     if moving and verdict is not Verdict.UNDECIDED:
         motion = held.release(progress=progress)
@@ -182,7 +178,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
             verdict = Verdict.UNDECIDED
     reason += _asides(held, motion) + given_words(setup.given)
     joints, mode = closed_joints(arch), None
-    if tilt and verdict is Verdict.COLLAPSES:
+    if lean and verdict is Verdict.COLLAPSES:
         joints = ()  # their states are those of motion in the plane
     elif verdict is Verdict.COLLAPSES:
         # In motion more joints may join in: then what it starts with names the mode.
@@ -209,9 +205,7 @@ def _asides(held: Held, motion: Motion | None) -> str:
     said: list[str] = []
     if setup.reduction:
         said.append(reduced_words(setup.blocks, setup.arch.voussoirs, held.splits))
-    if setup.settings.plane_lock:
-        said.append("kept in its plane by large inertias")
-    if setup.settings.tilt and motion:
+    if setup.settings.lean and motion:
         said.append(f"moved {motion.recording.beyond_plane[-1]:.1e} r out of its plane")
     if motion and setup.unsure:
         said.append(setup.unsure)
@@ -234,8 +228,7 @@ def simulate(
     mu: float,
     method: str,
     duration: float | None = None,
-    tilt: float = 0.0,
-    plane_lock: bool = False,
+    lean: float = 0.0,
     settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Recording:
@@ -250,10 +243,8 @@ def simulate(
         An engine, or `auto`.
     duration : float, optional
         Time to record [sqrt(r/g)]; by default until the verdict is certain.
-    tilt : float
+    lean : float
         Angle by which gravity leans out of the plane [rad].
-    plane_lock : bool
-        Keep the voussoirs in the plane by large inertias out of it.
     settings : mapping of str to float
         Of `blocksim.setup.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
@@ -270,14 +261,13 @@ def simulate(
         If the engine's library is not installed.
     """
     require_friction(mu)
-    require_tilt(tilt, plane_lock=plane_lock)
-    rung = choose(method, spatial=tilt != 0 or plane_lock, moving=True, settings=settings)
+    require_lean(lean)
+    rung = choose(method, spatial=lean != 0, moving=True, settings=settings)
     held = hold(
         arch,
         mu,
         rung.name,
-        tilt=tilt,
-        plane_lock=plane_lock,
+        lean=lean,
         settings=settings,
         progress=progress,
     )

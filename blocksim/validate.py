@@ -133,7 +133,7 @@ def validate(
         (scenario, engine)
         for scenario in chosen
         for engine in names
-        if METHODS[engine].is_spatial or not scenario.tilt
+        if METHODS[engine].is_spatial or not scenario.lean
     ]
     if workers == 1:
         rows: list[Row] = []
@@ -199,7 +199,7 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
 def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
     """Compare the verdict on an arch as it is with the one its scenario claims."""
     started = time.perf_counter()
-    seen = trial(arch, scenario.mu, engine, tilt=scenario.tilt)
+    seen = trial(arch, scenario.mu, engine, lean=scenario.lean)
     right = seen.verdict is scenario.expected_verdict
     return replace(
         _asked(scenario, engine),

@@ -157,20 +157,17 @@ def test_a_thin_arch_is_never_answered_wrongly(ratio: float, right: Verdict) -> 
     assert verdict in {right, Verdict.UNDECIDED}
 
 
-def test_the_reason_names_plane_lock_and_bounded_friction() -> None:
+def test_the_reason_names_bounded_friction() -> None:
     thick = replace(THIN, eta=0.3)
-    locked = trial(thick, 0.7, "pybullet", moving=False, plane_lock=True)
-    assert "kept in its plane" in locked.reason
-    assert "as friction" not in locked.reason
+    assert "as friction" not in trial(thick, 0.7, "pybullet", moving=False).reason
     rough = trial(thick, 20.0, "pybullet", moving=False)
     assert "pybullet took 10 as friction" in rough.reason
-    assert "plane" not in rough.reason
 
 
 @pytest.mark.parametrize("method", ["theory", "limit", "direct", "pymunk"])
-def test_planar_methods_take_no_tilt(method: str) -> None:
+def test_planar_methods_take_no_lean(method: str) -> None:
     with pytest.raises(InputError) as caught:
-        check(THIN, mu=0.7, method=method, tilt=0.1)
+        check(THIN, mu=0.7, method=method, lean=0.1)
     assert caught.value.field == "method"
     assert "pybullet" in str(caught.value)
 
@@ -185,13 +182,13 @@ def test_other_spaces_do_not_disturb_a_held_one() -> None:
 
 def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
     thick = replace(THIN, eta=0.3)
-    recording = simulate(thick, mu=0.7, method="pybullet", duration=0.5, tilt=0.7)
+    recording = simulate(thick, mu=0.7, method="pybullet", duration=0.5, lean=0.7)
     path = tmp_path / "run.npz"
     recording.save(path)
     again = load_recording(path)
     assert again.poses.shape == (len(again.times), THIN.voussoirs, SPATIAL)
     assert again.state_hash == recording.state_hash
-    assert again.settings.tilt == 0.7
+    assert again.settings.lean == 0.7
     assert again.beyond_plane[-1] > 1e-2
 
 

@@ -190,8 +190,8 @@ def test_altered_contents(tmp_path: Path, changes: dict[str, object], words: str
         {"mu": -1.0},
         {"engine": "\x1b[31mred"},
         {"engine": "x" * 5000},
-        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, tilt=math.nan)},
-        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, tilt="much")},
+        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, lean=math.nan)},
+        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, lean="much")},
     ],
 )
 def test_what_is_no_motion_of_an_arch_is_refused(
@@ -274,3 +274,10 @@ def test_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
         write_whole(path, fail)
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["run.npz"]
+
+
+def test_older_recordings_called_the_lean_a_tilt(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    old = {"step": 0.1, "sweeps": 1, "hold_sweeps": 2, "tilt": 0.3, "plane_lock": False}
+    altered(path, settings=old)
+    assert load_recording(path).settings.lean == 0.3

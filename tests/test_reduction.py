@@ -420,4 +420,4 @@ def test_there_is_nothing_to_reduce_where_nothing_is_simulated(method):
 
 def test_out_of_the_plane_nothing_is_reduced():
     with pytest.raises(InputError, match="reduce"):
-        check(arch_at(1.0, 90, 0.7, 27), mu=0.7, method="pybullet", tilt=0.1, reduce=True)
+        check(arch_at(1.0, 90, 0.7, 27), mu=0.7, method="pybullet", lean=0.1, reduce=True)

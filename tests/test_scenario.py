@@ -45,11 +45,11 @@ def written(folder: Path, text: str) -> str:
     return str(path)
 
 
-TILTED = [name for name in shipped() if load_scenario(name).tilt]
+LEANING = [name for name in shipped() if load_scenario(name).lean]
 
 
-@pytest.mark.parametrize("name", TILTED)
-def test_tilted_scenarios_claim_what_statics_says(name: str) -> None:
+@pytest.mark.parametrize("name", LEANING)
+def test_leaning_scenarios_claim_what_statics_says(name: str) -> None:
     """A rigid body on its springings overturns as the weight leaves their depth."""
     scenario = load_scenario(name)
     assert scenario.expected_modes == ()
@@ -57,13 +57,13 @@ def test_tilted_scenarios_claim_what_statics_says(name: str) -> None:
     height = np.mean([block.centre[1] for block in blocks]) - scenario.radius * math.cos(
         scenario.half_angle
     )
-    overturns = math.tan(scenario.tilt) > scenario.depth / 2 / height
-    assert scenario.mu > math.tan(scenario.tilt)
+    overturns = math.tan(scenario.lean) > scenario.depth / 2 / height
+    assert scenario.mu > math.tan(scenario.lean)
     expected = Verdict.COLLAPSES if overturns else Verdict.STANDS
     assert scenario.expected_verdict is expected
 
 
-@pytest.mark.parametrize("name", sorted({*shipped()} - {*TILTED}))
+@pytest.mark.parametrize("name", sorted({*shipped()} - {*LEANING}))
 def test_shipped_scenarios_agree_with_theory(name: str) -> None:
     scenario = load_scenario(name)
     assert scenario.name == name
@@ -80,7 +80,7 @@ def test_shipped_scenarios_agree_with_theory(name: str) -> None:
     assert found.modes if len(modes) > 1 else set(found.modes) == modes
 
 
-@pytest.mark.parametrize("name", sorted({*shipped()} - {*TILTED}))
+@pytest.mark.parametrize("name", sorted({*shipped()} - {*LEANING}))
 def test_shipped_voussoirs_show_a_published_mode(name: str) -> None:
     scenario = load_scenario(name)
     built = limit.least_thickness(

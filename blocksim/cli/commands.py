@@ -39,13 +39,12 @@ from blocksim.cli.options import (
     Alpha,
     Eta,
     Json,
+    Lean,
     MethodOption,
     Mu,
-    PlaneLock,
     Reduce,
     Scene,
     Set,
-    Tilt,
     Voussoirs,
     WeightOption,
     arch_of,
@@ -93,22 +92,20 @@ def check(
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
     method: MethodOption = "auto",
-    tilt: Tilt = None,
-    plane_lock: PlaneLock = False,
+    lean: Lean = None,
     settings: Set = None,
     reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
     """Tell whether an arch stands: exit code 0 stands, 1 collapses, 3 undecided."""
-    asked = question(scene, alpha, mu, voussoirs, weight, tilt)
+    asked = question(scene, alpha, mu, voussoirs, weight, lean)
     arch = arch_of(asked, eta)
     with named_options(), progress() as report:
         answer = ask_check(
             arch,
             mu=asked.mu,
             method=method,
-            tilt=asked.tilt,
-            plane_lock=plane_lock,
+            lean=asked.lean,
             settings=settings_of(settings),
             reduce=reduce,
             progress=report,
@@ -162,12 +159,11 @@ def simulate(
     seconds: Annotated[
         float | None, typer.Option(help="Seconds to record; until decided if left out.")
     ] = None,
-    tilt: Tilt = None,
-    plane_lock: PlaneLock = False,
+    lean: Lean = None,
     settings: Set = None,
 ) -> None:
     """Let an arch go and record its motion."""
-    asked = question(scene, alpha, mu, voussoirs, weight, tilt)
+    asked = question(scene, alpha, mu, voussoirs, weight, lean)
     arch = arch_of(asked, eta)
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require_place(out)
@@ -182,8 +178,7 @@ def simulate(
             mu=asked.mu,
             method=method,
             duration=duration,
-            tilt=asked.tilt,
-            plane_lock=plane_lock,
+            lean=asked.lean,
             settings=settings_of(settings),
             progress=report,
         )

@@ -96,13 +96,13 @@ def recordings(
     with named_options(), progress() as report:
         arch = asked.arch(_ratio(asked) if given.eta is None else given.eta)
         # Of those in the plane, only direct lets blocks fall on the ground.
-        named = method or (SPATIAL if asked.tilt else "direct")
+        named = method or (SPATIAL if asked.lean else "direct")
         run = simulate(
             arch,
             mu=asked.mu,
             method=named,
             duration=FALL,
-            tilt=asked.tilt,
+            lean=asked.lean,
             progress=report,
         )
     return [run, *second]

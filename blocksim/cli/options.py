@@ -29,12 +29,9 @@ WeightOption = Annotated[
     str | None, typer.Option(help="Where weight acts: centreline (if left out) or sector.")
 ]
 MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
-Tilt = Annotated[
+Lean = Annotated[
     float | None,
     typer.Option(help="Angle by which gravity leans out of the plane, in degrees."),
-]
-PlaneLock = Annotated[
-    bool, typer.Option("--plane-lock", help="Keep voussoirs in the plane by large inertias.")
 ]
 Set = Annotated[
     list[str] | None,
@@ -63,7 +60,7 @@ NO_SCENARIO = Scenario(
     radius=1.0,
     depth=1.0,
     specific_weight=20_000.0,
-    tilt=0.0,
+    lean=0.0,
     expected_modes=(),
     expected_eta=None,
     expected_verdict=None,
@@ -78,15 +75,15 @@ def question(
     mu: float | None,
     voussoirs: int | None,
     weight: str | None,
-    tilt: float | None = None,
+    lean: float | None = None,
 ) -> Scenario:
     """Merge a scenario, where there is one, with the options that override it."""
     if alpha is not None:
         ok = is_number(alpha, 0, math.nextafter(180, 0))
         require(ok, "--alpha", alpha, "above 0 and below 180 deg")
-    if tilt is not None:
-        ok = is_number(tilt, -90, math.nextafter(90, 0))
-        require(ok, "--tilt", tilt, "above -90 and below 90 deg")
+    if lean is not None:
+        ok = is_number(lean, -90, math.nextafter(90, 0))
+        require(ok, "--lean", lean, "above -90 and below 90 deg")
     if scene is None:
         require(alpha is not None, "--alpha", MISSING, "given where no scenario is")
         require(mu is not None, "--mu", MISSING, "given where no scenario is")
@@ -96,7 +93,7 @@ def question(
         "mu": mu,
         "voussoirs": voussoirs,
         "weight": weight,
-        "tilt": None if tilt is None else math.radians(tilt),
+        "lean": None if lean is None else math.radians(lean),
     }
     return replace(asked, **{key: value for key, value in changes.items() if value is not None})
 
@@ -124,7 +121,7 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
     return settings
 
 
-OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "plane_lock", "reduce"}
+OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "reduce"}
 """Fields that are options, too."""
 
 

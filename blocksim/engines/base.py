@@ -48,12 +48,10 @@ class Settings:
         Worst residual of the contacts at which an answer still counts.
     penetration : float
         Deepest overlap at which an answer still counts [size].
-    tilt : float
+    lean : float
         Angle by which gravity leans out of the plane [rad].
-    plane_lock : bool
-        Keep blocks in the plane by large inertias out of it.
 
-    Planar engines know neither tilt nor plane lock; `ladder.choose` sees to that.
+    Planar engines know no lean; `ladder.choose` sees to that.
     """
 
     step: float
@@ -65,8 +63,7 @@ class Settings:
     noise: float = 1e-7
     residual: float = math.inf
     penetration: float = math.inf
-    tilt: float = 0.0
-    plane_lock: bool = False
+    lean: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -71,8 +71,6 @@ BREAKING = 0.1
 """Distance at which contact points count as one, in units of the shortest joint."""
 MOST_BREAKING = 0.02
 """Bullet's own such distance, in units of a block's size."""
-LOCK = 1e6
-"""Factor on inertias out of the plane where blocks are locked in it."""
 STEP = 0.1
 SHORT, SHORTEST = 0.1, 1e-3
 """Length of a joint below which errors shrink more slowly, and shortest measured [size]."""
@@ -181,7 +179,7 @@ class _Bodies:
                     )
         bullet.stepSimulation(physicsClientId=self._client)
         bullet.setGravity(
-            *frame.vector(0.0, -math.cos(settings.tilt), math.sin(settings.tilt)),
+            *frame.vector(0.0, -math.cos(settings.lean), math.sin(settings.lean)),
             physicsClientId=self._client,
         )
 
@@ -206,12 +204,11 @@ class _Bodies:
         )
         mass, _, inertia, _, *across = self._assembly.spatial_masses[index].tolist()
         body = self._body(mass, shape, self._places[index])
-        lock = LOCK if self._settings.plane_lock else 1.0
         bullet.changeDynamics(
             body,
             -1,
             mass=mass,
-            localInertiaDiagonal=[lock * across[0], lock * across[1], inertia],
+            localInertiaDiagonal=[*across, inertia],
             physicsClientId=self._client,
         )
         return body

@@ -242,9 +242,9 @@ def _round_length(length: float) -> float:
 def _load(stage: Stage) -> str:
     """Say what the arch is up against: its own weight, or gravity that leans."""
     recording = stage.recording
-    tilt = math.degrees(recording.settings.tilt)
-    if tilt:
-        return f"gravity leans {tilt:.3g}° out of the plane"
+    lean = math.degrees(recording.settings.lean)
+    if lean:
+        return f"gravity leans {lean:.3g}° out of the plane"
     arch = recording.arch
     least = limit.least_thickness(
         arch.half_angle, recording.mu, arch.voussoirs, arch.weight

@@ -122,7 +122,7 @@ class Stage:
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
         """Line of thrust of the arch at rest, by limit analysis, in pieces (k, 2)."""
-        if self.recording.settings.tilt:
+        if self.recording.settings.lean:
             return ()
         line, _ = lines_of(picture_of_arch(self.recording.arch, self.recording.mu))
         drawn = np.isfinite(line).all(axis=1)
@@ -210,7 +210,7 @@ class Stage:
 
     def _joints(self, poses: Array) -> tuple[JointState, ...]:
         # Joint states are those of motion in the plane.
-        if self.recording.settings.tilt:
+        if self.recording.settings.lean:
             return (JointState.CLOSED,) * len(self.assembly.joints)
         return tuple(joint.state for joint in classify(self.assembly, poses, least=SEEN))
 

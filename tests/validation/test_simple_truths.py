@@ -56,7 +56,7 @@ def settles(
     engine: str,
     assembly: Assembly,
     mu: float,
-    tilt: float = 0.0,
+    lean: float = 0.0,
     *,
     patience: int = 1,
     moving: bool = True,
@@ -67,7 +67,7 @@ def settles(
     """
     library = get_engine(engine)
     chosen = library.settings(assembly)
-    settings = replace(chosen, tilt=tilt, hold_sweeps=chosen.hold_sweeps * patience)
+    settings = replace(chosen, lean=lean, hold_sweeps=chosen.hold_sweeps * patience)
     world = library.build(assembly, mu, settings)
     held = onset(world, assembly, mu, settings)
     if held.verdict is Verdict.UNDECIDED or not moving:
@@ -339,25 +339,25 @@ def test_a_leaning_stack_of_twenty_tips_as_a_whole(engine: str, share: float) ->
 
 @pytest.mark.parametrize("degrees", SLOPES)
 def test_a_block_slides_out_of_the_plane(spatial: str, degrees: float) -> None:
-    """Gravity leans out of the plane: it slides if and only if tan(tilt) > mu."""
-    tilt = math.radians(degrees)
+    """Gravity leans out of the plane: it slides if and only if tan(lean) > mu."""
+    lean = math.radians(degrees)
     block = stack(0.0, 1.0, 0.3)
-    holds_both_sides(lambda share: settles(spatial, block, math.tan(tilt) / share, tilt))
+    holds_both_sides(lambda share: settles(spatial, block, math.tan(lean) / share, lean))
 
 
 @pytest.mark.parametrize(("depth", "height", "count"), [(0.5, 1.0, 1), (1.0, 0.6, 5)])
 def test_a_tower_tips_out_of_the_plane(
     spatial: str, depth: float, height: float, count: int
 ) -> None:
-    """It tips if and only if tan(tilt) > depth/height."""
+    """It tips if and only if tan(lean) > depth/height."""
     tower = stack(0.0, 1.0, height, count, depth)
     least = depth / (height * count)
     holds_both_sides(lambda share: settles(spatial, tower, ENOUGH, math.atan(least * share)))
 
 
-def across(slope: float, tilt: float) -> tuple[float, float]:
+def across(slope: float, lean: float) -> tuple[float, float]:
     """Weight along a slope and out of the plane, as shares of what presses on the slope."""
-    return math.tan(slope), math.tan(tilt) / math.cos(slope)
+    return math.tan(slope), math.tan(lean) / math.cos(slope)
 
 
 @pytest.mark.parametrize("degrees", [(20.0, 20.0), (30.0, 15.0), (10.0, 30.0)])
@@ -368,10 +368,10 @@ def test_a_block_slides_diagonally(spatial: str, degrees: tuple[float, float]) -
     stand with mu up to 27 % less: on a support Bullet takes the first direction along the
     pull of the weight. Level joints have the box: `test_pybullet.py`.
     """
-    slope, tilt = (math.radians(each) for each in degrees)
-    critical = math.hypot(*across(slope, tilt))
+    slope, lean = (math.radians(each) for each in degrees)
+    critical = math.hypot(*across(slope, lean))
     block = stack(slope, 1.0, 0.3)
-    holds_both_sides(lambda share: settles(spatial, block, critical / share, tilt))
+    holds_both_sides(lambda share: settles(spatial, block, critical / share, lean))
 
 
 @pytest.mark.parametrize(("width", "depth"), [(1.0, 2.0), (2.0, 1.0)])
@@ -379,11 +379,11 @@ def test_a_block_on_a_slope_tips_over_the_nearer_edge(
     spatial: str, width: float, depth: float
 ) -> None:
     """Both at once: it stands while the weight meets the base, width by depth."""
-    slope, tilt = math.radians(20.0), math.radians(20.0)
-    along, out = across(slope, tilt)
+    slope, lean = math.radians(20.0), math.radians(20.0)
+    along, out = across(slope, lean)
     height = min(width / along, depth / out)
 
     def verdict(share: float) -> Verdict:
-        return settles(spatial, stack(slope, width, height * share, 1, depth), ENOUGH, tilt)
+        return settles(spatial, stack(slope, width, height * share, 1, depth), ENOUGH, lean)
 
     holds_both_sides(verdict)
