@@ -29,13 +29,13 @@ import numpy as np
 
 from analysis.command import run
 from blocksim import Arch, bracket, check
+from blocksim.arch.limit import least_thickness
+from blocksim.arch.limit.bulk import which_stand
+from blocksim.arch.theory.arrays import least_thicknesses
+from blocksim.common.files import make_folder, write_whole
 from blocksim.engines import ENGINES, remedy
-from blocksim.files import make_folder, write_whole
-from blocksim.limit import least_thickness
-from blocksim.limit.bulk import which_stand
+from blocksim.evidence.trial import hold, simulate
 from blocksim.report.tables import processor
-from blocksim.theory.arrays import least_thicknesses
-from blocksim.trial import hold, simulate
 from blocksim.view.film import Film
 
 TIMINGS = Path(__file__).parent / "timings"

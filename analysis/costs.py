@@ -22,9 +22,9 @@ from typing import TypeVar
 
 from analysis.command import run
 from blocksim import Arch, bracket, check
+from blocksim.arch.limit import least_thickness
+from blocksim.ask.methods import STATIC
 from blocksim.engines import ENGINES, remedy
-from blocksim.ladder import STATIC
-from blocksim.limit import least_thickness
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (155, 3.0), (65, 0.6))
 """Half-angle [deg] and friction."""

@@ -29,8 +29,8 @@ from matplotlib.figure import Figure
 from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
-from blocksim.processes import crew
-from blocksim.trial import trial
+from blocksim.common.processes import crew
+from blocksim.evidence.trial import trial
 from blocksim.view.style import FONT, QUIET
 
 SEED = 2024

@@ -30,9 +30,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from analysis.command import run
-from blocksim import limit
-from blocksim.arch import Arch
-from blocksim.assembly import Array, displacement
+from blocksim.arch import limit
+from blocksim.arch.circular import Arch
+from blocksim.blocks.assembly import Array, displacement
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.view.style import QUIET
 

@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from blocksim import Arch, Mode
-from blocksim.arch import Weight
-from blocksim.limit import least_thickness
-from blocksim.theory.map import divide_friction
+from blocksim.arch.circular import Weight
+from blocksim.arch.limit import least_thickness
+from blocksim.arch.theory.map import divide_friction
 from blocksim.view.style import MODES
 
 

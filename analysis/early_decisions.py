@@ -29,7 +29,7 @@ from analysis.command import run
 from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
 from blocksim import Verdict
-from blocksim.trial import hold
+from blocksim.evidence.trial import hold
 
 SEED = 2026
 ARCHES = 48

@@ -30,7 +30,7 @@ from analysis.command import run
 from analysis.drawing import Draw, draws
 from analysis.keeping import Row, answers
 from blocksim import Verdict
-from blocksim.trial import conclude, hold
+from blocksim.evidence.trial import conclude, hold
 from blocksim.view.style import FONT, MISS, QUIET, VERDICTS
 
 SEED = 2025

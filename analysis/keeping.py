@@ -9,7 +9,7 @@ from concurrent.futures import as_completed
 from pathlib import Path
 from typing import TypeVar
 
-from blocksim.processes import crew
+from blocksim.common.processes import crew
 
 Case = TypeVar("Case")
 Row = dict[str, float | int | str | bool | None]

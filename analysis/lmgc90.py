@@ -38,13 +38,13 @@ from pathlib import Path
 import numpy as np
 
 from analysis.command import run
-from blocksim.arch import GRAVITY, Arch
-from blocksim.assembly import SUPPORT, Array, Block
+from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.ask.search import Answer, Search
+from blocksim.blocks.assembly import SUPPORT, Array, Block
+from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
 from blocksim.report.chart import write_points
-from blocksim.search import Answer, Search
-from blocksim.verdict import Verdict
-from blocksim.workprec import LONG, REPEATS, START, Case, Point, cases
+from blocksim.studies.chart import LONG, REPEATS, START, Case, Point, cases
 
 REMEDY = "LMGC90 is missing: pip install compas_lmgc90"
 RADIUS, DEPTH = 10.0, 5.0

@@ -21,15 +21,15 @@ from functools import cache
 
 import numpy as np
 
-from blocksim.assembly import Array
-from blocksim.limit import least_thickness
-from blocksim.limit.bulk import which_stand
-from blocksim.modes import Mode
-from blocksim.search import ETA_MAX
-from blocksim.sweep import Case
-from blocksim.theory.arrays import least_thicknesses
-from blocksim.theory.map import divide_friction
-from blocksim.theory.regions import at_inner_sliding
+from blocksim.arch.limit import least_thickness
+from blocksim.arch.limit.bulk import which_stand
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory.arrays import least_thicknesses
+from blocksim.arch.theory.map import divide_friction
+from blocksim.arch.theory.regions import at_inner_sliding
+from blocksim.ask.search import ETA_MAX
+from blocksim.blocks.assembly import Array
+from blocksim.many import Case
 
 SEED = 2024
 TOL = {"pymunk": 1e-3, "direct": 1e-8, "pybullet": 4e-3}

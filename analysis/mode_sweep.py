@@ -43,12 +43,12 @@ from matplotlib.lines import Line2D
 
 from analysis.command import run
 from analysis.mode_draws import MOST_FRICTION, Drawn, Draws, divide, draw
-from blocksim.limit import least_thickness
-from blocksim.modes import Mode
-from blocksim.sweep import read_rows, sweep
-from blocksim.sweep.answers import version_of
-from blocksim.theory.regions import first_sliding
-from blocksim.verdict import Verdict
+from blocksim.arch.limit import least_thickness
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory.regions import first_sliding
+from blocksim.evidence.verdict import Verdict
+from blocksim.many import read_rows, sweep
+from blocksim.many.answers import version_of
 from blocksim.view.mapfigure import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 

@@ -34,10 +34,10 @@ from matplotlib.figure import Figure
 
 from analysis.command import run
 from blocksim import Arch
-from blocksim.assembly import Array, displacement
+from blocksim.arch.limit import least_thickness
+from blocksim.blocks.assembly import Array, displacement
 from blocksim.engines import bullet
-from blocksim.limit import least_thickness
-from blocksim.setup import Setup
+from blocksim.evidence.setup import Setup
 from blocksim.view.style import FONT
 
 ARCHES = {"semicircle": (90.0, 0.35, 27), "thin": (45.0, 0.9, 13)}

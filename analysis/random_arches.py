@@ -34,7 +34,7 @@ from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from analysis.keeping import Row, answers
 from blocksim import bracket
-from blocksim.limit import least_thickness
+from blocksim.arch.limit import least_thickness
 from blocksim.view.style import FONT, QUIET
 
 SEED = 2024

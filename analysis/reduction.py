@@ -1,8 +1,8 @@
 """Half an arch in a few blocks against all its voussoirs: the same answers, and the time saved.
 
-Question: what does it save to simulate no more blocks than it takes (`blocksim.reduction`),
-and does it ever change an answer? Arches of four modes, both weights, of more and more
-voussoirs, are bracketed by each engine with and without, ends let go. Where all voussoirs
+Question: what does it save to simulate no more blocks than it takes
+(`blocksim.arch.reduction`), and does it ever change an answer? Arches of four modes, both
+weights, of more and more voussoirs, are bracketed by each engine with and without, ends let go. Where all voussoirs
 would take minutes an arch (`LARGEST`) only the reduced arch is asked, and held to limit
 analysis. Random arches are put to `direct` on either side of their least thickness, by onset
 test: verdicts and accelerations must be those of all voussoirs.
@@ -30,9 +30,9 @@ from matplotlib.lines import Line2D
 from analysis.command import run
 from analysis.drawing import Draw, draws
 from blocksim import Arch, Bracket, Mode, bracket
-from blocksim.arch import Weight
-from blocksim.onset import PROBE, Onset
-from blocksim.trial import Trial, trial
+from blocksim.arch.circular import Weight
+from blocksim.evidence.onset import PROBE, Onset
+from blocksim.evidence.trial import Trial, trial
 from blocksim.view.style import FONT, INK, METHODS
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (154, 2.6))

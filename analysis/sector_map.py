@@ -19,11 +19,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.command import run
-from blocksim.arch import WEIGHTS, Weight, centroid_factor
-from blocksim.assembly import Array
-from blocksim.limit.statics import Bound, thrust_bounds
-from blocksim.theory import landmarks, least_thickness, least_thicknesses, regions
-from blocksim.theory.map import special_angles
+from blocksim.arch.circular import WEIGHTS, Weight, centroid_factor
+from blocksim.arch.limit.statics import Bound, thrust_bounds
+from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses, regions
+from blocksim.arch.theory.map import special_angles
+from blocksim.blocks.assembly import Array
 from blocksim.view.mapfigure import save_figure
 from blocksim.view.style import FONT, INK
 

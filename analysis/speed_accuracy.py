@@ -24,11 +24,11 @@ from pathlib import Path
 
 from analysis.command import run
 from blocksim import Arch, limit
-from blocksim.knobs import STEP, SWEEPS, TOL, let_go
+from blocksim.ask.search import Answer, Search
+from blocksim.evidence.setup import Setup
 from blocksim.report.chart import write_chart
-from blocksim.search import Answer, Search
-from blocksim.setup import Setup
-from blocksim.workprec import START, Case, cases, gain, measure
+from blocksim.studies.chart import START, Case, cases, gain, measure
+from blocksim.studies.knobs import STEP, SWEEPS, TOL, let_go
 
 SETTLED, LATE = 0.05, 10.0
 """How far a lenient judge lets arches settle [r], and how long that may take [sqrt(r/g)]."""

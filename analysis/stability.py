@@ -40,17 +40,17 @@ from analysis.command import run
 from analysis.stability_figure import draw
 from analysis.stability_grids import GRIDS, QUICK, Case, Grid
 from blocksim import Arch, motion
-from blocksim.assembly import Assembly, displacement
+from blocksim.arch.limit import least_thickness
+from blocksim.blocks.assembly import Assembly, displacement
+from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES, get_engine, remedy
 from blocksim.engines.base import Engine
-from blocksim.files import write_whole
-from blocksim.limit import least_thickness
-from blocksim.motion import moving_run
-from blocksim.onset import onset
-from blocksim.recording import Recording
-from blocksim.setup import Setup
-from blocksim.trial import trial
-from blocksim.verdict import Verdict
+from blocksim.evidence.motion import moving_run
+from blocksim.evidence.onset import onset
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.trial import trial
+from blocksim.evidence.verdict import Verdict
 
 RATIOS = (0.98, 0.995, 1.005, 1.02)
 COLLAPSING, WATCHED = 0.9, 1.5
@@ -258,7 +258,7 @@ def away(engine: str, grid: Grid) -> Iterator[Row]:
                 world = library.build(assembly, setup.mu, setup.settings)
                 off = float(displacement(world.hold(10_000) - start, setup.assembly))
                 world = library.build(assembly, setup.mu, setup.settings)
-                with patch("blocksim.onset.FARTHEST", math.inf):
+                with patch("blocksim.evidence.onset.FARTHEST", math.inf):
                     verdict = onset(world, assembly, setup.mu, setup.settings).verdict
                 at = {"distance": distance}
                 yield Row("away", engine, case, ratio, at, judged(verdict, ratio), off)

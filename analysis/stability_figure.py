@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from blocksim.onset import FARTHEST
-from blocksim.setup import FEWER, LONGER
-from blocksim.verdict import Verdict
+from blocksim.evidence.onset import FARTHEST
+from blocksim.evidence.setup import FEWER, LONGER
+from blocksim.evidence.verdict import Verdict
 from blocksim.view.style import FONT, INK, METHODS, MISS, QUIET, UNNAMED, VERDICTS
 
 if TYPE_CHECKING:

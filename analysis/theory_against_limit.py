@@ -19,10 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.command import run
-from blocksim.arch import Weight
-from blocksim.assembly import Array
-from blocksim.limit.bulk import factors, joints_of, least_thickness_of_joints, thrust_intervals
-from blocksim.theory import CriticalArrays, least_thicknesses
+from blocksim.arch.circular import Weight
+from blocksim.arch.limit.bulk import (
+    factors,
+    joints_of,
+    least_thickness_of_joints,
+    thrust_intervals,
+)
+from blocksim.arch.theory import CriticalArrays, least_thicknesses
+from blocksim.blocks.assembly import Array
 
 SEED = 1729
 POINTS, QUICK_POINTS = 100_000, 1_000

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from blocksim.arch import Arch as Arch
-from blocksim.assembly import Assembly as Assembly
-from blocksim.assembly import Block as Block
-from blocksim.assembly import Joint as Joint
-from blocksim.bracket import Bracket as Bracket
-from blocksim.bracket import bracket as bracket
-from blocksim.check import Check as Check
-from blocksim.check import check as check
-from blocksim.errors import BlocksimError as BlocksimError
-from blocksim.errors import InputError as InputError
-from blocksim.errors import MissingPart as MissingPart
-from blocksim.joints import JointState as JointState
-from blocksim.modes import Mode as Mode
-from blocksim.recording import Recording as Recording
-from blocksim.recording import load_recording as load_recording
-from blocksim.trial import simulate as simulate
-from blocksim.verdict import Verdict as Verdict
+from blocksim.arch.bracket import Bracket as Bracket
+from blocksim.arch.bracket import bracket as bracket
+from blocksim.arch.check import Check as Check
+from blocksim.arch.check import check as check
+from blocksim.arch.circular import Arch as Arch
+from blocksim.arch.modes import Mode as Mode
+from blocksim.blocks.assembly import Assembly as Assembly
+from blocksim.blocks.assembly import Block as Block
+from blocksim.blocks.assembly import Joint as Joint
+from blocksim.blocks.joints import JointState as JointState
+from blocksim.common.errors import BlocksimError as BlocksimError
+from blocksim.common.errors import InputError as InputError
+from blocksim.common.errors import MissingPart as MissingPart
+from blocksim.evidence.recording import Recording as Recording
+from blocksim.evidence.recording import load_recording as load_recording
+from blocksim.evidence.trial import simulate as simulate
+from blocksim.evidence.verdict import Verdict as Verdict
 
 __version__ = "0.1.0"

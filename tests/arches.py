@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from blocksim import limit
-from blocksim.arch import Arch, Weight
-from blocksim.assembly import SUPPORT, Array, Assembly, Block, Joint
-from blocksim.bracket import Bracket, bracket
+from blocksim.arch import limit
+from blocksim.arch.bracket import Bracket, bracket
+from blocksim.arch.circular import Arch, Weight
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.engines.base import Engine
-from blocksim.onset import onset
-from blocksim.verdict import Verdict
+from blocksim.evidence.onset import onset
+from blocksim.evidence.verdict import Verdict
 
 
 def arch_at(

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import settings
 from sweeps import SIMULATED, Rows, design_of, rows_of
 
-from blocksim.sweep import sweep
+from blocksim.many import sweep
 
 # The same examples in every run, time not asserted.
 settings.register_profile("blocksim", deadline=None, derandomize=True, database=None)

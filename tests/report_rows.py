@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from blocksim.arch import Arch
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
 from blocksim.engines.base import Settings
-from blocksim.modes import Mode
-from blocksim.recording import Recording
-from blocksim.validate import Row
-from blocksim.verdict import Verdict
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.verdict import Verdict
+from blocksim.studies.validate import Row
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from blocksim.sweep import Design, load_design, read_rows
+from blocksim.many import Design, load_design, read_rows
 
 GRID = """
 alpha_deg = { low = 60, high = 150, steps = 4 }

@@ -14,7 +14,7 @@ import pytest
 
 from blocksim import Arch, limit, theory
 from blocksim.report.chart import read_points
-from blocksim.workprec import cases
+from blocksim.studies.chart import cases
 
 STUDIES = Path(__file__).parent.parent / "analysis"
 

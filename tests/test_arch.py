@@ -17,9 +17,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import dblquad
 
-from blocksim.arch import GRAVITY, Arch
-from blocksim.assembly import SUPPORT, Assembly, Block, Joint
-from blocksim.errors import InputError
+from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.common.errors import InputError
 
 arches = st.builds(
     Arch,

@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from blocksim.arch import Arch
-from blocksim.limit.collapse import collapse_of_mode
-from blocksim.modes import Mode
-from blocksim.theory import landmarks, least_thickness
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit.collapse import collapse_of_mode
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import landmarks, least_thickness
 from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
 from blocksim.view.mapfigure import save_figure
 

@@ -13,14 +13,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from blocksim import limit, theory
-from blocksim.arch import Arch
-from blocksim.bracket import bracket
-from blocksim.errors import InputError
-from blocksim.modes import Mode
-from blocksim.search import ETA_MAX, Answer, Search
-from blocksim.trial import Held, hold
-from blocksim.verdict import Verdict
+from blocksim.arch import limit, theory
+from blocksim.arch.bracket import bracket
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.ask.search import ETA_MAX, Answer, Search
+from blocksim.common.errors import InputError
+from blocksim.evidence.trial import Held, hold
+from blocksim.evidence.verdict import Verdict
 
 tolerances = st.floats(1e-4, 0.3)
 thresholds = st.floats(1e-3, 1.99)
@@ -178,7 +178,7 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
         held.append(arch.eta)
         return hold(arch, **asked)
 
-    monkeypatch.setattr(sys.modules["blocksim.bracket"], "hold", counted)
+    monkeypatch.setattr(sys.modules["blocksim.arch.bracket"], "hold", counted)
     asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}
     found = bracket(**asked, confirm=confirm)
     assert found.runs == len(held) == len(set(held))

@@ -8,14 +8,14 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from blocksim import limit, theory
-from blocksim.arch import Arch
-from blocksim.check import check
-from blocksim.errors import InputError
-from blocksim.joints import JointState
-from blocksim.ladder import choose, chosen_words
-from blocksim.modes import Mode
-from blocksim.verdict import Verdict
+from blocksim.arch import limit, theory
+from blocksim.arch.check import check
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.ask.methods import choose, chosen_words
+from blocksim.blocks.joints import JointState
+from blocksim.common.errors import InputError
+from blocksim.evidence.verdict import Verdict
 
 
 @given(

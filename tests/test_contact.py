@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from blocksim.contact.banded import Bands
-from blocksim.contact.law import cut
-from blocksim.contact.path import Balance, come_together
-from blocksim.contact.solver import ContactProblem
+from blocksim.engines.contact.banded import Bands
+from blocksim.engines.contact.law import cut
+from blocksim.engines.contact.path import Balance, come_together
+from blocksim.engines.contact.solver import ContactProblem
 
 
 def chain(seed, blocks):

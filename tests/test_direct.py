@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from arches import arch_at
 
+from blocksim.ask.search import Answer, Search
+from blocksim.blocks.joints import joint_motion
 from blocksim.engines.base import trusted
 from blocksim.engines.direct import Blocks, Direct
-from blocksim.joints import joint_motion
-from blocksim.onset import onset
-from blocksim.recording import load_recording
-from blocksim.search import Answer, Search
-from blocksim.setup import Setup
-from blocksim.trial import simulate, trial
-from blocksim.verdict import Verdict
+from blocksim.evidence.onset import onset
+from blocksim.evidence.recording import load_recording
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.trial import simulate, trial
+from blocksim.evidence.verdict import Verdict
 
 CASES = [
     (90, 0.9, 27, "centreline"),

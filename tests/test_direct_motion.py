@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from arches import arch_at
 
-from blocksim.arch import Arch
+from blocksim.arch.circular import Arch
 from blocksim.engines.direct import Blocks, Direct
-from blocksim.ground import ground_level, piers
-from blocksim.motion import moving_run
-from blocksim.setup import Setup
-from blocksim.trial import simulate
-from blocksim.verdict import Verdict
+from blocksim.engines.ground import ground_level, piers
+from blocksim.evidence.motion import moving_run
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.trial import simulate
+from blocksim.evidence.verdict import Verdict
 
 
 def world_of(assembly, mu, step):

@@ -12,11 +12,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from blocksim import Arch, limit
-from blocksim.arch import Weight
-from blocksim.assembly import PLANAR, Array, Assembly
+from blocksim.arch.circular import Weight
+from blocksim.arch.reduction import Reduction
+from blocksim.blocks.assembly import PLANAR, Array, Assembly
 from blocksim.engines import get_engine
 from blocksim.limit import equilibrium
-from blocksim.reduction import Reduction
 
 angles = st.floats(30.0, 155.0)
 frictions = st.one_of(st.floats(0.2, 4.0), st.just(1e3))

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from running import blocksim
 
-from blocksim.errors import InputError
-from blocksim.modes import Mode
-from blocksim.theory import least_thicknesses
-from blocksim.theory.map import at_points
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import least_thicknesses
+from blocksim.arch.theory.map import at_points
+from blocksim.common.errors import InputError
 from blocksim.view.explorer import explorer_page, read_results
 from blocksim.view.mapshapes import LARGEST_MU, iso_line, map_shapes
 from blocksim.view.style import MODES

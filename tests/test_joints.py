@@ -13,18 +13,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from blocksim.arch import Arch, crown_width
-from blocksim.assembly import Assembly
-from blocksim.joints import (
+from blocksim.arch.circular import Arch, crown_width
+from blocksim.arch.modes import ActiveJoint, Mode, name_mode
+from blocksim.arch.observed import closed_joints, observed_mode
+from blocksim.blocks.assembly import Assembly
+from blocksim.blocks.joints import (
     JointState,
     ObservedJoint,
     classify,
-    closed_joints,
     joint_motion,
-    observed_mode,
     overlap_share,
 )
-from blocksim.modes import ActiveJoint, Mode, name_mode
 
 ARCH = Arch(half_angle=1.4, eta=0.2, voussoirs=8, radius=3.0)
 ASSEMBLY = ARCH.assembly()

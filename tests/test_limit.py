@@ -18,11 +18,11 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq, linprog
 from scipy.sparse import coo_matrix
 
-from blocksim import limit, theory
-from blocksim.arch import Arch
-from blocksim.assembly import SUPPORT, Assembly
-from blocksim.errors import InputError
-from blocksim.modes import Mode
+from blocksim.arch import limit, theory
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.blocks.assembly import SUPPORT, Assembly
+from blocksim.common.errors import InputError
 
 degrees = st.floats(10, 158)
 friction = st.one_of(st.floats(0.1, 10.0), st.just(math.inf))

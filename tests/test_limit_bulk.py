@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from blocksim.arch import Arch
-from blocksim.errors import InputError
-from blocksim.limit import least_thickness, stands
-from blocksim.limit.bulk import joints_of, least_thickness_of_joints, which_stand
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit import least_thickness, stands
+from blocksim.arch.limit.bulk import joints_of, least_thickness_of_joints, which_stand
+from blocksim.common.errors import InputError
 
 
 @pytest.mark.parametrize("weight", ["centreline", "sector"])

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from blocksim.modes import Mode
-from blocksim.theory.arrays import least_thicknesses
-from blocksim.theory.critical import least_thickness
-from blocksim.theory.lines import (
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory.arrays import least_thicknesses
+from blocksim.arch.theory.critical import least_thickness
+from blocksim.arch.theory.lines import (
     critical_moment,
     friction_line,
     friction_line_slope,

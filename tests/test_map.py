@@ -7,10 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from blocksim.errors import InputError
-from blocksim.modes import Mode
-from blocksim.theory import landmarks, least_thickness, least_thicknesses, regions
-from blocksim.theory.map import (
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses, regions
+from blocksim.arch.theory.map import (
     at_points,
     divide_friction,
     half_angle_at,
@@ -18,6 +17,7 @@ from blocksim.theory.map import (
     region,
     special_angles,
 )
+from blocksim.common.errors import InputError
 
 WEIGHTS = ("centreline", "sector")
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from blocksim.arch import Arch
-from blocksim.errors import InputError
-from blocksim.limit import least_thickness
-from blocksim.limit.mechanism import least_thickness_by_program, mechanism
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit import least_thickness
+from blocksim.arch.limit.mechanism import least_thickness_by_program, mechanism
+from blocksim.common.errors import InputError
 
 ARCHES = [
     (math.pi / 2, 0.9, 27, "rrr"),

@@ -13,17 +13,17 @@ import numpy as np
 import pytest
 from arches import arch_at, box, held_in, on_a_slope
 
-from blocksim.arch import Arch
-from blocksim.assembly import Array, Assembly
-from blocksim.bracket import bracket
-from blocksim.doctor import examine
+from blocksim.arch.bracket import bracket
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.ask.doctor import examine
+from blocksim.blocks.assembly import Array, Assembly
+from blocksim.common.errors import MissingPart
 from blocksim.engines import get_engine
-from blocksim.errors import MissingPart
-from blocksim.modes import Mode
-from blocksim.onset import onset
-from blocksim.trial import hold, simulate, trial
-from blocksim.validate import installed
-from blocksim.verdict import Verdict
+from blocksim.evidence.onset import onset
+from blocksim.evidence.trial import hold, simulate, trial
+from blocksim.evidence.verdict import Verdict
+from blocksim.studies.validate import installed
 
 pytest.importorskip("mujoco", exc_type=ImportError)
 

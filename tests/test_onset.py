@@ -13,11 +13,11 @@ import pytest
 from arches import arch_at, bracket_at
 
 from blocksim import Arch, limit
-from blocksim.arch import Weight
+from blocksim.arch.circular import Weight
+from blocksim.arch.theory.map import divide_friction
 from blocksim.engines import get_engine
-from blocksim.theory.map import divide_friction
-from blocksim.trial import hold, trial
-from blocksim.verdict import Verdict
+from blocksim.evidence.trial import hold, trial
+from blocksim.evidence.verdict import Verdict
 
 TWO_ANSWERS = [
     (125.023, 0.8594, 10, "centreline"),

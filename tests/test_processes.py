@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from running import alive, children, started, until
 
-from blocksim.processes import crew
+from blocksim.common.processes import crew
 
 
 def test_work_that_is_broken_off_ends_at_once() -> None:

@@ -14,16 +14,16 @@ from pathlib import Path
 import pytest
 from arches import arch_at, held_in, mirrored, shuffled
 
-from blocksim import limit
-from blocksim.arch import Arch
-from blocksim.assembly import SPATIAL, Array, Assembly
-from blocksim.check import check
+from blocksim.arch import limit
+from blocksim.arch.check import check
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.blocks.assembly import SPATIAL, Array, Assembly
+from blocksim.common.errors import InputError
 from blocksim.engines.base import Engine
-from blocksim.errors import InputError
-from blocksim.modes import Mode
-from blocksim.recording import load_recording
-from blocksim.trial import hold, simulate, trial
-from blocksim.verdict import Verdict
+from blocksim.evidence.recording import load_recording
+from blocksim.evidence.trial import hold, simulate, trial
+from blocksim.evidence.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 

@@ -18,20 +18,20 @@ from arches import arch_at, box, bracket_at, held_in, mirrored, on_a_slope, shuf
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from blocksim import limit
-from blocksim.arch import Arch
-from blocksim.assembly import Array, Assembly
+from blocksim.arch import limit
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import least_thickness
+from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.joints import joint_motion
+from blocksim.common.errors import InputError, MissingPart
 from blocksim.engines import get_engine
 from blocksim.engines.base import Settings
-from blocksim.errors import InputError, MissingPart
-from blocksim.joints import joint_motion
-from blocksim.modes import Mode
-from blocksim.motion import SOONEST, moving_run
-from blocksim.onset import onset
-from blocksim.setup import Setup
-from blocksim.theory import least_thickness
-from blocksim.trial import simulate, trial
-from blocksim.verdict import Verdict
+from blocksim.evidence.motion import SOONEST, moving_run
+from blocksim.evidence.onset import onset
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.trial import simulate, trial
+from blocksim.evidence.verdict import Verdict
 
 ARCHES = [
     (90, 0.7, 27, "centreline", Mode.RRR),
@@ -149,8 +149,8 @@ def test_the_weight_drives_the_mechanism(
 
 
 HASH = """
-from blocksim.arch import Arch
-from blocksim.trial import simulate
+from blocksim.arch.circular import Arch
+from blocksim.evidence.trial import simulate
 arch = Arch(half_angle=1.5707963267948966, eta=0.1, voussoirs=13)
 print(simulate(arch, mu=0.6, method="pymunk", duration=2.0).state_hash)
 """

@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blocksim.arch import Arch
-from blocksim.assembly import displacement
+from blocksim.arch.circular import Arch
+from blocksim.blocks.assembly import displacement
+from blocksim.common.errors import InputError
+from blocksim.common.files import make_folder, write_whole
 from blocksim.engines.base import Settings
-from blocksim.errors import InputError
-from blocksim.files import make_folder, write_whole
-from blocksim.recording import Recording, load_recording
+from blocksim.evidence.recording import Recording, load_recording
 
 ARCH = Arch(half_angle=1.2, eta=0.15, voussoirs=5, weight="sector", radius=4.0, depth=0.5)
 
@@ -225,7 +225,7 @@ def test_small_files_do_not_fill_the_memory(
     refused(path)
     replace(recording(), poses=np.zeros((4, 5, 3))).save(path)
     load_recording(path)
-    monkeypatch.setattr("blocksim.recording.LARGEST_INSIDE", 4 * 5 * 3 * 8)
+    monkeypatch.setattr("blocksim.evidence.recording.LARGEST_INSIDE", 4 * 5 * 3 * 8)
     refused(path)
 
 
@@ -239,9 +239,9 @@ def test_header_that_is_no_table(tmp_path: Path) -> None:
 def test_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "run.npz"
     recording().save(path)
-    monkeypatch.setattr("blocksim.recording.LARGEST_FILE", path.stat().st_size - 1)
+    monkeypatch.setattr("blocksim.evidence.recording.LARGEST_FILE", path.stat().st_size - 1)
     assert "bytes" in refused(path)
-    monkeypatch.setattr("blocksim.recording.LARGEST_FILE", path.stat().st_size)
+    monkeypatch.setattr("blocksim.evidence.recording.LARGEST_FILE", path.stat().st_size)
     load_recording(path)
 
 

@@ -16,21 +16,21 @@ from arches import arch_at
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from blocksim import limit
-from blocksim.arch import Arch
-from blocksim.assembly import SUPPORT, Assembly, Block, Joint
-from blocksim.bracket import bracket
-from blocksim.check import check
+from blocksim.arch import limit
+from blocksim.arch.bracket import bracket
+from blocksim.arch.check import check
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit import weakest_joints
+from blocksim.arch.limit.statics import half_joints
+from blocksim.arch.reduction import MIRROR, Reduction
+from blocksim.ask.methods import METHODS
+from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES, get_engine
-from blocksim.errors import InputError
-from blocksim.ladder import METHODS
-from blocksim.limit import weakest_joints
-from blocksim.limit.statics import half_joints
-from blocksim.onset import onset
-from blocksim.reduction import MIRROR, Reduction
-from blocksim.setup import Setup
-from blocksim.trial import hold, trial
-from blocksim.verdict import Verdict
+from blocksim.evidence.onset import onset
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.trial import hold, trial
+from blocksim.evidence.verdict import Verdict
 
 CASES = [
     (90, 0.7, 27, "centreline"),

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blocksim import limit, theory
-from blocksim.errors import InputError
-from blocksim.modes import Mode
-from blocksim.scenario import LARGEST_FILE, load_scenario, shipped
-from blocksim.validate import scenarios
-from blocksim.verdict import Verdict
+from blocksim.arch import limit, theory
+from blocksim.arch.modes import Mode
+from blocksim.arch.scenario import LARGEST_FILE, load_scenario, shipped
+from blocksim.common.errors import InputError
+from blocksim.evidence.verdict import Verdict
+from blocksim.studies.validate import scenarios
 
 GOOD = """\
 title = "A semicircle"

@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 
 from analysis.stability import moved_away, setup_of
-from blocksim import motion
-from blocksim.assembly import Array
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import overlap_share
 from blocksim.engines.base import Quality
-from blocksim.joints import overlap_share
-from blocksim.motion import Motion, moving_run
-from blocksim.onset import FARTHEST, Onset, onset
-from blocksim.setup import Setup
-from blocksim.trial import Held, conclude
-from blocksim.verdict import Verdict
+from blocksim.evidence import motion
+from blocksim.evidence.motion import Motion, moving_run
+from blocksim.evidence.onset import FARTHEST, Onset, onset
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.trial import Held, conclude
+from blocksim.evidence.verdict import Verdict
 
 SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
 

@@ -16,11 +16,11 @@ from running import blocksim
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim import Arch, bracket, check
-from blocksim.errors import InputError, MissingPart
-from blocksim.sweep import Case, answers, read_rows, run, sweep, write_parquet
-from blocksim.sweep import table as tables
-from blocksim.sweep.answers import Answered, Asked, answer
-from blocksim.sweep.shards import identities
+from blocksim.common.errors import InputError, MissingPart
+from blocksim.many import Case, answers, read_rows, run, sweep, write_parquet
+from blocksim.many import table as tables
+from blocksim.many.answers import Answered, Asked, answer
+from blocksim.many.shards import identities
 
 DIRECT = 'alpha_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
 PYMUNK = DIRECT.replace("direct", "pymunk")

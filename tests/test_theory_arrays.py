@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from blocksim.errors import InputError
-from blocksim.modes import Mode
-from blocksim.theory import landmarks, least_thickness, least_thicknesses
-from blocksim.theory.arrays import BIT
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses
+from blocksim.arch.theory.arrays import BIT
+from blocksim.common.errors import InputError
 
 WEIGHTS = ("centreline", "sector")
 ANGLES = st.floats(1e-9, 3.14)

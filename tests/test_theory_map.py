@@ -14,12 +14,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from blocksim import limit, theory
-from blocksim.errors import InputError
-from blocksim.modes import Mode
-from blocksim.theory.critical import inner_sliding, thrust_interval
-from blocksim.theory.equations import inner_friction, shoulder_friction
-from blocksim.theory.regions import (
+from blocksim.arch import limit, theory
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory.critical import inner_sliding, thrust_interval
+from blocksim.arch.theory.equations import inner_friction, shoulder_friction
+from blocksim.arch.theory.regions import (
     at_inner_sliding,
     crown_hinge,
     divide,
@@ -27,6 +26,7 @@ from blocksim.theory.regions import (
     equal_angles,
     first_sliding,
 )
+from blocksim.common.errors import InputError
 
 angles = st.floats(math.radians(2), math.radians(178))
 frictions = st.floats(0.02, 50.0)

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from blocksim.errors import InputError
-from blocksim.modes import Mode
+from blocksim.arch.modes import Mode
+from blocksim.arch.scenario import load_scenario
+from blocksim.common.errors import InputError
+from blocksim.evidence.verdict import Verdict
 from blocksim.report.tables import write_results
-from blocksim.scenario import load_scenario
-from blocksim.validate import scenarios, validate, validate_one
-from blocksim.verdict import Verdict
+from blocksim.studies.validate import scenarios, validate, validate_one
 
 
 def test_quick_scenarios_are_spread_over_the_map() -> None:
@@ -53,7 +53,7 @@ def test_rows_agree_with_limit_analysis_and_are_written(tmp_path: Path) -> None:
 
 def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shift the exact value by 1 %: the row must say so."""
-    module = importlib.import_module("blocksim.bracket")
+    module = importlib.import_module("blocksim.arch.bracket")
     real = module.limit.least_thickness
 
     def shifted(*arguments: object) -> object:

@@ -17,13 +17,13 @@ from PIL import Image
 from running import blocksim
 from scipy.spatial.transform import Rotation
 
-from blocksim.arch import GRAVITY, Arch
-from blocksim.assembly import Array
+from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState, classify, joint_motion
+from blocksim.common.errors import InputError
 from blocksim.engines.base import Settings
-from blocksim.errors import InputError
-from blocksim.ground import DEPTH
-from blocksim.joints import JointState, classify, joint_motion
-from blocksim.recording import Recording, load_recording
+from blocksim.engines.ground import DEPTH
+from blocksim.evidence.recording import Recording, load_recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
 from blocksim.view.film import Film
 from blocksim.view.order import painting_order

@@ -12,14 +12,14 @@ import pytest
 
 from blocksim import Arch, limit, theory
 from blocksim.cli.console import chart_table
-from blocksim.errors import InputError
-from blocksim.knobs import CONTACTS, KNOBS, let_go, look
-from blocksim.motion import QUIET
+from blocksim.common.errors import InputError
+from blocksim.evidence.motion import QUIET
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.verdict import Verdict
 from blocksim.report.chart import read_points, write_chart, write_points
-from blocksim.setup import Setup
-from blocksim.verdict import Verdict
+from blocksim.studies.chart import Case, Point, front, gain, measure, on_front
+from blocksim.studies.knobs import CONTACTS, KNOBS, let_go, look
 from blocksim.view.chartfigure import chart_figures
-from blocksim.workprec import Case, Point, front, gain, measure, on_front
 
 SMALL = Case(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
 SLIDING = Case(name="sliding: 125 deg", half_angle=math.radians(125), mu=0.9, voussoirs=10)

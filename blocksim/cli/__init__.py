@@ -11,7 +11,7 @@ from typing import NoReturn
 import typer
 
 from blocksim.cli.commands import app
-from blocksim.errors import BlocksimError
+from blocksim.common.errors import BlocksimError
 
 WRONG_INPUT = 2
 CRASHED = 70

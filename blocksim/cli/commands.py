@@ -9,9 +9,11 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from blocksim.arch import GRAVITY, is_number, require
-from blocksim.bracket import bracket as ask_bracket
-from blocksim.check import check as ask_check
+from blocksim.arch.bracket import bracket as ask_bracket
+from blocksim.arch.check import check as ask_check
+from blocksim.arch.circular import GRAVITY
+from blocksim.arch.scenario import load_scenario, shipped
+from blocksim.ask.doctor import examine
 from blocksim.cli.console import (
     answer_with,
     chart_table,
@@ -53,21 +55,20 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.sweeping import run_sweep
-from blocksim.doctor import examine
+from blocksim.common.checks import is_number, require
+from blocksim.common.files import make_folder, require_place
 from blocksim.engines import ENGINES
-from blocksim.files import make_folder, require_place
+from blocksim.evidence.trial import simulate as record_motion
+from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import (
     bracket_lines,
     bracket_record,
     check_lines,
     check_record,
 )
-from blocksim.scenario import load_scenario, shipped
-from blocksim.trial import simulate as record_motion
-from blocksim.validate import scenarios
-from blocksim.validate import validate as run_validation
-from blocksim.verdict import Verdict
-from blocksim.workprec import cases, measure
+from blocksim.studies.chart import cases, measure
+from blocksim.studies.validate import scenarios
+from blocksim.studies.validate import validate as run_validation
 
 app = typer.Typer(
     name="blocksim",

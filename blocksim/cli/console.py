@@ -14,12 +14,12 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from blocksim.arch import require
-from blocksim.files import require_place, write_whole
-from blocksim.progress import Progress as Report
+from blocksim.common.checks import require
+from blocksim.common.files import require_place, write_whole
+from blocksim.common.progress import Progress as Report
 from blocksim.report.answers import ratio
-from blocksim.validate import Row, disagreements, numbered
-from blocksim.workprec import Point, on_front
+from blocksim.studies.chart import Point, on_front
+from blocksim.studies.validate import Row, disagreements, numbered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from blocksim.arch import require
+from blocksim.arch.theory import least_thickness
 from blocksim.cli.console import picture_kind, save_picture, say
 from blocksim.cli.filming import Given
 from blocksim.cli.options import named_options, question
-from blocksim.errors import MISSING, InputError
-from blocksim.files import write_whole
-from blocksim.theory import least_thickness
+from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
+from blocksim.common.files import write_whole
 
 ZOOMS = {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
 LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}

@@ -10,17 +10,17 @@ from typing import Annotated, Literal, NamedTuple
 
 import typer
 
-from blocksim.arch import require
+from blocksim.arch.limit import least_thickness
+from blocksim.arch.scenario import Scenario
+from blocksim.ask.methods import SPATIAL
 from blocksim.cli.console import progress, say
 from blocksim.cli.options import named_options, question
+from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
 from blocksim.engines import ENGINES
-from blocksim.errors import MISSING, InputError
-from blocksim.ladder import SPATIAL
-from blocksim.limit import least_thickness
-from blocksim.recording import Recording, load_recording
-from blocksim.scenario import Scenario
-from blocksim.trial import simulate
-from blocksim.validate import ASIDE
+from blocksim.evidence.recording import Recording, load_recording
+from blocksim.evidence.trial import simulate
+from blocksim.studies.validate import ASIDE
 
 FALL = 6.0
 """Time recorded of a scenario, enough for a collapse to reach the ground [sqrt(r/g)]."""

@@ -10,11 +10,12 @@ from typing import Annotated
 
 import typer
 
-from blocksim.arch import Arch, is_number, require
-from blocksim.errors import MISSING, InputError
-from blocksim.ladder import CHOICES
-from blocksim.scenario import Scenario, load_scenario
-from blocksim.setup import SETTINGS
+from blocksim.arch.circular import Arch
+from blocksim.arch.scenario import Scenario, load_scenario
+from blocksim.ask.methods import CHOICES
+from blocksim.common.checks import is_number, require
+from blocksim.common.errors import MISSING, InputError
+from blocksim.evidence.setup import SETTINGS
 
 Scene = Annotated[str | None, typer.Argument(help="Scenario: a .toml file or a shipped name.")]
 Alpha = Annotated[

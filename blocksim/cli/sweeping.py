@@ -7,10 +7,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 from blocksim.cli.console import answer_with, progress
-from blocksim.sweep import Summary, load_design, write_parquet
-from blocksim.sweep import sweep as ask_sweep
-from blocksim.sweep.cluster import cluster
-from blocksim.sweep.table import require_parquet
+from blocksim.many import Summary, load_design, write_parquet
+from blocksim.many import sweep as ask_sweep
+from blocksim.many.cluster import cluster
+from blocksim.many.table import require_parquet
 
 
 def run_sweep(

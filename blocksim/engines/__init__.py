@@ -6,8 +6,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import NamedTuple
 
+from blocksim.common.errors import MissingPart
 from blocksim.engines.base import Engine
-from blocksim.errors import MissingPart
 
 
 class _Place(NamedTuple):

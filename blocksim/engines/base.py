@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from blocksim.assembly import Array, Assembly
+from blocksim.blocks.assembly import Array, Assembly
 
 FRICTION_CAP = 1e3
 """Most friction of an engine without a bound of its own.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blocksim.assembly import Array, Block, Joint
+from blocksim.blocks.assembly import Array, Block, Joint
 from blocksim.engines.faces import crowding, ledge, side
 
 PLATE = 0.15

@@ -37,7 +37,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.assembly import SUPPORT, Array, Assembly, Joint, displacement
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint, displacement
 from blocksim.engines.base import Quality, Settings, World
 from blocksim.engines.boxes import Frame, footing, plate
 from blocksim.engines.faces import faces_of

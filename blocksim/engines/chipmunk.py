@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from blocksim.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.faces import crowding, faces_of, ledge, side
 

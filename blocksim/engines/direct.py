@@ -7,7 +7,7 @@ energy never grows. An open contact may close within a step, but not pass; one t
 is kept from closing further and not pushed apart, which would add energy.
 
 A collapse goes on to the ground: blocks meet any others, the piers below the springings and
-the floor (`blocksim.ground`), without bouncing.
+the floor (`blocksim.engines.ground`), without bouncing.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from importlib.metadata import version
 
 import numpy as np
 
-from blocksim.assembly import SUPPORT, Array, Assembly
-from blocksim.contact import ContactProblem, Neighbours, Solution, Touch
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
+from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
 
 STEP = 0.01
 LONG, SLOW = 0.2, 5e-4

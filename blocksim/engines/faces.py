@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from blocksim.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 
 LEDGE = 2e-3
 """Most that one face of each joint reaches beyond the other [size]."""

@@ -32,7 +32,7 @@ from typing import Any
 import mujoco  # pyright: ignore[reportMissingTypeStubs]
 import numpy as np
 
-from blocksim.assembly import SUPPORT, Array, Assembly, displacement
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.boxes import Box, footing, plate
 from blocksim.engines.faces import faces_of

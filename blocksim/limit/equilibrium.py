@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import linprog
 
-from blocksim.assembly import PLANAR, SUPPORT, Array, Assembly
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 
 SPARE = 1.0
 """Most that is asked for along every edge of a cone [mean weights]."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from blocksim.arch import GRAVITY
-from blocksim.bracket import Bracket
-from blocksim.check import Check
-from blocksim.joints import JointState
+from blocksim.arch.bracket import Bracket
+from blocksim.arch.check import Check
+from blocksim.arch.circular import GRAVITY
+from blocksim.blocks.joints import JointState
 
 
 def plain(value: object) -> object:

@@ -8,14 +8,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from blocksim.common.errors import InputError
+from blocksim.common.files import make_folder, require_file, write_whole
 from blocksim.engines import ENGINES, get_engine, remedy
-from blocksim.errors import InputError
-from blocksim.files import make_folder, require_file, write_whole
-from blocksim.knobs import KNOBS
 from blocksim.report.answers import plain
 from blocksim.report.tables import as_json, machine, pictures, write_contents
+from blocksim.studies.chart import Point, on_front
+from blocksim.studies.knobs import KNOBS
 from blocksim.view.chartfigure import chart_figures
-from blocksim.workprec import Point, on_front
 
 WRITTEN = "a file written by blocksim chart, or like it"
 LARGEST_FILE = 1 << 24

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blocksim.assembly import PLANAR, SUPPORT, Array
-from blocksim.joints import JointState, classify
-from blocksim.recording import Recording
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.joints import JointState, classify
+from blocksim.evidence.recording import Recording
 from blocksim.view.planar import HINGES
 from blocksim.view.stage import Stage
 

@@ -11,13 +11,13 @@ from statistics import fmean
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from blocksim.arch import GRAVITY
-from blocksim.joints import JointState
-from blocksim.modes import Mode
+from blocksim.arch.circular import GRAVITY
+from blocksim.arch.modes import Mode
+from blocksim.blocks.joints import JointState
+from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import ratio
 from blocksim.report.motion import Drawing, drawing
-from blocksim.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, numbered
-from blocksim.verdict import Verdict
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, numbered
 from blocksim.view import style
 
 STATES = {

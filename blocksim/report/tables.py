@@ -15,10 +15,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import blocksim
-from blocksim.files import make_folder, write_whole
+from blocksim.common.files import make_folder, write_whole
 from blocksim.report.answers import plain
 from blocksim.report.page import report_page
-from blocksim.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, installed, numbered
+from blocksim.studies.validate import (
+    ASIDE,
+    ERROR_BOUND,
+    TOLS,
+    Row,
+    disagreements,
+    installed,
+    numbered,
+)
 from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure, save_figure
 
 if TYPE_CHECKING:

@@ -17,14 +17,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
-from blocksim.arch import Arch, Weight
-from blocksim.assembly import Array
-from blocksim.limit.collapse import collapse_of_mode
-from blocksim.limit.mechanism import mechanism
-from blocksim.modes import Mode
-from blocksim.theory.critical import Critical, inner_sliding
-from blocksim.theory.equations import normal_force
-from blocksim.theory.lines import critical_moment, friction_line, thrust_line
+from blocksim.arch.circular import Arch, Weight
+from blocksim.arch.limit.collapse import collapse_of_mode
+from blocksim.arch.limit.mechanism import mechanism
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory.critical import Critical, inner_sliding
+from blocksim.arch.theory.equations import normal_force
+from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
+from blocksim.blocks.assembly import Array
 from blocksim.view.style import FONT, FRICTION, INK, MECHANISM, THRUST
 
 MOVED = 0.16

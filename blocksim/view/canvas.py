@@ -25,7 +25,7 @@ from matplotlib.textpath import TextPath
 from matplotlib.transforms import Bbox, IdentityTransform, TransformedBbox
 from numpy.typing import NDArray
 
-from blocksim.assembly import Array
+from blocksim.blocks.assembly import Array
 from blocksim.view.style import FONT, GROUND, INK, PAPER, STONE
 
 Colour = tuple[float, float, float, float]

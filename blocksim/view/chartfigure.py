@@ -15,8 +15,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from blocksim.studies.chart import Cost, Point, front
 from blocksim.view.style import FONT, METHODS, QUIET, UNNAMED
-from blocksim.workprec import Cost, Point, front
 
 
 class _Quantity(NamedTuple):

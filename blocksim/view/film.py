@@ -9,10 +9,10 @@ from typing import BinaryIO, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim import limit
-from blocksim.arch import GRAVITY
-from blocksim.joints import JointState
-from blocksim.recording import Recording
+from blocksim.arch import limit
+from blocksim.arch.circular import GRAVITY
+from blocksim.blocks.joints import JointState
+from blocksim.evidence.recording import Recording
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.planar import PlanarView
 from blocksim.view.spatial import SpatialView

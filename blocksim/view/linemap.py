@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from blocksim.theory import equations, landmarks, least_thicknesses, regions
-from blocksim.theory.critical import rotational_thrust
+from blocksim.arch.theory import equations, landmarks, least_thicknesses, regions
+from blocksim.arch.theory.critical import rotational_thrust
 from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line
 from blocksim.view.style import FONT, INK, ISO, QUIET
 

@@ -15,8 +15,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from blocksim import theory
-from blocksim.modes import Mode
+from blocksim.arch import theory
+from blocksim.arch.modes import Mode
 from blocksim.view.mapshapes import LARGEST_MU, map_shapes
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from blocksim import theory
-from blocksim.arch import Weight
-from blocksim.assembly import Array
-from blocksim.modes import Mode
-from blocksim.theory import Curve, Landmark, regions
-from blocksim.theory.critical import ETA_MAX, rotational_thrust
-from blocksim.theory.equations import inner_friction
-from blocksim.theory.map import divide_friction, iso_half_angle, special_angles
+from blocksim.arch import theory
+from blocksim.arch.circular import Weight
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import Curve, Landmark, regions
+from blocksim.arch.theory.critical import ETA_MAX, rotational_thrust
+from blocksim.arch.theory.equations import inner_friction
+from blocksim.arch.theory.map import divide_friction, iso_half_angle, special_angles
+from blocksim.blocks.assembly import Array
 
 SMALLEST_MU, LARGEST_MU = 0.002, 4.0
 POINTS = 160

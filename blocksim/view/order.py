@@ -13,7 +13,7 @@ import heapq
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.assembly import Array
+from blocksim.blocks.assembly import Array
 
 FLAT = 1e-9
 """Length of a face's normal below which it is no face."""

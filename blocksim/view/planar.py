@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from blocksim.assembly import SUPPORT, Array
-from blocksim.joints import JointState
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
 from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import GROUND, INK, JOINTS, PAPER, STONE, THRUST

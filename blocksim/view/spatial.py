@@ -7,8 +7,8 @@ import math
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from blocksim.assembly import SUPPORT, Array
-from blocksim.joints import JointState
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import (
     Colour,
     Label,

@@ -1,8 +1,8 @@
 """A recording made ready for the eye: blocks in space at any time, supports, ground, joints.
 
 Lengths are in units of the arch's radius, times in units of sqrt(r/g). The arch is shown on
-the piers and above the floor of `blocksim.ground`, which only `direct` lets it fall on: a
-film ends when a block sinks into the floor, or into a pier it does not rest on.
+the piers and above the floor of `blocksim.engines.ground`, which only `direct` lets it
+fall on: a film ends when a block sinks into the floor, or into a pier it does not rest on.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blocksim.assembly import SPATIAL, SUPPORT, Array
-from blocksim.ground import ground_level, piers
-from blocksim.joints import JointState, classify
-from blocksim.recording import Recording
+from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array
+from blocksim.blocks.joints import JointState, classify
+from blocksim.engines.ground import ground_level, piers
+from blocksim.evidence.recording import Recording
 from blocksim.view.archfigure import lines_of, picture_of_arch
 
 FEWEST = 4

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from blocksim.joints import JointState
-from blocksim.modes import Mode
-from blocksim.verdict import Verdict
+from blocksim.arch.modes import Mode
+from blocksim.blocks.joints import JointState
+from blocksim.evidence.verdict import Verdict
 
 
 class Style(NamedTuple):

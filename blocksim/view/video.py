@@ -15,9 +15,9 @@ from av.video.reformatter import Colorspace
 from numpy.typing import NDArray
 from PIL import Image
 
-from blocksim.files import write_whole
-from blocksim.progress import Progress, silent
-from blocksim.recording import Recording
+from blocksim.common.files import write_whole
+from blocksim.common.progress import Progress, silent
+from blocksim.evidence.recording import Recording
 from blocksim.view.film import TALL, Film, ViewName
 
 RATES = {"mp4": 30, "gif": 20}

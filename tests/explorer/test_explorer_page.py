@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blocksim import theory
-from blocksim.theory.map import at_points
+from blocksim.arch import theory
+from blocksim.arch.theory.map import at_points
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 

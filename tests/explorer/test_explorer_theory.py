@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from blocksim import theory
-from blocksim.arch import centroid_factor
-from blocksim.limit.mechanism import least_thickness_by_program
-from blocksim.modes import Mode
-from blocksim.theory.lines import critical_moment, friction_line, thrust_line
-from blocksim.theory.map import at_points, divide_friction
+from blocksim.arch import theory
+from blocksim.arch.circular import centroid_factor
+from blocksim.arch.limit.mechanism import least_thickness_by_program
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
+from blocksim.arch.theory.map import at_points, divide_friction
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from blocksim.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.engines.direct import Blocks, Direct
 
 STEPS = (0.02, 0.01, 0.005, 0.0025)

@@ -25,11 +25,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from blocksim import theory
-from blocksim.modes import Mode
-from blocksim.theory import equations
-from blocksim.theory.critical import Critical
-from blocksim.theory.regions import crown_hinge, divide, equal_angles, first_sliding
+from blocksim.arch import theory
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import equations
+from blocksim.arch.theory.critical import Critical
+from blocksim.arch.theory.regions import crown_hinge, divide, equal_angles, first_sliding
 
 PAPER = tomllib.loads(Path(__file__).with_name("cocchetti_rizzi_2024.toml").read_text("utf-8"))
 CONSTANTS = PAPER["constants"]

@@ -31,10 +31,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from blocksim import limit, theory
-from blocksim.modes import Mode
-from blocksim.theory.equations import lower_thrust, tangency_thrust, whole_thrust
-from blocksim.theory.regions import divide, divide_half_angle, first_sliding
+from blocksim.arch import limit, theory
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory.equations import lower_thrust, tangency_thrust, whole_thrust
+from blocksim.arch.theory.regions import divide, divide_half_angle, first_sliding
 
 QUARTER = math.pi / 2
 SIX = 5.001e-7

@@ -17,11 +17,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, linprog
 
-from blocksim.assembly import SUPPORT, Array, Assembly, Block, Joint, displacement
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, displacement
 from blocksim.engines import ENGINES, get_engine
-from blocksim.motion import LONGEST, MOVED, QUIET
-from blocksim.onset import onset
-from blocksim.verdict import Verdict
+from blocksim.evidence.motion import LONGEST, MOVED, QUIET
+from blocksim.evidence.onset import onset
+from blocksim.evidence.verdict import Verdict
 
 BELOW, ABOVE = 0.99, 1.01
 SLOPES = [5.0, 20.0, 40.0]

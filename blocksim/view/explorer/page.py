@@ -12,11 +12,11 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 import blocksim
-from blocksim.arch import Weight
-from blocksim.assembly import Array
-from blocksim.modes import Mode
-from blocksim.theory import least_thicknesses
-from blocksim.theory.critical import CROWN_ETA
+from blocksim.arch.circular import Weight
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import least_thicknesses
+from blocksim.arch.theory.critical import CROWN_ETA
+from blocksim.blocks.assembly import Array
 from blocksim.view.explorer.results import Result
 from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line, map_shapes
 from blocksim.view.style import FRICTION, MISS, MODES, THRUST, UNNAMED, VERDICTS

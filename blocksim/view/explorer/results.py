@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from blocksim.arch import WEIGHTS, is_number
-from blocksim.errors import InputError
-from blocksim.files import require_file
-from blocksim.modes import Mode
+from blocksim.arch.circular import WEIGHTS
+from blocksim.arch.modes import Mode
+from blocksim.common.checks import is_number
+from blocksim.common.errors import InputError
+from blocksim.common.files import require_file
 
 LARGEST_FILE = 20_000_000
 """Bytes: some 20,000 rows."""

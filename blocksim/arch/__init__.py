@@ -1,0 +1,1 @@
+"""The symmetric circular arch: generator, theory, exact statics, modes, answers."""

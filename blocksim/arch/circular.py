@@ -1,0 +1,174 @@
+"""The generator: a symmetric circular arch of equal voussoirs with radial joints."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
+from blocksim.common.checks import is_number, require
+
+Weight = Literal["centreline", "sector"]
+WEIGHTS: tuple[str, ...] = get_args(Weight)
+
+SMALL = 0.1
+"""Angle below which a series is better than a difference [rad]."""
+GRAVITY = 9.81
+"""Standard gravity [m/s^2], to turn specific weight into mass."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arch:
+    """A symmetric circular arch; the crown is at angle 0, x to the right, y up.
+
+    Parameters
+    ----------
+    half_angle : float
+        Half-angle of embrace alpha, crown to springing, in (0, pi) [rad].
+    eta : float
+        Thickness-to-radius ratio t/r, in (0, 2].
+    voussoirs : int
+        Number of equal voussoirs n, 3 to 1000.
+    weight : {"centreline", "sector"}
+        Where the weight of a voussoir acts: at the centroid of its arc of the mean
+        circle (the paper's model), or at the centroid of the annular sector.
+    radius : float
+        Mean radius r [m].
+    depth : float
+        Depth d out of the plane [m].
+    specific_weight : float
+        gamma [N/m^3].
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    half_angle: float
+    eta: float
+    voussoirs: int
+    weight: Weight = "centreline"
+    radius: float = 1.0
+    depth: float = 1.0
+    specific_weight: float = 20_000.0
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        angle = is_number(self.half_angle, 0, math.nextafter(math.pi, 0))
+        require(angle, "half_angle", self.half_angle, "above 0 and below pi")
+        require(is_number(self.eta, 0, 2), "eta", self.eta, "above 0 and at most 2")
+        whole = is_number(self.voussoirs, 2, 1000) and self.voussoirs == int(self.voussoirs)
+        require(whole, "voussoirs", self.voussoirs, "a whole number from 3 to 1000")
+        require(self.weight in WEIGHTS, "weight", self.weight, f"one of {', '.join(WEIGHTS)}")
+        for field in ("radius", "depth", "specific_weight"):
+            value: object = getattr(self, field)
+            finite = is_number(value, 0, math.inf) and value != math.inf
+            require(finite, field, value, "above 0 and finite")
+
+    @property
+    def thickness(self) -> float:
+        """Thickness t [m]."""
+        return self.eta * self.radius
+
+    @property
+    def joint_angles(self) -> Array:
+        """Angles of the joints from the crown, shape (n + 1,) [rad].
+
+        Exactly antisymmetric, so that mirrored joints mirror to the last bit.
+        """
+        steps = 2.0 * np.arange(self.voussoirs + 1) - self.voussoirs
+        return self.half_angle * steps / self.voussoirs
+
+    @property
+    def voussoir_weight(self) -> float:
+        """Weight of one voussoir, gamma t r d 2 alpha/n [N]."""
+        per_angle = self.specific_weight * self.thickness * self.radius * self.depth
+        return per_angle * 2.0 * self.half_angle / self.voussoirs
+
+    @property
+    def centroid_factor(self) -> float:
+        """Radius of the distributed weight over the mean radius: 1, or 1 + eta^2/12."""
+        return centroid_factor(self.eta, self.weight)
+
+    def assembly(self) -> Assembly:
+        """Build the voussoirs and their joints, both springings fixed.
+
+        Mass and centre of mass come from the weight model, not from the chord-sided
+        collision polygon: each joint then carries exactly the resultant of the continuous
+        arch. The inertia is that of the annular sector about its centroid in both models:
+        where the weight acts says nothing of how a voussoir turns.
+
+        Returns
+        -------
+        Assembly
+            n blocks and n + 1 joints, both from the left springing to the right.
+        """
+        angles = self.joint_angles
+        intrados, extrados = self.radius - self.thickness / 2, self.radius + self.thickness / 2
+        rays = np.column_stack([np.sin(angles), np.cos(angles)])
+        inner, outer = intrados * rays, extrados * rays
+        half = self.half_angle / self.voussoirs
+        arm = self.radius * self.centroid_factor * math.sin(half) / half
+        mass = self.voussoir_weight / GRAVITY
+        # Polar moment of the sector about the centre of the arch, 1 + eta^2/4, less the
+        # parallel-axis term, with 1 - (sin x/x)^2 kept apart: it is x^2/3 for small x.
+        factor = centroid_factor(self.eta, "sector")
+        thick = 1.0 + self.eta**2 / 4 - factor**2
+        inertia = mass * self.radius**2 * (thick + factor**2 * _sine_deficit(half))
+        middle = (angles[:-1] + angles[1:]) / 2
+        centres = arm * np.column_stack([np.sin(middle), np.cos(middle)])
+        blocks = tuple(
+            Block(
+                vertices=_corners(inner[i : i + 2], outer[i : i + 2]),
+                centre=centres[i],
+                mass=mass,
+                inertia=inertia,
+                depth=self.depth,
+            )
+            for i in range(self.voussoirs)
+        )
+        joints = tuple(
+            Joint(
+                before=i - 1 if i > 0 else SUPPORT,
+                after=i if i < self.voussoirs else SUPPORT,
+                inner=inner[i],
+                outer=outer[i],
+            )
+            for i in range(self.voussoirs + 1)
+        )
+        return Assembly(blocks=blocks, joints=joints, size=self.radius)
+
+
+def centroid_factor(eta: float, weight: Weight) -> float:
+    """Radius at which the weight is spread, over the mean radius."""
+    return 1.0 if weight == "centreline" else 1.0 + eta**2 / 12
+
+
+def crown_width(half_angle: float, voussoirs: int) -> float:
+    """Largest angle of a joint that counts as at the crown [rad].
+
+    Half a keystone where the number of voussoirs is odd, a hair where it is even.
+    """
+    share = 1.0 if voussoirs % 2 else 1e-9
+    return half_angle / voussoirs * share * (1 + 1e-9)
+
+
+def _sine_deficit(x: float) -> float:
+    """Return 1 - (sin x/x)^2, without cancellation for small x."""
+    if x > SMALL:
+        return 1.0 - (math.sin(x) / x) ** 2
+    square = x * x
+    series = 1 / 3 - square * (2 / 45 - square * (1 / 315 - square * (2 / 14175)))
+    return square * series
+
+
+def _corners(inner: Array, outer: Array) -> Array:
+    """Corners of one voussoir, counter-clockwise; a triangle where eta = 2."""
+    corners = [inner[0], inner[1], outer[1], outer[0]]
+    if np.hypot(*(inner[1] - inner[0])) == 0.0:
+        corners = corners[1:]
+    return np.array(corners)

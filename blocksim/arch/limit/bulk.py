@@ -1,0 +1,186 @@
+"""Limit analysis of many arches at once, with the same arithmetic as `statics`."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from blocksim.arch.circular import WEIGHTS, Weight
+from blocksim.arch.limit.statics import ETA_MAX
+from blocksim.blocks.assembly import Array
+from blocksim.common.checks import require
+
+WORKING_SET = 40_000
+"""Pairs of joints held at once; their temporaries stay in the cache."""
+HALVINGS = 52
+
+
+class Intervals(NamedTuple):
+    """Admissible thrusts of many arches; empty where lower > upper.
+
+    Parameters
+    ----------
+    lower, upper : (k,) float
+        Scaled thrusts h.
+    """
+
+    lower: Array
+    upper: Array
+
+
+def which_stand(
+    half_angle: ArrayLike,
+    eta: ArrayLike,
+    mu: ArrayLike,
+    voussoirs: int,
+    weight: Weight = "centreline",
+) -> NDArray[np.bool_]:
+    """Tell which arches have an equilibrium within strength, as `stands` does for one.
+
+    Parameters
+    ----------
+    half_angle : (...) float
+        In (0, pi) [rad].
+    eta : (...) float
+        In (0, 2].
+    mu : (...) float
+        Above 0, inf allowed; the three broadcast against each other.
+    voussoirs : int
+        Number of voussoirs of every arch, 3 to 1000.
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    (...) bool
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+    alpha, depth, friction = _checked(half_angle, eta, mu, voussoirs, weight)
+    found = np.empty(alpha.size, dtype=bool)
+    flat = alpha.reshape(-1), depth.reshape(-1), friction.reshape(-1)
+    size = chunk_size(voussoirs // 2 + 1)
+    for start in range(0, alpha.size, size):
+        part = slice(start, start + size)
+        a, e, m = (values[part] for values in flat)
+        lower, upper = thrust_intervals(joints_of(a, voussoirs), e, m, factors(e, weight))
+        found[part] = lower <= upper
+    return found.reshape(alpha.shape)
+
+
+def chunk_size(joints: int) -> int:
+    """Arches to work on at once where each has that many joints a half."""
+    return max(1, WORKING_SET // joints**2)
+
+
+def joints_of(half_angle: Array, voussoirs: int) -> Array:
+    """Angles of the joints of one half of each arch, as `half_joints`, (k, j) [rad]."""
+    steps = 2.0 * np.arange(voussoirs // 2 + 1) + voussoirs % 2
+    return half_angle[:, None] * steps / voussoirs
+
+
+def factors(eta: Array, weight: Weight) -> Array:
+    """Radius of the distributed weight over the mean radius, as `centroid_factor`."""
+    return np.ones_like(eta) if weight == "centreline" else 1.0 + eta**2 / 12
+
+
+def thrust_intervals(angles: Array, depth: Array, mu: Array, factor: Array) -> Intervals:
+    """Intervals of thrusts in equilibrium with strength at every joint.
+
+    Parameters
+    ----------
+    angles : (k, j) float
+        Joints of one half of each arch [rad].
+    depth, mu, factor : (k,) float
+        As in `thrust_bounds`.
+
+    Returns
+    -------
+    Intervals
+    """
+    sine, cosine = np.sin(angles), np.cos(angles)
+    vertical, lever = angles * sine, factor[:, None] * (1.0 - cosine)
+    outer, inner = (1.0 + depth / 2)[:, None], (1.0 - depth / 2)[:, None]
+    slope = (outer * cosine)[:, :, None] - (inner * cosine)[:, None, :]
+    offset = (outer * vertical - lever)[:, :, None] - (inner * vertical - lever)[:, None, :]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = -offset / slope
+    lower = np.max(np.where(slope > 0, crossing, -np.inf), axis=(1, 2))
+    upper = np.min(np.where(slope < 0, crossing, np.inf), axis=(1, 2))
+    # Parallel half-planes leave nothing where the upper one is below the lower one.
+    lower[np.any((slope == 0) & (offset < 0), axis=(1, 2))] = np.inf
+    held = np.flatnonzero(np.isfinite(mu))
+    sine, cosine, angles, friction = sine[held], cosine[held], angles[held], mu[held, None]
+    for sign in (1.0, -1.0):
+        rate = sign * sine - friction * cosine
+        level = angles * (sign * cosine + friction * sine)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            limit = level / rate
+        caps = np.min(np.where(rate > 0, limit, np.inf), axis=1)
+        floors = np.max(np.where(rate < 0, limit, -np.inf), axis=1)
+        upper[held] = np.minimum(upper[held], caps)
+        lower[held] = np.maximum(lower[held], floors)
+    return Intervals(lower, upper)
+
+
+def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array:
+    """Least thickness of many arches whose joints may be anywhere.
+
+    Parameters
+    ----------
+    angles : (k, j) float
+        Joints of one half of each arch, in any order [rad].
+    mu : (k,) float
+        Friction coefficients, inf allowed.
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    (k,) float
+        nan where none up to 2 stands.
+    """
+    found = np.empty(mu.size)
+    size = chunk_size(angles.shape[1])
+    for start in range(0, mu.size, size):
+        part = slice(start, start + size)
+        joints, friction = angles[part], mu[part]
+        low, high = np.zeros(friction.size), np.full(friction.size, ETA_MAX)
+        never = _empty(joints, high, friction, weight)
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            falls = _empty(joints, middle, friction, weight)
+            low, high = np.where(falls, middle, low), np.where(falls, high, middle)
+        found[part] = np.where(never, np.nan, high)
+    return found
+
+
+def _empty(angles: Array, eta: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
+    lower, upper = thrust_intervals(angles, eta, mu, factors(eta, weight))
+    return lower > upper
+
+
+def _checked(
+    half_angle: ArrayLike, eta: ArrayLike, mu: ArrayLike, voussoirs: int, weight: Weight
+) -> tuple[Array, Array, Array]:
+    alpha, depth, friction = np.broadcast_arrays(
+        np.asarray(half_angle, dtype=float),
+        np.asarray(eta, dtype=float),
+        np.asarray(mu, dtype=float),
+    )
+    for field, values, upto, allowed in (
+        ("half_angle", alpha, math.nextafter(math.pi, 0), "above 0 and below pi"),
+        ("eta", depth, ETA_MAX, "above 0 and at most 2"),
+        ("mu", friction, math.inf, "above 0 (inf for unbounded friction)"),
+    ):
+        wrong = ~((values > 0) & (values <= upto))
+        if wrong.any():
+            require(False, field, float(values[wrong].flat[0]), allowed)
+    whole = 3 <= voussoirs <= 1000 and voussoirs == int(voussoirs)
+    require(whole, "voussoirs", voussoirs, "a whole number from 3 to 1000")
+    require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
+    return alpha, depth, friction

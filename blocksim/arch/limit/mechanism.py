@@ -1,0 +1,301 @@
+"""The collapse mechanism, from the complementary problem of eqs (15) and (16).
+
+At every joint four strength conditions bound the resultant (see `statics`),
+
+    M - (eta/2) N <= 0,   -M - (eta/2) N <= 0,   T - mu N <= 0,   -T - mu N <= 0,
+
+and to each belongs a rate, never negative: opening about the extrados, about the intrados,
+sliding either way. In the unknowns x of the statics they read A x + b <= 0. The linear
+program
+
+    minimise s  subject to  A x + b <= s
+
+asks for the least extra strength s, the same at every joint, with which the arch would
+stand. Its dual holds the rates: they are compatible (A' rates = 0, the pieces fit
+together again), add up to one, and vanish wherever a condition is not met exactly. At the
+least thickness s = 0 and this is eq. (15); below it s > 0 is the power that weight has
+to spare, above it s < 0 and nothing moves.
+
+Sliding here is *associated*: a rate of sliding comes with an opening of mu times as much,
+since that is what the dual of the condition |T| <= mu N says. Coulomb sliding does not
+open the joint. The two share every state of stress, so the static answer (does an
+equilibrium exist) is the same; where an arch slides its velocities differ, and Coulomb
+friction may let an arch move that has an equilibrium. Modes without sliding are the same
+in both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linprog
+
+from blocksim.arch.circular import Arch, Weight, centroid_factor, crown_width
+from blocksim.arch.modes import ActiveJoint, Mode, name_mode
+from blocksim.blocks.assembly import Array
+from blocksim.common.checks import require_friction
+
+ETA_MAX = 2.0
+ACTIVE = 1e-9
+"""Rates, and distances to a condition, below which HiGHS means zero."""
+AT_LIMIT = 1e-10
+"""Extra strength below which the arch is at its least thickness."""
+SPARE = 1.0
+"""Strength to spare looked for at most: a flat arch has any amount at a great thrust."""
+STEPS = 60
+CONDITIONS = ("hinge-extrados", "hinge-intrados", "slides-out", "slides-in")
+"""Order of the columns of `Mechanism.strength` and `Mechanism.rates`."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mechanism:
+    """Statics and kinematics of an arch at or below its least thickness.
+
+    Parameters
+    ----------
+    angles : (n + 1,) float
+        Joints from the left springing to the right one [rad].
+    extra_strength : float
+        s, in units of gamma t d r^2; 0 at the least thickness, below 0 where it stands.
+    strength : (n + 1, 4) float
+        Left sides of the strength conditions less s, in the order of `CONDITIONS`.
+    rates : (n + 1, 4) float
+        Rates of opening and of sliding, which add up to one; all 0 where it stands.
+    thrust, crown_shear, crown_moment : float
+        Scaled resultant at the crown: h, v and the moment m about the centre.
+    motions : (n, 3) float
+        Velocity of each voussoir, with associated sliding: of its point at the centre of
+        the arch (to the right, upwards) and its rotation (counter-clockwise), r = 1.
+    mode : Mode or None
+        Collapse mode; None where it stands or the joints form none of the seven.
+    """
+
+    angles: Array
+    extra_strength: float
+    strength: Array
+    rates: Array
+    thrust: float
+    crown_shear: float
+    crown_moment: float
+    motions: Array
+    mode: Mode | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Conditions:
+    """Conditions A x + b <= 0 at some joints, four rows a joint."""
+
+    matrix: Array
+    offset: Array
+    force: Array
+    force_offset: Array
+    lift: Array
+
+
+def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
+    """Find statics and collapse mechanism of an arch (15), (16).
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+        Friction coefficient, inf allowed.
+    symmetric : bool
+        Look for symmetric states and mechanisms only, as the paper does.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    InputError
+        If `mu` is out of range.
+    """
+    require_friction(mu)
+    angles = arch.joint_angles
+    half = angles >= 0 if symmetric else np.full(angles.size, True)
+    program = conditions(angles[half], arch.eta, mu, arch.centroid_factor, symmetric=symmetric)
+    state, extra, rates = _solve(program)
+    if extra < -AT_LIMIT:
+        rates = np.zeros_like(rates)
+    strength = (program.matrix @ state + program.offset - extra).reshape(-1, 4)
+    rates = rates.reshape(-1, 4)
+    if symmetric:
+        # Each joint of the half stands for two, but for the one at the crown.
+        shared = np.where(angles[half] == 0, 1.0, 0.5)[:, None]
+        mirrored = slice(None, None, -1) if arch.voussoirs % 2 else slice(None, 0, -1)
+        rates = np.concatenate([(rates * shared)[mirrored], rates * shared])
+        strength = np.concatenate([strength[mirrored], strength])
+        state = np.array([state[0], 0.0, state[1]])
+    return Mechanism(
+        angles=angles,
+        extra_strength=extra,
+        strength=strength,
+        rates=rates,
+        thrust=float(state[0]),
+        crown_shear=float(state[1]),
+        crown_moment=float(state[2]),
+        motions=motions_of(angles, rates, arch.eta, mu),
+        mode=_mode(arch, rates),
+    )
+
+
+def least_thickness_by_program(
+    half_angle: float,
+    mu: float,
+    voussoirs: int,
+    weight: Weight = "centreline",
+    *,
+    symmetric: bool = True,
+) -> float | None:
+    """Least thickness at which the program (16) has the value zero.
+
+    Newton's method: the slope of the program's value in eta is the power of the rates
+    against the change of the conditions.
+
+    Parameters
+    ----------
+    half_angle, mu, voussoirs, weight
+        As in `statics.least_thickness`.
+    symmetric : bool
+        As in `mechanism`.
+
+    Returns
+    -------
+    float or None
+        None where none up to 2 stands.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
+    require_friction(mu)
+    angles = arch.joint_angles
+    if symmetric:
+        angles = angles[angles >= 0]
+
+    def value(eta: float) -> tuple[float, float]:
+        factor = centroid_factor(eta, weight)
+        program = conditions(angles, eta, mu, factor, symmetric=symmetric)
+        state, extra, rates = _solve(program)
+        hinges = rates.reshape(-1, 4)[:, :2]
+        force = program.force @ state + program.force_offset
+        slope = -float(hinges.sum(axis=1) @ force) / 2
+        if weight == "sector":
+            slope += float((hinges[:, 0] - hinges[:, 1]) @ program.lift) * eta / 6
+        return extra, slope
+
+    low, high = 0.0, ETA_MAX
+    extra, slope = value(high)
+    if extra > 0:
+        return None
+    eta = high
+    for _ in range(STEPS):
+        step = eta - extra / slope if slope < 0 else low
+        trial = step if low < step < high else (low + high) / 2
+        if abs(trial - eta) <= np.spacing(eta):
+            break
+        eta = trial
+        extra, slope = value(eta)
+        low, high = (eta, high) if extra > 0 else (low, eta)
+    return eta
+
+
+def conditions(
+    angles: Array, eta: float, mu: float, factor: float, *, symmetric: bool
+) -> Conditions:
+    """Write the conditions in h, v and m, or in h and m alone."""
+    size = np.abs(angles)
+    side = np.where(angles < 0, -1.0, 1.0)
+    sine, cosine, zero = np.sin(size), np.cos(size), np.zeros(angles.size)
+    force = np.column_stack([cosine, side * sine, zero])
+    force_offset = size * sine
+    shear = np.column_stack([sine, -side * cosine, zero])
+    shear_offset = -size * cosine
+    lift = 1.0 - cosine
+    moment = np.column_stack([zero, zero, zero + 1.0]) - force
+    moment_offset = factor * lift - force_offset
+    depth = eta / 2
+    # At infinite friction the conditions on T become -1 <= 0.
+    grip, push, idle = (mu, 1.0, 0.0) if np.isfinite(mu) else (0.0, 0.0, 1.0)
+    rows = [
+        moment - depth * force,
+        -moment - depth * force,
+        push * shear - grip * force,
+        -push * shear - grip * force,
+    ]
+    offsets = [
+        moment_offset - depth * force_offset,
+        -moment_offset - depth * force_offset,
+        push * shear_offset - grip * force_offset - idle,
+        -push * shear_offset - grip * force_offset - idle,
+    ]
+    matrix = np.stack(rows, axis=1).reshape(-1, 3)
+    columns = [0, 2] if symmetric else [0, 1, 2]
+    return Conditions(
+        matrix=matrix[:, columns],
+        offset=np.stack(offsets, axis=1).reshape(-1),
+        force=force[:, columns],
+        force_offset=force_offset,
+        lift=lift,
+    )
+
+
+def _solve(program: Conditions) -> tuple[Array, float, Array]:
+    """Solve the program: unknowns x, value s, rates."""
+    rows, unknowns = program.matrix.shape
+    matrix = np.column_stack([program.matrix, np.full(rows, -1.0)])
+    result = linprog(
+        np.append(np.zeros(unknowns), 1.0),
+        A_ub=matrix,
+        b_ub=-program.offset,
+        bounds=[(None, None)] * unknowns + [(-SPARE, None)],
+        method="highs-ds",
+    )
+    if result.status != 0:
+        message = f"HiGHS: {result.message}"
+        raise RuntimeError(message)
+    state: Array = np.asarray(result.x, dtype=float)
+    marginals: Array = np.asarray(result.ineqlin.marginals, dtype=float)
+    rates: Array = np.maximum(-marginals, 0.0)
+    rates[rates < ACTIVE] = 0.0
+    if state[-1] <= -SPARE / 2:
+        return state[:-1], float(state[-1]), np.zeros_like(rates)
+    # HiGHS works to 1e-7; its active set is right, and fulfilled here to the last bits.
+    moving = rates > 0
+    for _ in range(2):
+        left = matrix[moving] @ state + program.offset[moving]
+        state = state - np.linalg.lstsq(matrix[moving], left, rcond=None)[0]
+        unbalanced = matrix[moving].T @ rates[moving]
+        unbalanced[-1] += 1.0
+        rates[moving] -= np.linalg.lstsq(matrix[moving].T, unbalanced, rcond=None)[0]
+    return state[:-1], float(state[-1]), rates
+
+
+def motions_of(angles: Array, rates: Array, eta: float, mu: float) -> Array:
+    """Velocities of the voussoirs: relative motions at the joints, added up."""
+    sine, cosine = np.sin(angles), np.cos(angles)
+    along = np.column_stack([cosine, -sine])
+    outward = np.column_stack([sine, cosine])
+    turn = rates[:, 0] - rates[:, 1]
+    slide = (rates[:, 2] - rates[:, 3]) * np.where(angles < 0, -1.0, 1.0)
+    grip = mu if np.isfinite(mu) else 0.0
+    opening = eta / 2 * (rates[:, 0] + rates[:, 1]) + grip * (rates[:, 2] + rates[:, 3])
+    # The voussoir after a joint against the one before, at the centreline; then moved to
+    # the centre of the arch, which a rotation carries along the joint.
+    centre = (opening + turn)[:, None] * along - slide[:, None] * outward
+    return np.cumsum(np.column_stack([centre, turn]), axis=0)[:-1]
+
+
+def _mode(arch: Arch, rates: Array) -> Mode | None:
+    least = ACTIVE * max(float(rates.max()), ACTIVE)
+    active = [
+        ActiveJoint(abs(angle), slides=k >= 2, intrados=k == 1)
+        for angle, row in zip(arch.joint_angles.tolist(), rates, strict=True)
+        for k in np.flatnonzero(row > least).tolist()
+    ]
+    return name_mode(active, crown_width(arch.half_angle, arch.voussoirs)) if active else None

@@ -1,0 +1,104 @@
+"""The equations of the continuous arch, scaled by radius and weight per angle.
+
+Numbers in brackets are those of Cocchetti and Rizzi (2024). Every function takes floats
+or arrays that broadcast; angles are in radians. `beta` is measured from the crown.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from blocksim.arch.circular import Weight
+from blocksim.blocks.assembly import Array
+
+Value = float | Array
+
+BEYOND = 4.0
+"""Stands for a thickness ratio that does not exist; ratios end at 2."""
+
+
+def normal_force(angle: Value, thrust: Value) -> Value:
+    """Compressive force N/(gamma t d r) at a radial section."""
+    return thrust * np.cos(angle) + angle * np.sin(angle)
+
+
+def lower_thrust(beta: Value, eta: Value) -> Value:
+    """Thrust with hinges at crown extrados and haunch intrados, h_L (1)."""
+    numerator = (2 - eta) * beta * np.sin(beta) - 2 * (1 - np.cos(beta))
+    return numerator / (2 + eta - (2 - eta) * np.cos(beta))
+
+
+def upper_thrust(half_angle: Value, beta: Value, eta: Value) -> Value:
+    """Thrust with hinges at shoulder extrados and haunch intrados, h_U (2)."""
+    numerator = (
+        (2 + eta) * half_angle * np.sin(half_angle)
+        - (2 - eta) * beta * np.sin(beta)
+        - 2 * (np.cos(beta) - np.cos(half_angle))
+    )
+    return numerator / ((2 - eta) * np.cos(beta) - (2 + eta) * np.cos(half_angle))
+
+
+def shape(half_angle: Value) -> Value:
+    """A(alpha) = alpha cot(alpha/2) (3)."""
+    return half_angle / np.tan(half_angle / 2)
+
+
+def whole_thrust(half_angle: Value, eta: Value) -> Value:
+    """Thrust with hinges at crown and shoulder extrados, h_2 (3)."""
+    return shape(half_angle) - 2 / (2 + eta)
+
+
+def tangency_thrust(beta: Value, eta: Value) -> Value:
+    """Thrust whose line is tangent to the intrados at beta, h_e (4)."""
+    return beta / np.tan(beta) - eta / (2 - eta)
+
+
+def shoulder_friction(half_angle: Value, thrust: Value) -> Value:
+    """Friction at which the shoulder slides, mu_ss (8)."""
+    sine, cosine = np.sin(half_angle), np.cos(half_angle)
+    return (thrust * sine - half_angle * cosine) / (thrust * cosine + half_angle * sine)
+
+
+def inner_sliding_angle(thrust: Value) -> Value:
+    """Where the inner joint slides, beta_s = sqrt(h (1 - h)) (9)."""
+    return np.sqrt(thrust * (1 - thrust))
+
+
+def inner_friction(thrust: Value) -> Value:
+    """Friction at which an inner joint slides, mu_is (9)."""
+    beta = inner_sliding_angle(thrust)
+    sine, cosine = np.sin(beta), np.cos(beta)
+    return ((1 - thrust) * cosine - beta * sine) / ((1 - thrust) * sine + beta * cosine)
+
+
+def touching_eta(
+    thrust: Value, extrados: Value, intrados: Value, weight: Weight = "centreline"
+) -> Value:
+    """Thickness ratio at which the line of thrust touches both faces.
+
+    Moment equilibrium between two sections, with the line of thrust at the extrados of
+    one and the intrados of the other. For the centreline it is (1) or (2) solved for
+    eta; for the sector the lever 1 + eta^2/12 of the weight makes it quadratic.
+
+    Parameters
+    ----------
+    thrust : float or array
+        h.
+    extrados, intrados : float or array
+        Angles of the two sections [rad].
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    float or array
+        eta; at least `BEYOND` where no thickness will do, since a thicker annular sector
+        also weighs farther out.
+    """
+    drop = np.cos(intrados) - np.cos(extrados)
+    gap = intrados * np.sin(intrados) - extrados * np.sin(extrados) + (1 + thrust) * drop
+    force = normal_force(extrados, thrust) + normal_force(intrados, thrust)
+    if weight == "centreline":
+        return 2 * gap / force
+    root = force**2 - 4 / 3 * drop * gap
+    eta = 4 * gap / (force + np.sqrt(np.maximum(root, 0.0)))
+    return np.where((root < 0) & (gap > 0), np.maximum(eta, BEYOND), eta)[()]

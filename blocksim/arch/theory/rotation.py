@@ -1,0 +1,214 @@
+"""Inner hinges and the purely rotational mode, over arrays.
+
+The thrust enters as its shortfall v = 1 - h and the inner hinge as y = beta^2, so that
+nothing cancels in flat arches: with
+
+    1 - cos beta = y C(y),    beta sin beta = y S(y),    C = 1/2 - y R(y),
+    beta sin beta - 2 (1 - cos beta) = -y^2 P(y),
+
+P and R are entire functions whose power series reach the last bit up to beta = pi. The
+rotational mode depends on the half-angle alone and is interpolated between Chebyshev
+nodes; its hinge goes to the crown like a square root, y does not.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.optimize import brentq
+
+from blocksim.arch.circular import Weight
+from blocksim.arch.theory.critical import ETA_MAX
+from blocksim.arch.theory.equations import BEYOND
+from blocksim.blocks.assembly import Array
+
+TERMS = 14
+EDGES = (0.0, 0.75, 0.94, 0.985, 0.996, 1.0)
+"""Pieces of the interpolation in (alpha/alpha_l)^2: a branch point lies just beyond."""
+NODES = 36
+HALVINGS = 56
+ROUNDS = 100
+"""Newton steps allowed; halving alone would need about as many."""
+SETTLED = 1e-9
+"""Relative step after which Newton's method, being quadratic, has reached round-off."""
+ROUND_OFF = 4 * np.finfo(float).eps
+
+_R = [(-1) ** k / math.factorial(2 * k) for k in range(2, TERMS)]
+_P = [(-1) ** k * (2 * k - 2) / math.factorial(2 * k) for k in range(2, TERMS)]
+
+
+class _Rotational(NamedTuple):
+    """Chebyshev coefficients in alpha^2 of the purely rotational mode.
+
+    One array a piece; its columns are (1 - h)/alpha^2, eta/alpha^4 and
+    (beta_r/alpha)^2, up to the half-angle `widest` where the thrust vanishes.
+    """
+
+    widest: float
+    pieces: list[Array]
+
+
+def sine_series(y: Array) -> Array:
+    """Evaluate (x - sin x)/x^3 at y = x^2 without cancellation."""
+    return 2 * _series(_R, y) + _series(_P, y)
+
+
+def inner_hinges(
+    short: Array, extrados: Array, half_angle: Array, weight: Weight
+) -> tuple[Array, Array]:
+    """Thickness needed at given thrusts, and the inner hinges that demand it.
+
+    Newton's method on eq. (4) in y = beta^2, kept in a bracket.
+
+    Parameters
+    ----------
+    short : (k,) float
+        1 - h.
+    extrados : (k,) float
+        Angle of the extrados hinge: 0 for the crown, alpha for the shoulder [rad].
+    half_angle : (k,) float
+        alpha [rad].
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    eta, square : (k,) float
+        Largest `touching_eta` over the intrados, and beta_r^2 [rad^2].
+    """
+    end = half_angle**2
+    far = extrados**2
+    low, high = np.zeros_like(end), end.copy()
+    # h = 0 at the crown is 0/0; the limit is there next to it.
+    start = np.where(extrados == 0, np.finfo(float).tiny ** 0.25, 0.0)
+    eta, slope, _ = _hinge_slope(start, short, far, weight)
+    at_crown = (eta > ETA_MAX) | (slope <= 0)
+    at_end = ~at_crown & (_hinge_slope(end, short, far, weight)[1] >= 0)
+    square = np.where(at_crown, 0.0, np.where(at_end, end, 0.1 * end))
+    active = np.flatnonzero(~(at_crown | at_end))
+    for _ in range(ROUNDS):
+        if not active.size:
+            break
+        here = square[active]
+        _, slope, rate = _hinge_slope(here, short[active], far[active], weight)
+        low[active] = np.where(slope > 0, here, low[active])
+        high[active] = np.where(slope > 0, high[active], here)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = here - slope / rate
+        inside = (step >= low[active]) & (step <= high[active])
+        step = np.where(inside, step, (low[active] + high[active]) / 2)
+        square[active] = step
+        active = active[np.abs(step - here) > SETTLED * here]
+    # At the crown the thickness is that of the start, elsewhere that of the hinge.
+    return _touching(np.where(at_crown, start, square), short, far, weight)[0], square
+
+
+def _series(coefficients: list[float], y: Array) -> Array:
+    value = np.full_like(y, coefficients[-1])
+    for coefficient in reversed(coefficients[:-1]):
+        value *= y
+        value += coefficient
+    return value
+
+
+def _touching(
+    y: Array, short: Array, far: Array, weight: Weight
+) -> tuple[Array, Array, Array, tuple[Array, Array, Array, Array]]:
+    """Give `touching_eta` in y, with its force, its drop, and R, P, C, S at y."""
+    r, p = _series(_R, y), _series(_P, y)
+    c = 0.5 - y * r
+    s = 1.0 - y * (2 * r + p)
+    if far.any():
+        far_r, far_p = _series(_R, far), _series(_P, far)
+        far_fall, far_side = far * (0.5 - far * far_r), far * (1 - far * (2 * far_r + far_p))
+        far_gap = far * far * far_p
+    else:
+        far_fall = far_side = far_gap = far
+    fall = y * c
+    drop = far_fall - fall
+    gap = far_gap - y * y * p - short * drop
+    force = (1 - short) * (2 - fall - far_fall) + y * s + far_side
+    if weight == "centreline":
+        return 2 * gap / force, force, drop, (r, p, c, s)
+    root = force * force - 4 / 3 * drop * gap
+    eta = 4 * gap / (force + np.sqrt(np.maximum(root, 0.0)))
+    eta = np.where((root < 0) & (gap > 0), np.maximum(eta, BEYOND), eta)
+    return eta, force, drop, (r, p, c, s)
+
+
+def _hinge_slope(
+    y: Array, short: Array, far: Array, weight: Weight
+) -> tuple[Array, Array, Array]:
+    """Give `touching_eta`, `hinge_slope` and the derivative of the latter by y."""
+    eta, force, drop, (r, p, c, s) = _touching(y, short, far, weight)
+    cosine = 1.0 - y * c
+    turn = short - y * (c - p - 2 * r) / s  # beta cot beta - h
+    turn_rate = -(c + (2 * r + p) * cosine) / (2 * s * s)
+    eta_rate = (cosine - (1 - short) * s) - eta * (short * s + cosine) / 2
+    if weight == "centreline":
+        eta_rate = eta_rate / force
+        return eta, 2 * turn - eta * (1 + turn), turn_rate * (2 - eta) - eta_rate * (1 + turn)
+    eta_rate = (eta_rate - eta * eta * s / 12) / (force - drop * eta / 3)
+    slope = 2 * turn - eta * (1 + turn) - eta * eta / 6
+    return eta, slope, turn_rate * (2 - eta) - eta_rate * (1 + turn + eta / 3)
+
+
+def rotational_mode(alpha: Array, weight: Weight) -> tuple[Array, Array, Array]:
+    """1 - h, eta and beta_r^2 of the purely rotational mode, or of overturning."""
+    widest, pieces = _rotational(weight)
+    square = alpha * alpha
+    share = square / widest**2
+    short, eta, hinge = np.ones((3, alpha.size))
+    for (left, right), coefficients in zip(pairwise(EDGES), pieces, strict=True):
+        where = np.flatnonzero((share >= left) & (share < right))
+        place = (2 * share[where] - left - right) / (right - left)
+        short[where], eta[where], hinge[where] = chebyshev.chebval(place, coefficients)
+    hinge = np.maximum(hinge, 0.0) * square
+    short, eta = np.minimum(short * square, 1.0), eta * square**2
+    wide = np.flatnonzero(share >= 1.0)
+    short[wide] = 1.0
+    eta[wide], hinge[wide] = inner_hinges(short[wide], alpha[wide], alpha[wide], weight)
+    return short, eta, hinge
+
+
+def widest_rotational(weight: Weight) -> float:
+    """Half-angle alpha_l at which the thrust of the rotational mode vanishes [rad]."""
+    return _rotational(weight).widest
+
+
+@cache
+def _rotational(weight: Weight) -> _Rotational:
+    """Solve eqs (1), (3) and (4) at the Chebyshev nodes of every piece."""
+
+    def excess(short: Array, alpha: Array) -> Array:
+        """Thickness the shoulder asks for beyond that of the crown."""
+        shoulder, _ = inner_hinges(short, alpha, alpha, weight)
+        return shoulder - inner_hinges(short, np.zeros_like(alpha), alpha, weight)[0]
+
+    def at_zero_thrust(angle: float) -> float:
+        return float(excess(np.ones(1), np.array([angle]))[0])
+
+    widest = float(brentq(at_zero_thrust, 2.3, 2.9, xtol=1e-300, rtol=ROUND_OFF))
+    points = chebyshev.chebpts1(NODES)
+    places = [(left + right + (right - left) * points) / 2 for left, right in pairwise(EDGES)]
+    square = np.concatenate(places) * widest**2
+    alpha = np.sqrt(square)
+    low, high = np.zeros_like(alpha), np.minimum(square, 1.0)
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        # The shoulder asks for less as the thrust falls.
+        more = excess(middle, alpha) > 0
+        low, high = np.where(more, middle, low), np.where(more, high, middle)
+    short = (low + high) / 2
+    # Near alpha_l the thickness the crown asks for is all but undetermined.
+    eta, hinge = inner_hinges(short, alpha, alpha, weight)
+    values = np.stack([short / square, eta / square**2, hinge / square], axis=1)
+    pieces: list[Array] = [
+        np.asarray(chebyshev.chebfit(points, piece, NODES - 1), dtype=float)
+        for piece in np.split(values, len(places))
+    ]
+    return _Rotational(widest, pieces)

@@ -1,0 +1,1 @@
+"""The questions, and the methods that can answer them."""

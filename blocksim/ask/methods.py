@@ -1,0 +1,181 @@
+"""The ladder of methods: which there are, what each sees, which one a question needs.
+
+`METHODS` go from the cheapest to the dearest, as measured (`analysis/costs.py`), and each
+says how fine a bracket it is good for, as measured (`analysis/random_arches.py`,
+`direct_arches.py`). So `auto` is the first of them that sees what is asked to that width.
+`theory` is passed over: it is of the continuous arch, which n voussoirs differ from by up to
+33/n^2, and no cheaper, since answers state both.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from blocksim import engines
+from blocksim.common.errors import InputError
+from blocksim.evidence.setup import BY_RULE, SETTINGS, Overrides, require_setting
+
+STATIC = ("theory", "limit")
+SPATIAL = "pybullet"
+"""The method that sees out of the plane."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A rung of the ladder.
+
+    Parameters
+    ----------
+    name : str
+    sees : str
+        What it can tell.
+    finest : float
+        Smallest relative width of a bracket it can answer for; its error is less.
+    is_spatial : bool
+        Whether it sees motion out of the plane.
+    reduces : bool
+        Whether it tells what joints carry, which a reduced arch takes.
+    settings : tuple of str
+        Those of `SETTINGS` it is run with.
+    """
+
+    name: str
+    sees: str
+    finest: float
+    is_spatial: bool = False
+    reduces: bool = False
+    settings: tuple[str, ...] = ()
+
+    @property
+    def is_static(self) -> bool:
+        """Whether it answers without motion."""
+        return self.name in STATIC
+
+
+METHODS = {
+    method.name: method
+    for method in (
+        Method(
+            name="theory",
+            sees="the continuous arch: least thickness, mode, thrust, hinge and sliding angles",
+            finest=0.0,
+        ),
+        Method(
+            name="limit",
+            sees="the arch as built: the same, and the joints that turn or slide",
+            finest=0.0,
+        ),
+        Method(
+            name="direct",
+            sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
+            finest=1e-8,
+            reduces=True,
+            settings=("step", "still", "rest"),
+        ),
+        Method(
+            name="pymunk",
+            sees="motion in the plane: onset and collapse with Coulomb friction",
+            finest=1e-4,
+            reduces=True,
+            settings=tuple(SETTINGS),
+        ),
+        Method(
+            name="pybullet",
+            sees="motion in space: the same, and out of the plane",
+            finest=1e-3,
+            is_spatial=True,
+            reduces=True,
+            settings=tuple(SETTINGS),
+        ),
+        Method(
+            name="mujoco",
+            sees="motion in the plane: onset and collapse with soft contacts",
+            finest=1e-3,
+        ),
+    )
+}
+
+CHOICES = ("auto", *METHODS)
+
+
+def choose(
+    method: str,
+    tol: float = 0.0,
+    *,
+    spatial: bool = False,
+    moving: bool = False,
+    settings: Overrides = BY_RULE,
+    reduce: bool = False,
+) -> Method:
+    """Return the method asked for; for `auto` the cheapest that can answer.
+
+    Parameters
+    ----------
+    method : str
+        One of `CHOICES`.
+    tol : float
+        Relative width of the bracket asked for, 0 where there is none.
+    spatial : bool
+        Whether the question is of motion out of the plane.
+    moving : bool
+        Whether it is of motion at all.
+    settings : mapping of str to float
+        Given instead of what the engine's rule says.
+    reduce : bool
+        Whether no more blocks are to be simulated than it takes.
+
+    Raises
+    ------
+    InputError
+        If there is no such method, or it cannot answer to that tolerance, or moves
+        nothing or does not see out of the plane where that is asked, or knows no such
+        setting; if there is nothing to reduce.
+    """
+    if method not in CHOICES:
+        raise InputError("method", method, f"one of {', '.join(CHOICES)}")
+    if method == "auto":
+        rung = next(
+            each
+            for each in METHODS.values()
+            if each.name != "theory"
+            and each.finest <= (tol or math.inf)
+            and each.is_spatial >= spatial
+            and each.is_static <= (not moving)
+        )
+    else:
+        rung = METHODS[method]
+    if spatial and not rung.is_spatial:
+        raise InputError("method", method, f"{SPATIAL} with a lean")
+    if moving and rung.is_static:
+        able = ", ".join(engines.ENGINES)
+        raise InputError("method", method, f"one of {able}: others move nothing")
+    if reduce and (spatial or not rung.reduces):
+        able = ", ".join(each.name for each in METHODS.values() if each.reduces)
+        raise InputError("reduce", reduce, f"left out but for {able}, in the plane")
+    if tol and tol < rung.finest:
+        raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
+    for name, value in settings.items():
+        known = ", ".join(rung.settings)
+        allowed = f"one of {known} for {rung.name}" if known else f"left out for {rung.name}"
+        if name not in rung.settings:
+            raise InputError("settings", name, allowed)
+        require_setting(name, value)
+    return rung
+
+
+def chosen_words(method: str, rung: Method) -> str:
+    """Say what `auto` took and why, to be added to the reason of an answer."""
+    if method != "auto":
+        return ""
+    if rung.is_spatial:
+        seen = "sees out of the plane"
+    else:
+        seen = "tells of the voussoirs as built" if rung.is_static else "moves them"
+    width = f"a width of {rung.finest:g}" if rung.finest else "any width"
+    return f"; auto took {rung.name}: the cheapest that {seen}, good for {width}"
+
+
+def missing(method: Method) -> str | None:
+    """Tell how to get what a method lacks here; None where it can run."""
+    return None if method.is_static else engines.remedy(method.name)

@@ -1,0 +1,147 @@
+"""Search for the threshold between ratios that collapse and ratios that stand.
+
+Below the least thickness the acceleration an arch starts with falls with its thickness and
+vanishes there: in nearly a straight line, as long as the mechanism is the same. So two
+ratios that collapsed tell where the threshold lies, and a probe to either side of that
+place closes the bracket, to whatever width; what an engine answers is never replaced by
+the estimate. Where the estimate leads nowhere the bracket is halved.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from blocksim.common.progress import Progress, silent
+from blocksim.evidence.verdict import Verdict
+
+ETA_MAX = 2.0
+FIRST_STEP = 0.01
+"""First guess of the bracket's half-width, relative; doubled until it holds."""
+THINNEST = 1e-6
+"""Search below this ratio is given up."""
+ASIDE = 0.4
+"""How far to the sides of the estimate probes are made, in units of the tolerance."""
+CURVED = 5.0
+"""Error of the estimate over the square of how far it reaches, both relative."""
+
+
+class Answer(NamedTuple):
+    """What a judge says of a ratio: its verdict, and the acceleration it starts with [g]."""
+
+    verdict: Verdict
+    acceleration: float
+
+
+class Search:
+    """Bisection on a judge that may answer `undecided`.
+
+    Parameters
+    ----------
+    judge : callable
+        Ratio to answer.
+    progress : Progress, optional
+
+    Attributes
+    ----------
+    low, high : float or None
+        Largest ratio that collapsed, smallest that stood.
+    runs, undecided : int
+        Ratios tried, and those without an answer.
+    """
+
+    def __init__(self, judge: Callable[[float], Answer], progress: Progress = silent) -> None:
+        self._judge = judge
+        self._progress = progress
+        self._dark: list[float] = []
+        self._falls: list[tuple[float, float]] = []
+        self.low: float | None = None
+        self.high: float | None = None
+        self.runs = 0
+
+    @property
+    def undecided(self) -> int:
+        """Ratios without an answer."""
+        return len(self._dark)
+
+    def probe(self, eta: float) -> Verdict:
+        """Ask the judge and keep its answer."""
+        verdict, acceleration = self._judge(eta)
+        self.runs += 1
+        if verdict is Verdict.COLLAPSES:
+            self._falls.append((eta, acceleration))
+            self.low = eta if self.low is None else max(self.low, eta)
+        elif verdict is Verdict.STANDS:
+            self.high = eta if self.high is None else min(self.high, eta)
+        else:
+            self._dark.append(eta)
+        return verdict
+
+    def expand(self, guess: float) -> None:
+        """Step away from a guess, ever farther, until both answers have been had."""
+        step = FIRST_STEP
+        eta = min(guess * (1 + step), ETA_MAX)
+        self._progress(0.0, f"trying eta = {eta:.6g}")
+        self.probe(eta)
+        while self.high is None and eta < ETA_MAX:
+            step *= 2
+            eta = min(eta * (1 + step), ETA_MAX)
+            self.probe(eta)
+        if self._ceiling() is None:
+            return
+        step, eta = FIRST_STEP, guess
+        while self.low is None and eta > THINNEST:
+            eta *= 1 - min(step, 0.5)
+            step *= 2
+            self.probe(eta)
+
+    def bisect(self, tol: float) -> None:
+        """Narrow the bracket until its relative width is `tol` or darkness fills it."""
+        start, helped = self._width(), True
+        while (width := self._width()) > tol:
+            share = 0.9 * math.log(start / width) / math.log(start / tol)
+            etas = self._around_estimate(tol) if helped else ()
+            halves = not etas
+            if halves:
+                middle = self._middle(tol)
+                if middle is None:
+                    return
+                etas = (middle,)
+            for eta in etas:
+                if self.low is not None and self.low < eta:
+                    self._progress(share, f"trying eta = {eta:.6g}")
+                    self.probe(eta)
+            # An estimate that did worse than two halvings gives way to one.
+            helped = halves or self._width() < width / 4
+
+    def _ceiling(self) -> float | None:
+        """Upper end of the search: what stood, or the thickest arch if it is undecided."""
+        return ETA_MAX if self.high is None and ETA_MAX in self._dark else self.high
+
+    def _width(self) -> float:
+        """Relative width of the bracket, 0 while there is none."""
+        high = self._ceiling()
+        return 0.0 if self.low is None or high is None else 1 - self.low / high
+
+    def _middle(self, tol: float) -> float | None:
+        """Middle of the wider end part; nothing is to be learnt between undecided ratios."""
+        floor, ceiling = self.low, self._ceiling()
+        if floor is None or ceiling is None:
+            return None
+        dark = [eta for eta in self._dark if floor < eta < ceiling]
+        below, above = min(dark, default=ceiling), max(dark, default=floor)
+        parts = ((floor, below), (above, ceiling))
+        low, high = max(parts, key=lambda part: part[1] - part[0])
+        return (low + high) / 2 if high - low > tol * ceiling / 4 else None
+
+    def _around_estimate(self, tol: float) -> tuple[float, ...]:
+        """Ratios to both sides of where the accelerations of two collapses vanish."""
+        if self.high is None or self._dark or len(self._falls) < 2:
+            return ()
+        (far, more), (near, less) = sorted(self._falls)[-2:]
+        if not more > less > 0:
+            return ()
+        zero = near + less * (near - far) / (more - less)
+        aside = zero * max(ASIDE * tol, CURVED * (1 - far / zero) * (1 - near / zero))
+        return tuple(eta for eta in (zero + aside, zero - aside) if near < eta < self.high)

@@ -1,0 +1,1 @@
+"""Blocks, the joints between them, and how joints move."""

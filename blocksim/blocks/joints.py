@@ -1,0 +1,221 @@
+"""Poses to joint motions to joint states."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly
+
+
+class JointState(StrEnum):
+    """What a joint does."""
+
+    CLOSED = "closed"
+    HINGE_INTRADOS = "hinge-intrados"
+    HINGE_EXTRADOS = "hinge-extrados"
+    SLIDES = "slides"
+    HINGE_AND_SLIDES = "hinge-and-slides"
+    OPEN = "open"
+
+
+@dataclass(frozen=True, eq=False)
+class JointMotion:
+    """How far the two sides of each joint have parted.
+
+    Parameters
+    ----------
+    gap : (joints, 2) float
+        Opening at the inner and outer end; negative where blocks overlap.
+    slip : (joints,) float
+        Tangential displacement of `after` relative to `before`, mean of the ends.
+    turn : (joints,) float
+        Rotation of `after` relative to `before` [rad].
+    """
+
+    gap: Array
+    slip: Array
+    turn: Array
+
+
+def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
+    """Measure every joint at one instant.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    poses : (blocks, 3 or 6) float
+        Centres of mass x, y and rotations [rad], in units of the assembly's size; motion
+        out of the plane is left aside.
+
+    Returns
+    -------
+    JointMotion
+        Lengths in units of the assembly's size.
+    """
+    size = assembly.size
+    before, after, ends, normal, tangent, *_ = assembly.joint_arrays
+    # The support is appended as a block that stays where it is, index -1.
+    start = np.vstack([assembly.centres / size, np.zeros(2)])
+    moved = np.vstack([poses[:, :PLANAR], np.zeros(PLANAR)])
+
+    def carried(block: NDArray[np.int64]) -> Array:
+        """Where the block has taken the two ends of the joint, less where they were."""
+        arm = ends - start[block][:, None]
+        angle = moved[block, 2][:, None, None]
+        # cos - 1 = -2 sin^2(angle/2): no cancellation for small rotations.
+        versine = 2 * np.sin(angle / 2) ** 2
+        spun = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) * np.sin(angle) - arm * versine
+        return spun + (moved[block, :2] - start[block])[:, None]
+
+    apart = carried(after) - carried(before)
+    mean = (moved[after, 2] + moved[before, 2]) / 2
+    cos, sin = np.cos(mean)[:, None], np.sin(mean)[:, None]
+
+    def along(axis: Array) -> Array:
+        turned = np.stack(
+            [axis[:, :1] * cos - axis[:, 1:] * sin, axis[:, :1] * sin + axis[:, 1:] * cos], -1
+        )
+        return np.einsum("jek,jk->je", apart, turned[:, 0])
+
+    return JointMotion(
+        gap=along(normal),
+        slip=along(tangent).mean(axis=1),
+        turn=moved[after, 2] - moved[before, 2],
+    )
+
+
+def overlap_share(assembly: Assembly, poses: Array) -> float:
+    """Deepest overlap at the end of a joint, as a share of the largest motion of a joint.
+
+    A motion that contacts allow has next to none; one driven by contacts that have not
+    converged presses blocks into each other.
+    """
+    motion = joint_motion(assembly, poses)
+    gap = motion.gap.min(axis=1)
+    if poses.shape[1] == SPATIAL:
+        # Front and back: what turns about the joint's tangent.
+        gap = gap - _beyond_the_plane(assembly, poses)[0]
+    moved = _largest(assembly, motion, poses)
+    return max(0.0, -float(gap.min())) / moved if moved > 0 else 0.0
+
+
+def slip_share(assembly: Assembly, poses: Array) -> float:
+    """Largest slip of a joint in the plane, as a share of the largest motion of a joint."""
+    motion = joint_motion(assembly, poses)
+    moved = _largest(assembly, motion, poses)
+    return float(np.abs(motion.slip).max()) / moved if moved > 0 else 0.0
+
+
+def _largest(assembly: Assembly, motion: JointMotion, poses: Array) -> float:
+    """Largest opening by rotation or slip of a joint, out of the plane, too."""
+    turned = np.abs(motion.turn) * assembly.joint_arrays.length
+    moves = [turned, np.abs(motion.slip)]
+    if poses.shape[1] == SPATIAL:
+        moves += _beyond_the_plane(assembly, poses)
+    return max(float(move.max()) for move in moves)
+
+
+def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
+    """How far each joint opens at one of its faces and slips, across the plane.
+
+    To first order in the rotations, in units of the assembly's size, shape (joints,) each.
+    """
+    before, after, ends, _, tangent, *_ = assembly.joint_arrays
+    middle = ends.mean(axis=1)
+    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+    beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])
+    depths = np.append(assembly.depths, np.inf)
+    half = np.minimum(depths[before], depths[after]) / 2
+
+    def across(block: NDArray[np.int64]) -> Array:
+        arm = middle - centres[block]
+        turn = beyond[block, 1:]
+        return beyond[block, 0] + turn[:, 0] * arm[:, 1] - turn[:, 1] * arm[:, 0]
+
+    rocked = np.einsum("ji,ji->j", beyond[after, 1:] - beyond[before, 1:], tangent)
+    return np.abs(rocked) * half, np.abs(across(after) - across(before))
+
+
+ACTIVE = 0.02
+"""A joint takes part if it turns or slips more than this share of the most active one."""
+LEFT = 0.02
+"""Gap of both ends at which the blocks of a joint have left each other [size]."""
+PARTED = 0.25
+"""A turning joint is open if its closer end parts by this share of what its turn opens."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObservedJoint:
+    """State of one joint.
+
+    Parameters
+    ----------
+    angle : float
+        Direction of the joint from the crown, positive to the right [rad].
+    state : JointState
+    """
+
+    angle: float
+    state: JointState
+
+
+def classify(
+    assembly: Assembly, poses: Array, *, least: float | None = None
+) -> tuple[ObservedJoint, ...]:
+    """Tell what each joint does at one instant.
+
+    Turning (relative rotation times the assembly's size) and slipping are both lengths
+    of the motion itself and compared with the largest of either. A turning joint is
+    hinged at the end that stays closed, and open where neither does. A joint whose blocks
+    have left each other, apart or past each other, is open whatever else it did.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    poses : (blocks, 3 or 6) float
+        As for `joint_motion`; best an early instant, while the motion is the collapse
+        mechanism and not yet what follows from it.
+    least : float, optional
+        A joint takes part if it turns or slips more than this, in units of the assembly's
+        size; by default more than the share `ACTIVE` of the most active one.
+
+    Returns
+    -------
+    tuple of ObservedJoint
+        All closed where nothing moved.
+    """
+    motion = joint_motion(assembly, poses)
+    turn, slip = np.abs(motion.turn), np.abs(motion.slip)
+    if least is None:
+        least = ACTIVE * max(float(turn.max()), float(slip.max()))
+    observed: list[ObservedJoint] = []
+    for index, tangent in enumerate(assembly.joint_arrays.tangent):
+        angle = math.atan2(tangent[0], tangent[1])
+        opening = motion.gap[index]
+        slips = bool(slip[index] > least > 0)
+        length = assembly.joint_arrays.length[index]
+        if opening.min() > LEFT or slip[index] > length:
+            state = JointState.OPEN
+        elif turn[index] > least > 0:
+            parted = turn[index] * length
+            state = _turning(opening, parted, slips=slips)
+        else:
+            state = JointState.SLIDES if slips else JointState.CLOSED
+        observed.append(ObservedJoint(angle=angle, state=state))
+    return tuple(observed)
+
+
+def _turning(opening: Array, parted: float, *, slips: bool) -> JointState:
+    """State of a joint that turns: which end stays closed, and does it slip."""
+    if opening.min() > PARTED * parted:
+        return JointState.OPEN
+    if slips:
+        return JointState.HINGE_AND_SLIDES
+    if opening[0] < opening[1]:
+        return JointState.HINGE_INTRADOS
+    return JointState.HINGE_EXTRADOS

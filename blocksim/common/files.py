@@ -1,0 +1,118 @@
+"""Files: written whole or not at all, and to the disk; read up to a bounded size."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from errno import EISDIR
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import BinaryIO
+
+from blocksim.common.errors import InputError
+
+
+def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Write aside, then rename, so that nobody ever sees half a file.
+
+    It is on the disk, not only in the system's memory, when this returns.
+
+    Parameters
+    ----------
+    path : Path
+    write : callable
+        Writes to the open binary file it is given.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    aside = path.with_name(f".{path.name}.part")
+    try:
+        with aside.open("wb") as file:
+            write(file)
+            file.flush()
+            os.fsync(file.fileno())
+        aside.replace(path)
+        _sync_folder(path.parent)
+    except OSError as error:
+        raise InputError("--out", str(path), f"writable ({error.strerror})") from None
+    finally:
+        # Where the folder itself is missing or a file, there is nothing to take away.
+        with suppress(OSError):
+            aside.unlink()
+
+
+def require_file(path: Path, field: str, allowed: str, largest: int) -> None:
+    """Check that a file is there to be read.
+
+    Parameters
+    ----------
+    path : Path
+    field : str
+        What the file is, for what is said of it.
+    allowed : str
+        What would have been accepted, as a phrase.
+    largest : int
+        Bytes; a larger file is refused.
+
+    Raises
+    ------
+    InputError
+        If it is no file, cannot be read, or is too large.
+    """
+    try:
+        if not path.is_file():
+            raise InputError(field, str(path), allowed)
+        with path.open("rb") as file:
+            size = os.fstat(file.fileno()).st_size
+    except OSError as error:
+        raise InputError(field, str(path), f"{allowed} ({error.strerror})") from None
+    if size > largest:
+        raise InputError(field, str(path), f"at most {largest} bytes")
+
+
+def _sync_folder(path: Path) -> None:
+    """Put the names of a folder's files on the disk, where the system can (Windows cannot)."""
+    if os.name != "posix":
+        return
+    folder = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
+def require_place(path: Path) -> None:
+    """Check that a file can be written, before the work that is to fill it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
+        with TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise InputError("--out", str(path), f"writable ({error.strerror})") from None
+
+
+def make_folder(path: Path) -> None:
+    """Create a folder for results, and check that they can be written.
+
+    Raises
+    ------
+    InputError
+        If it cannot be created or written.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=path):
+            pass
+    except OSError as error:
+        raise InputError("--out", str(path), f"a writable folder ({error.strerror})") from None

@@ -1,0 +1,147 @@
+"""Sums over the joints of blocks, and the banded systems they form."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg.lapack import dgbsv, dpbsv
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from blocksim.blocks.assembly import Array
+
+
+class Bands:
+    """Which unknowns each joint couples.
+
+    A system that cannot be solved gives nan, which no residual of a step survives. LAPACK is
+    called without scipy's checks, which take as long as a system of 100 unknowns.
+
+    Rows have shape (joints, k, 6): each is a velocity of a joint, from the six of its two
+    blocks.
+
+    Parameters
+    ----------
+    before, after : (joints,) int
+        Blocks on both sides of each joint, -1 for the ground.
+    blocks : int
+    """
+
+    def __init__(
+        self, before: NDArray[np.int64], after: NDArray[np.int64], blocks: int
+    ) -> None:
+        self.size = 3 * blocks
+        self.place = self._places(before, after)
+        self._order, place = None, self.place
+        inner = (before >= 0) & (after >= 0)
+        if np.abs(before - after)[inner].max(initial=0) > 1:
+            # Blocks that are no chain: numbered so that those that touch are near.
+            ones = np.ones(inner.sum())
+            graph = csr_array((ones, (before[inner], after[inner])), shape=(blocks, blocks))
+            order = reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
+            rank = np.append(np.argsort(order), -1)
+            self._order = (3 * order[:, None].astype(np.int64) + np.arange(3)).ravel()
+            place = self._places(rank[before], rank[after])
+        row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
+        inside = (row < self.size) & (column < self.size)
+        apart = row - column
+        self._width = int(np.abs(apart[inside]).max(initial=0))
+        # Places in LAPACK's band storage, column after column, and one past its end. The
+        # factors of a general matrix need as many rows again above the band.
+        count = self._width + 1
+        lower = column * count + apart
+        self._lower = np.where(inside & (apart >= 0), lower, count * self.size).ravel()
+        self.rows = 3 * self._width + 1
+        whole = column * self.rows + 2 * self._width + apart
+        self.whole = np.where(inside, whole, self.rows * self.size).reshape(len(place), 36)
+
+    def _places(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
+        pair = np.repeat(np.stack([before, after], axis=1), 3, axis=1)
+        return np.where(pair < 0, self.size, 3 * pair + np.tile(np.arange(3), 2))
+
+    def of_joints(self, values: Array) -> Array:
+        """Return for each joint the six values of its blocks, 0 for the ground's."""
+        padded = np.zeros(self.size + 1)
+        padded[:-1] = values
+        return padded[self.place]
+
+    def along(self, rows: Array, values: Array) -> Array:
+        """Velocities along rows, shape (joints, k)."""
+        return np.matmul(rows, self.of_joints(values)[:, :, None])[:, :, 0]
+
+    def pull(self, rows: Array, forces: Array) -> Array:
+        """Sum forces along rows, shape (joints, k), on the blocks."""
+        parts = np.matmul(forces[:, None, :], rows).ravel()
+        sums = np.bincount(self.place.ravel(), parts, self.size + 1)
+        return sums[:-1].astype(np.float64, copy=False)
+
+    def solve_symmetric(self, rows: Array, weight: ArrayLike, right: Array) -> Array:
+        """Solve (1 + rows^T weight rows) x = right."""
+        count = self._width + 1
+        products = self._products(rows, weight, rows)
+        band = np.bincount(self._lower, products, count * self.size + 1)[:-1]
+        band = band.reshape(self.size, count).T
+        band[0] += 1.0
+        _, x, failed = dpbsv(band, self._ordered(right), lower=1, overwrite_ab=1)
+        return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
+
+    def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
+        """Solve (1 + rows^T weight seen) x = right."""
+        return self.solve_band(self.band(rows, weight, seen), right)
+
+    def band(self, rows: Array, weight: ArrayLike, seen: Array) -> Array:
+        """Return rows^T weight seen in LAPACK's storage, and a place for what is dropped."""
+        products = self._products(rows, weight, seen)
+        band = np.bincount(self.whole.ravel(), products, self.rows * self.size + 1)
+        return band.astype(np.float64, copy=False)
+
+    def solve_band(self, band: Array, right: Array) -> Array:
+        """Solve (1 + matrix) x = right, the matrix as from `band`; it is used up."""
+        width, right = self._width, self._ordered(right)
+        band = band[:-1].reshape(self.size, self.rows).T
+        band[2 * width] += 1.0
+        _, _, x, failed = dgbsv(width, width, band, right, overwrite_ab=1)
+        return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
+
+    def _ordered(self, values: Array) -> Array:
+        return values if self._order is None else values[self._order]
+
+    def _natural(self, values: Array) -> Array:
+        if self._order is None:
+            return values
+        natural = np.empty_like(values)
+        natural[self._order] = values
+        return natural
+
+    @staticmethod
+    def _products(rows: Array, weight: ArrayLike, seen: Array) -> Array:
+        weighted = rows.transpose(0, 2, 1) * np.asarray(weight)[:, None, :]
+        return np.matmul(weighted, seen).ravel()
+
+
+class System:
+    """A system (1 + matrix) x = right that changes joint by joint.
+
+    Parameters
+    ----------
+    bands : Bands
+    rows, weight, seen, right
+        As in `Bands.solve`, to begin with.
+    """
+
+    def __init__(
+        self, bands: Bands, rows: Array, weight: Array, seen: Array, right: Array
+    ) -> None:
+        self._bands = bands
+        self._band = bands.band(rows, weight, seen)
+        self._right = np.append(right, 0.0)
+
+    def add(self, joint: int, matrix: Array, right: Array) -> None:
+        """Add a joint's matrix (6, 6) and right side (6,)."""
+        self._band[self._bands.whole[joint]] += matrix.ravel()
+        self._right[self._bands.place[joint]] += right
+
+    def solve(self) -> Array:
+        """Return x."""
+        return self._bands.solve_band(self._band.copy(), self._right[:-1])

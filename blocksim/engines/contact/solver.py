@@ -1,0 +1,263 @@
+"""One step's contact problem: unilateral contact and Coulomb friction, solved to its end.
+
+For x, the mean accelerations over the step, and p, the contact forces,
+
+    M (x - f) = N^T p_n + T^T p_t,    0 <= p_n  _|_  n >= 0,    |p_t| <= mu p_n, against t,
+
+where n = n0 + N x and t = t0 + T x are the normal and tangential velocities at the end of
+the step over its length. Only neighbours touch, so all matrices are banded and a step costs
+as much as the number of blocks.
+
+The method of multipliers makes the contacts springs of stiffness k with a preload, the
+forces found last: p_n = max(0, q_n - k n) and p_t = q_t - k t, cut to the friction cone.
+What remains is a continuous, piecewise linear system in x, and the springs' forces become
+those of rigid contact within a few rounds, however soft the springs are.
+
+- Newton's method solves it as a rule, and may run in circles: friction makes the system
+  unsymmetric, and no function tells progress from regress.
+- Then a path is followed that begins with all contacts apart and cannot fail to arrive
+  (`path.py`).
+- From nothing, the associated problem, whose friction dilates, is solved first. It is a
+  strictly convex quadratic programme, and Newton's method with an exact line search ends it
+  from anywhere. Where nothing slides, its solution is the one sought.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import Array
+from blocksim.engines.contact.associated import associated
+from blocksim.engines.contact.banded import Bands
+from blocksim.engines.contact.law import LEAN, OPEN, STICKS, Contacts, cut, leaning
+from blocksim.engines.contact.path import Balance, come_together, shrink
+from blocksim.engines.contact.springs import MOST_ROUNDS, Springs
+
+EXACT = 1e-16
+"""Yield of a contact that is round-off, with accelerations of 1 [g]."""
+MOST_NEWTON = 10
+"""Newton steps before the path is followed."""
+FARTHEST = 1e9
+"""Repetitions of a change of forces at once."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Solution:
+    """Accelerations and contact forces of a step.
+
+    Parameters
+    ----------
+    acceleration : (blocks, 3) float
+    forces : (joints, 4) float
+        Pressure at the two contacts of each joint, then friction [mean weights].
+    contacts : (joints, 2) int
+        What each contact does.
+    residual : float
+        Worst of force imbalance (mean weights), penetration rate and complementarity [g],
+        over the largest acceleration where that is above 1.
+    iterations : int
+        Banded systems solved.
+    paths : int
+        Systems for which a path was followed.
+    """
+
+    acceleration: Array
+    forces: Array
+    contacts: Contacts
+    residual: float
+    iterations: int
+    paths: int
+
+    def carried(self, old: NDArray[np.int64], new: NDArray[np.int64]) -> Solution:
+        """Return the same for another list of joints; those not there before are open."""
+        forces, contacts = np.zeros((len(new), 4)), np.zeros((len(new), 2), dtype=np.int8)
+        _, was, now = np.intersect1d(old, new, assume_unique=True, return_indices=True)
+        forces[now], contacts[now] = self.forces[was], self.contacts[was]
+        return replace(self, forces=forces, contacts=contacts)
+
+
+class ContactProblem:
+    """Blocks, what they touch, and friction: everything that stays from step to step.
+
+    Parameters
+    ----------
+    before, after : (joints,) int
+        Blocks on both sides of each joint, -1 for the ground.
+    mass : (blocks, 3) float
+        Mass, mass and moment of inertia, in mean masses.
+    mu : float
+        Friction coefficient, finite.
+    """
+
+    def __init__(
+        self, before: NDArray[np.int64], after: NDArray[np.int64], mass: Array, mu: float
+    ) -> None:
+        self.mu = mu
+        self.root = np.sqrt(mass)
+        self.bands = Bands(before, after, len(mass))
+        self.scale = self.bands.of_joints(1 / self.root.ravel())[:, None, :]
+
+    def solve(
+        self,
+        rows: Array,
+        rates: Array,
+        free: Array,
+        start: Solution | None = None,
+        precision: float = EXACT,
+    ) -> Solution:
+        """Solve one step.
+
+        Parameters
+        ----------
+        rows : (joints, 4, 6) float
+            Normal velocities at the two contacts from those of the two blocks (N), then
+            the tangential ones (T).
+        rates : (joints, 4) float
+            The same velocities without acceleration, over the step (n0, t0).
+        free : (blocks, 3) float
+            Accelerations without contact (f).
+        start : Solution, optional
+            Of a similar step.
+        precision : float
+            Largest yield of a contact at which the step counts as solved [g].
+
+        Returns
+        -------
+        Solution
+        """
+        return _Step(self, rows, rates, free, precision).solve(start)
+
+
+class _Step:
+    """The contact problem of one step, in accelerations times the root of mass."""
+
+    def __init__(
+        self, problem: ContactProblem, rows: Array, rates: Array, free: Array, precision: float
+    ) -> None:
+        self._bands, self._root, self._mu = problem.bands, problem.root, problem.mu
+        self._rows, self._rates = rows * problem.scale, rates
+        self._free = (free * self._root).ravel()
+        self._precision = precision
+        self._iterations = self._paths = 0
+
+    def solve(self, start: Solution | None) -> Solution:
+        """Round after round, until contact springs no longer yield."""
+        springs = Springs(self._mu, self._precision)
+        if start is None:
+            x, forces, self._iterations = associated(
+                self._bands, self._rows, self._rates, self._free, self._mu, self._precision
+            )
+        else:
+            x, forces = (start.acceleration * self._root).ravel(), start.forces
+            # The contacts do what they did, above all where accelerations have changed:
+            # after an impact those of the last step say nothing.
+            x = x + self._way(start.contacts, x, forces, springs.stiffness(x))
+        contacts = np.zeros((len(forces), 2), dtype=np.int8)
+        preload = forces
+        for _ in range(MOST_ROUNDS):
+            stiffness = springs.stiffness(x)
+            x = self._balance(x, preload, stiffness, springs)
+            forces, contacts = cut(self._glued(x, preload, stiffness), self._mu)
+            change = forces - preload
+            if springs.rigid(x, float(np.abs(change).max(initial=0.0)) / stiffness):
+                break
+            far = self._reach(forces, change) if springs.drifts else 0.0
+            preload = forces + far * change
+        return Solution(
+            acceleration=x.reshape(-1, 3) / self._root,
+            forces=forces,
+            contacts=contacts,
+            residual=self._residual(x, forces),
+            iterations=self._iterations,
+            paths=self._paths,
+        )
+
+    def _reach(self, forces: Array, change: Array) -> float:
+        """Return how often a change can be repeated until a contact opens or slides.
+
+        Two contacts of a joint that stick although the blocks turn work against each other,
+        at equal accelerations, more from round to round, until one of them slides.
+        """
+        pressure, growth = forces[:, :2], change[:, :2]
+        room = np.stack([pressure] + [self._mu * pressure - s * forces[:, 2:] for s in (1, -1)])
+        loss = -np.stack([growth] + [self._mu * growth - s * change[:, 2:] for s in (1, -1)])
+        ahead = (loss > 0) & (room > loss)
+        return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
+
+    def _balance(self, x: Array, preload: Array, stiffness: float, springs: Springs) -> Array:
+        """Find the accelerations whose contact springs balance."""
+        balance = Balance(
+            bands=self._bands,
+            rows=self._rows,
+            bare=preload - stiffness * self._rates,
+            free=self._free,
+            mu=self._mu,
+            stiffness=stiffness,
+        )
+        solved, end = self._newton(x, balance, springs)
+        if solved:
+            return end
+        self._paths += 1
+        for path in (partial(shrink, balance, x), partial(come_together, balance)):
+            found, pieces = path()
+            self._iterations += pieces
+            if found is not None:
+                solved, end = self._newton(found, balance, springs)
+                if solved:
+                    break
+        return end
+
+    def _newton(self, x: Array, balance: Balance, springs: Springs) -> tuple[bool, Array]:
+        """Newton's method; whether it ended, and where."""
+        size, seen = math.inf, set[bytes]()
+        for _ in range(MOST_NEWTON):
+            forces, contacts = cut(balance.glued(x), self._mu)
+            imbalance = balance.imbalance(x, forces)
+            size, last = float(np.abs(imbalance).max()), size
+            if springs.balanced(size, last, x, balance.stiffness):
+                return True, x
+            way = self._solve(contacts, balance.stiffness, -imbalance)
+            state = contacts.tobytes()
+            # In a circle: half way leads out of many.
+            x = x + way * (0.5 if state in seen else 1.0)
+            seen.add(state)
+        return False, x
+
+    def _glued(self, x: Array, preload: Array, stiffness: float) -> Array:
+        """Return the springs' forces before opening and friction cut them."""
+        return preload - stiffness * (self._rates + self._bands.along(self._rows, x))
+
+    def _imbalance(self, x: Array, forces: Array) -> Array:
+        return x - self._free - self._bands.pull(self._rows, forces)
+
+    def _way(self, contacts: Contacts, x: Array, preload: Array, stiffness: float) -> Array:
+        """Return the change of x that balances the springs if each contact does as said."""
+        glued = self._glued(x, preload, stiffness)
+        pressure = np.where(contacts != OPEN, glued[:, :2], 0.0)
+        slides = self._mu * LEAN[contacts] * pressure
+        friction = np.where(contacts == STICKS, glued[:, 2:], slides)
+        imbalance = self._imbalance(x, np.concatenate([pressure, friction], axis=1))
+        return self._solve(contacts, stiffness, -imbalance)
+
+    def _solve(self, contacts: Contacts, stiffness: float, right: Array) -> Array:
+        """Return the change of x that adds `right` to the imbalance, likewise."""
+        weight = stiffness * np.concatenate([contacts != OPEN, contacts == STICKS], axis=-1)
+        acting = leaning(self._rows, contacts, self._mu)
+        self._iterations += 1
+        return self._bands.solve(acting, weight, self._rows, right)
+
+    def _residual(self, x: Array, forces: Array) -> float:
+        """Worst of imbalance, penetration rate, and what complementarity leaves."""
+        imbalance = np.abs(self._imbalance(x, forces)).max()
+        rates = self._rates + self._bands.along(self._rows, x)
+        pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
+        unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max(initial=0.0)
+        # Friction at the edge of the cone, against the slip, or no slip.
+        against = self._mu * pressure + np.sign(slip) * friction
+        coulomb = np.minimum(against, np.abs(slip)).max(initial=0.0)
+        return float(max(imbalance, unilateral, coulomb)) / max(1.0, float(np.abs(x).max()))

@@ -1,0 +1,1 @@
+"""What an engine shows of blocks: held at rest, let go, recorded, and a verdict."""

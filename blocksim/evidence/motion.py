@@ -1,0 +1,183 @@
+"""The moving run: let the arch go and watch.
+
+It is released from the impulses the onset test ended with, and recorded: every `FRAME`, or
+every `SPARSE` frames while nothing moves and only a verdict is asked for. What is said of
+it rests on the largest displacement d of any corner, in units of r, and on time in units
+of sqrt(r/g):
+
+- *collapses* as soon as d > `MOVED`;
+- *stands* if d < `rest` of the settings at time `QUIET`, or, from time `SOONEST` on, if d is
+  less than what such a rest allows by then, which grows as time squared: the way of a block
+  under an acceleration that would just show at `QUIET`. Near the limit an unstable arch
+  starts slowly, but with the rest of 1e-5 of an impulse engine an acceleration of 1e-6 g
+  shows even if it stays what it is, as where joints slide; where they turn it grows;
+- otherwise it is watched until `LONGEST` and is then *undecided*: it creeps if its
+  displacement grew less than threefold over the second half (steady drift doubles it), or
+  else starts too slowly.
+
+A run whose blocks overlap before it has moved by `EARLY`, by more than `OVERLAP` of the
+motion of their joints, was started by contacts that had not converged. It is thrown away
+and repeated with `FINER` times the sweeps in each step; after `REPEATS` of them it is
+undecided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array, Assembly, displacement
+from blocksim.blocks.joints import overlap_share
+from blocksim.common.progress import Progress, silent
+from blocksim.engines.base import Quality, Settings, World, trusted
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.setup import Setup
+from blocksim.evidence.verdict import Verdict
+
+MOVED = 2e-3
+QUIET, SOONEST = 5.0, 1.0
+LONGEST = 40.0
+CREEP = 3.0
+OVERLAP = 0.03
+FINER = 4
+REPEATS = 3
+FRAME = 0.05
+"""Time between frames."""
+SPARSE, UNMOVED = 4, 1e-5
+"""Frames in one while nothing has moved by that; it may not have passed `EARLY` after them."""
+EARLY = 3e-4
+"""Displacement at which the motion still is the collapse mechanism."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Motion:
+    """Outcome of a moving run.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    reason : str
+        The evidence in words.
+    overlap : float
+        Deepest overlap of blocks, as a share of the motion of their joints.
+    recording : Recording
+    """
+
+    verdict: Verdict
+    reason: str
+    overlap: float
+    recording: Recording
+
+    @property
+    def mechanism(self) -> Array:
+        """Poses when the motion first exceeds `EARLY`, or at the end."""
+        late = np.flatnonzero(self.recording.displacement > EARLY)
+        return self.recording.poses[late[0] if len(late) else -1]
+
+
+def moving_run(
+    setup: Setup,
+    held: World,
+    repeat: Callable[[World], None],
+    *,
+    until: float | None = None,
+    progress: Progress = silent,
+) -> Motion:
+    """Let an arch go that the onset test has held, and record it.
+
+    Parameters
+    ----------
+    setup : Setup
+    held : World
+        Built from it and at rest, impulses converged as far as they go.
+    repeat : callable
+        Holds another world of it likewise, if the run must be repeated.
+    until : float, optional
+        Time to record for, whatever happens [sqrt(r/g)]; by default the run stops as
+        soon as its verdict is certain.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Motion
+    """
+    motion = _released(setup, held, until, progress)
+    for _ in range(REPEATS):
+        if motion.overlap <= OVERLAP:
+            break
+        setup = setup.finer(FINER)
+        again = setup.world()
+        repeat(again)
+        motion = _released(setup, again, until, progress)
+    return motion
+
+
+def _released(setup: Setup, world: World, until: float | None, progress: Progress) -> Motion:
+    """Record one release, as far as its blocks do not overlap."""
+    assembly, step, rest = setup.assembly, setup.settings.step, setup.settings.rest
+    stride = max(1, round(FRAME / step))
+    taken = 0
+    times, poses, moved = [0.0], [world.poses()], [0.0]
+    end = LONGEST if until is None else until
+    overlap = 0.0
+    while times[-1] < end - step / 2 and overlap <= OVERLAP:
+        # Before anything moves a verdict needs no frames, and some engines longer steps.
+        idle = until is None and len(moved) > 1 and moved[-1] < UNMOVED
+        frames = SPARSE if idle else 1
+        world.advance(frames * stride)
+        taken += frames * stride
+        times.append(taken * step)
+        poses.append(world.poses())
+        moved.append(_moved(assembly, poses))
+        if moved[-1] > setup.settings.noise and moved[-2] < EARLY:
+            overlap = max(overlap, overlap_share(assembly, poses[-1]))
+        if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
+            break
+        progress(min(1.0, times[-1] / end), "moving run")
+    verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
+    reason = _reason(verdict, times, moved, overlap)
+    quality = world.quality()
+    if not trusted(world, setup.settings):
+        verdict = Verdict.UNDECIDED
+        reason = "released, " + _distrust(quality, setup.settings)
+    return Motion(
+        verdict=verdict,
+        reason=reason,
+        overlap=overlap,
+        recording=setup.record(times, poses, quality),
+    )
+
+
+def _distrust(quality: Quality, settings: Settings) -> str:
+    residual, penetration = quality.residual, quality.penetration
+    if residual is not None and not residual <= settings.residual:
+        return f"a contact was left with a residual of {residual:.1e}"
+    return f"blocks overlap by {penetration:.1e} r"
+
+
+def _moved(assembly: Assembly, poses: list[Array]) -> float:
+    return float(displacement(poses[-1] - poses[0], assembly))
+
+
+def _verdict(times: list[float], moved: list[float], rest: float) -> Verdict:
+    if moved[-1] > MOVED:
+        return Verdict.COLLAPSES
+    if times[-1] >= SOONEST and moved[-1] < rest * min(1.0, times[-1] / QUIET) ** 2:
+        return Verdict.STANDS
+    return Verdict.UNDECIDED
+
+
+def _reason(verdict: Verdict, times: list[float], moved: list[float], overlap: float) -> str:
+    way = f"{moved[-1]:.1e} r in {times[-1]:.1f} sqrt(r/g)"
+    if verdict is Verdict.COLLAPSES:
+        return f"released, it moved {way}"
+    if verdict is Verdict.STANDS:
+        return f"released, it stayed within {way}"
+    if overlap > OVERLAP:
+        return f"released, its blocks overlap by {overlap:.0%} of their motion: {way}"
+    halfway = moved[int(np.searchsorted(times, times[-1] / 2))]
+    if moved[-1] < CREEP * halfway:
+        return f"released, it creeps: {way}"
+    return f"released, it starts too slowly to tell: {way}"

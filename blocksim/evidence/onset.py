@@ -1,0 +1,210 @@
+"""The onset test: whether an arch held at rest would start to move if let go.
+
+The engine solves the contacts of a single step, in place, with as many sweeps as it
+takes. Its answer is read as one of two certificates, both from the engine's own solution:
+
+- *stands*: the largest acceleration falls below `still` of the settings (in g). The
+  contact forces found balance the weights and respect contact and friction.
+- *collapses*: the accelerations form a mechanism that the weight drives. No joint closes
+  further (overlap below `closing` of the motion), and the weight's work on it is at least
+  what goes into the motion (`WORK`): more where joints slide, the same where they turn.
+  Before the sweeps have converged blocks press into each other by percents, or forces at
+  parting joints do work that nobody pays for; afterwards by a millionth. An engine that
+  states the residual of its contacts is held to that instead of to the work.
+
+If neither is reached within the sweeps allowed the test is undecided, and says so. So it is
+where a block is farther than `FARTHEST` from the origin: its coordinates round off by 2e-16
+of that distance, which over a displacement of `PROBE` comes up to `closing` at 5e4 sizes.
+
+Coulomb's law may have two answers, rest and motion, where joints slide: no theorem tells that
+an arch that can rest does. Which one is found depends on where the search for impulses begins,
+and few thick voussoirs with much friction move whatever it is (155 deg, mu 3, n = 7: up to 10 %
+above the least thickness, its forces without fault). An arch stands if it can rest. A mechanism
+that slides is therefore believed only where no forces exist that would balance the weights
+(`limit.equilibrium`); where they do, the engine begins again, with these. If it keeps them, the
+arch stands: the forces are not taken on trust. An engine that cannot be given any is undecided.
+So it goes where sweeps run out (from `LATE` on) over what is a mechanism to a thousandth: a
+mode of sliding can take 10^6 sweeps to die away (125.02 deg, mu 0.8594, n = 10).
+Without sliding the answer is unique, and none of this is asked; nor is it of an engine that
+looks for rest first.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array, Assembly, displacement
+from blocksim.blocks.joints import overlap_share, slip_share
+from blocksim.common.progress import Progress, silent
+from blocksim.engines.base import Settings, World, trusted
+from blocksim.evidence.verdict import Verdict
+from blocksim.limit import equilibrium
+
+WORK = 0.99
+PROBE = 1e-6
+"""Size of the displacement along the accelerations at which joints are looked at."""
+LATE, NEARLY = 0.1, 1e-3
+"""Share of the sweeps allowed, and overlap; see above."""
+SLIPS = 0.02
+"""Slip over the largest motion of a joint above which a mechanism slides."""
+FARTHEST = 1e4
+"""Distance of a block from the origin above which coordinates are too coarse [size]."""
+FIRST_SWEEPS = 1000
+GROWTH = 1.5
+"""Ratio of the totals of sweeps at two looks."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Onset:
+    """Outcome of the onset test.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    acceleration : float
+        Largest acceleration of any corner [g].
+    mechanism : (blocks, 3) float
+        Poses after a small displacement (`PROBE`) along the accelerations.
+    sweeps : int
+        Sweeps spent.
+    forces : (joints, 2, 2) float or None
+        Forces of equilibrium (`limit.equilibrium`) it was given, if it was.
+    may_rest : bool
+        Whether it starts to move where forces of equilibrium exist.
+    too_far : bool
+        Whether it was built too far from the origin to be looked at.
+    """
+
+    verdict: Verdict
+    acceleration: float
+    mechanism: Array
+    sweeps: int
+    forces: Array | None = None
+    may_rest: bool = False
+    too_far: bool = False
+
+    def repeat(self, world: World) -> None:
+        """Bring a new world of the same blocks to where this test ended."""
+        if self.forces is not None:
+            world.begin(self.forces)
+        world.hold(self.sweeps)
+
+    @property
+    def reason(self) -> str:
+        """The evidence in words."""
+        size = f"{self.acceleration:.1e} g after {self.sweeps} sweeps"
+        match self.verdict:
+            case Verdict.STANDS if self.forces is not None:
+                given = "held at rest, it keeps forces of equilibrium it was given"
+                return f"{given}, to {size} (friction may let it move, too)"
+            case Verdict.STANDS:
+                return f"held at rest, contact forces balance the weight to {size}"
+            case Verdict.COLLAPSES:
+                return f"held at rest, it starts as a mechanism with {size}"
+            case Verdict.UNDECIDED if self.too_far:
+                return f"a block is more than {FARTHEST:g} sizes from the origin"
+            case Verdict.UNDECIDED if self.may_rest:
+                return f"it starts with {size}, or rests: friction allows both"
+            case Verdict.UNDECIDED:
+                return f"contact forces have not converged ({size})"
+
+
+def onset(
+    world: World,
+    assembly: Assembly,
+    mu: float,
+    settings: Settings,
+    progress: Progress = silent,
+    *,
+    simulated: Assembly | None = None,
+) -> Onset:
+    """Run the onset test on a world whose blocks are at rest where they were built.
+
+    Parameters
+    ----------
+    world : World
+    assembly : Assembly
+        The blocks of the world.
+    mu : float
+        Their friction coefficient.
+    settings : Settings
+        What counts as at rest, and the most sweeps to spend.
+    progress : Progress, optional
+    simulated : Assembly, optional
+        Those blocks the engine knows, where they are others (`blocksim.arch.reduction`).
+
+    Returns
+    -------
+    Onset
+        The world keeps its impulses and can be released from there.
+    """
+    if np.abs(assembly.centres).max() > FARTHEST * assembly.size:
+        return Onset(
+            verdict=Verdict.UNDECIDED,
+            acceleration=math.nan,
+            mechanism=world.poses(),
+            sweeps=0,
+            too_far=True,
+        )
+    allowed, built = settings.hold_sweeps, world.poses()
+    # Nothing is known of the far voussoirs before impulses have crossed the assembly.
+    first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
+    total, sweeps = 0, first
+    forces = given = None
+    unasked = not (world.finds_rest or settings.lean)
+    while True:
+        accelerations = world.hold(sweeps)
+        total += sweeps
+        seen = _look(world, assembly, settings, built, accelerations, total)
+        falls = seen.verdict is Verdict.COLLAPSES
+        nearly = falls or (
+            total > LATE * allowed and overlap_share(assembly, seen.mechanism) < NEARLY
+        )
+        if unasked and nearly and slip_share(assembly, seen.mechanism) > SLIPS:
+            unasked = False
+            forces = equilibrium(simulated or assembly, mu)
+            if forces is not None and world.begin(forces):
+                sweeps, given = first, forces
+                continue
+        seen = replace(seen, forces=given)
+        if falls and forces is not None:
+            return replace(seen, verdict=Verdict.UNDECIDED, may_rest=True)
+        if seen.verdict is not Verdict.UNDECIDED or total >= allowed:
+            return seen
+        progress(total / allowed, "onset test")
+        sweeps = min(int(total * (GROWTH - 1)), allowed - total)
+
+
+def _look(
+    world: World,
+    assembly: Assembly,
+    settings: Settings,
+    built: Array,
+    accelerations: Array,
+    sweeps: int,
+) -> Onset:
+    """Read the accelerations that a number of sweeps have led to."""
+    largest = float(displacement(accelerations, assembly))
+    mechanism = built + accelerations * (PROBE / largest if largest > 0 else 0.0)
+    verdict = Verdict.UNDECIDED
+    if trusted(world, settings):
+        if largest < settings.still:
+            verdict = Verdict.STANDS
+        elif overlap_share(assembly, mechanism) < settings.closing and (
+            world.quality().residual is not None
+            or _driven(assembly, accelerations, settings.lean)
+        ):
+            verdict = Verdict.COLLAPSES
+    return Onset(verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=sweeps)
+
+
+def _driven(assembly: Assembly, accelerations: Array, lean: float) -> bool:
+    """Tell whether the weight does the work of the motion, from rest over one step."""
+    masses = assembly.spatial_masses[:, : accelerations.shape[1]]
+    weight = np.array([0.0, -math.cos(lean), 0.0, math.sin(lean), 0.0, 0.0])
+    of_weight = float((masses * accelerations * weight[: accelerations.shape[1]]).sum())
+    of_motion = float((masses * accelerations**2).sum())
+    return of_weight > WORK * of_motion

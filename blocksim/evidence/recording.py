@@ -1,0 +1,199 @@
+"""A recording: poses over time, from which everything else is derived."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import zipfile
+import zlib
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from blocksim.arch.circular import Arch
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, displacement
+from blocksim.common.checks import require, require_friction, require_lean
+from blocksim.common.errors import InputError
+from blocksim.common.files import require_file, write_whole
+from blocksim.engines.base import Quality, Settings
+
+FORMAT = 1
+WRITTEN = "written by blocksim simulate"
+LARGEST_FILE = 1 << 30
+"""Bytes; a larger file is not opened."""
+LARGEST_INSIDE = 1 << 32
+"""Bytes of its arrays, which can be packed into a thousandth."""
+FARTHEST = 1e100
+"""Beyond this a square is no number any more [r]."""
+_UNREADABLE = (
+    KeyError,
+    TypeError,
+    ValueError,
+    OSError,
+    EOFError,
+    MemoryError,
+    RuntimeError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What an empty, damaged or foreign file makes numpy, zipfile and json raise."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recording:
+    """The motion of an arch in one engine.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+        Friction coefficient.
+    engine, engine_version : str
+    settings : Settings
+    times : (frames,) float
+        In units of sqrt(r/g), from the release.
+    poses : (frames, voussoirs, 3 or 6) float
+        Centres of mass x, y in units of r and rotations [rad]; from engines in three
+        dimensions also z, out of the plane, and the rotation vector's x and y.
+    quality : Quality
+        How well contact and friction were kept.
+    """
+
+    arch: Arch
+    mu: float
+    engine: str
+    engine_version: str
+    settings: Settings
+    times: Array
+    poses: Array
+    quality: Quality = field(default_factory=Quality)
+
+    @property
+    def state_hash(self) -> str:
+        """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
+        little = np.ascontiguousarray(self.poses, dtype="<f8")
+        return hashlib.sha256(little.tobytes()).hexdigest()[:16]
+
+    @property
+    def displacement(self) -> Array:
+        """Largest displacement of any corner since the release [r], shape (frames,)."""
+        return displacement(self.poses - self.poses[0], self.arch.assembly())
+
+    @property
+    def beyond_plane(self) -> Array:
+        """Largest displacement of any corner by motion out of the plane [r], (frames,)."""
+        moved = self.poses - self.poses[0]
+        if moved.shape[-1] == PLANAR:
+            return np.zeros(len(self.times))
+        moved[..., :PLANAR] = 0.0
+        return displacement(moved, self.arch.assembly())
+
+    def seconds(self, gravity: float) -> Array:
+        """Return times in seconds for a gravity in m/s^2."""
+        return self.times * math.sqrt(self.arch.radius / gravity)
+
+    def save(self, path: Path) -> None:
+        """Write a compressed .npz: arrays and one JSON text, nothing executable.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        header = {
+            "format": FORMAT,
+            "arch": asdict(self.arch),
+            "mu": self.mu,
+            "engine": self.engine,
+            "engine_version": self.engine_version,
+            "settings": asdict(self.settings),
+            "quality": asdict(self.quality),
+            "state_hash": self.state_hash,
+        }
+        text = np.array(json.dumps(header))
+
+        def write(file: BinaryIO) -> None:
+            np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
+
+        write_whole(path, write)
+
+
+def load_recording(path: Path) -> Recording:
+    """Read a recording and check that it is one.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, or no recording.
+    """
+    where = str(path)
+    require_file(path, "recording", "an existing .npz file", LARGEST_FILE)
+    try:
+        header, times, poses = _parts(path)
+        recording = Recording(
+            arch=Arch(**header["arch"]),
+            mu=float(header["mu"]),
+            engine=str(header["engine"]),
+            engine_version=str(header["engine_version"]),
+            settings=_settings(header["settings"]),
+            times=times,
+            poses=poses,
+            quality=Quality(**header.get("quality", {})),
+        )
+        _require_header(recording)
+    except _UNREADABLE:
+        raise InputError("recording", where, WRITTEN) from None
+    expected = (recording.times.size, recording.arch.voussoirs)
+    shaped = recording.times.ndim == 1 and recording.poses.shape in {
+        (*expected, PLANAR),
+        (*expected, SPATIAL),
+    }
+    if header.get("format") != FORMAT or not shaped:
+        raise InputError(
+            "recording", where, f"of format {FORMAT}, poses of shape {(*expected, PLANAR)}"
+        )
+    if header.get("state_hash") != recording.state_hash:
+        raise InputError("recording", where, "undamaged (its state hash does not match)")
+    if not _moves(recording):
+        raise InputError("recording", where, "of finite poses at times that grow")
+    return recording
+
+
+def _settings(written: dict[str, Any]) -> Settings:
+    """Read settings, those of older recordings, too: they called the lean a tilt."""
+    named = {"lean" if name == "tilt" else name: value for name, value in dict(written).items()}
+    named.pop("plane_lock", None)
+    return Settings(**named)
+
+
+def _parts(path: Path) -> tuple[dict[str, Any], Array, Array]:
+    """Unpack header, times and poses; what raises here is no recording."""
+    # Opened here: np.load leaves the file open where it is no archive.
+    with path.open("rb") as file:
+        inside = sum(part.file_size for part in zipfile.ZipFile(file).infolist())
+        require(inside <= LARGEST_INSIDE, "size", inside, f"at most {LARGEST_INSIDE} bytes")
+        file.seek(0)
+        with np.load(file, allow_pickle=False) as archive:
+            header = json.loads(str(archive["header"]))
+            times, poses = archive["times"], archive["poses"]
+    kinds = times.dtype.kind + poses.dtype.kind
+    require(kinds == "ff", "arrays", kinds, "of numbers")
+    return header, times.astype(np.float64), poses.astype(np.float64)
+
+
+def _require_header(recording: Recording) -> None:
+    """Raise `InputError` where what is said beside the poses cannot be."""
+    require_friction(recording.mu)
+    require_lean(recording.settings.lean)
+    name = f"{recording.engine} {recording.engine_version}"
+    require(name.isascii() and name.isprintable() and len(name) < 80, "engine", name, "a name")
+
+
+def _moves(recording: Recording) -> bool:
+    """Tell whether there is a first frame, and later ones follow it in time and in space."""
+    times, poses = recording.times, recording.poses
+    known = np.isfinite(times).all() and (np.abs(poses) < FARTHEST).all()
+    return bool(times.size and known and (np.diff(times) > 0).all())

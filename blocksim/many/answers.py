@@ -1,0 +1,243 @@
+"""Cases to rows: static methods in bulk, simulation where it is worth it."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
+
+import blocksim
+from blocksim.arch.bracket import bracket
+from blocksim.arch.check import check
+from blocksim.arch.circular import Arch
+from blocksim.ask.methods import STATIC
+from blocksim.common.errors import MissingPart
+from blocksim.engines import get_engine
+from blocksim.many.case import AUTO_ENGINE, Case, Given
+from blocksim.many.statics import Row, by_statics
+
+_ENCODER = json.JSONEncoder(allow_nan=False, check_circular=False)
+
+
+class Asked(NamedTuple):
+    """A case and its identity."""
+
+    identity: bytes
+    case: Case
+
+
+class Kind(NamedTuple):
+    """Cases that take about the same time."""
+
+    method: str
+    voussoirs: int
+    is_bracket: bool
+    settings: Given
+
+    @classmethod
+    def of(cls, case: Case) -> Kind:
+        """Return the kind of a case."""
+        return cls(case.method, case.voussoirs, case.is_bracket, case.settings)
+
+
+@dataclass(kw_only=True)
+class Tally:
+    """What a number of rows took.
+
+    Parameters
+    ----------
+    rows, failed : int
+        Rows, and those that say why there is no answer.
+    simulated : int
+    simulated_s : float
+        Time of the simulations [s].
+    spared : int
+        Arches an engine was asked about, and `limit` answered for.
+    """
+
+    rows: int = 0
+    failed: int = 0
+    simulated: int = 0
+    simulated_s: float = 0.0
+    spared: int = 0
+
+    def add(self, other: Tally) -> None:
+        """Count the rows of another tally, too."""
+        self.rows += other.rows
+        self.failed += other.failed
+        self.simulated += other.simulated
+        self.simulated_s += other.simulated_s
+        self.spared += other.spared
+
+
+class Answered(NamedTuple):
+    """Rows as they are written, and what they took.
+
+    Parameters
+    ----------
+    lines : list of bytes
+    tally : Tally
+    seconds : dict
+        Per kind: number of cases and time taken [s].
+    """
+
+    lines: list[bytes]
+    tally: Tally
+    seconds: dict[Kind, tuple[int, float]]
+
+
+@cache
+def version_of(method: str) -> str:
+    """Version of what answers: of blocksim, and of the library an engine is made of.
+
+    Raises
+    ------
+    MissingPart
+        If the engine's library is not installed.
+    """
+    if method in STATIC:
+        return blocksim.__version__
+    name = AUTO_ENGINE if method == "auto" else method
+    return f"{blocksim.__version__} {name} {get_engine(name).version}"
+
+
+def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
+    """Answer cases, in a worker.
+
+    Parameters
+    ----------
+    asked : sequence of Asked
+    versions : dict
+        Of each method, as where the sweep was started.
+
+    Returns
+    -------
+    Answered
+
+    Raises
+    ------
+    MissingPart
+        If an engine is not installed here, or in another version.
+    """
+    for method in {each.case.method for each in asked}:
+        if version_of(method) != versions[method]:
+            part = f"blocksim {versions[method]}"
+            raise MissingPart(part, f"a worker has {version_of(method)}; install the same")
+    started = time.perf_counter()
+    rows = [_question(each, versions[each.case.method]) for each in asked]
+    cases = [each.case for each in asked]
+    simulations = by_statics(cases, rows)
+    share = (time.perf_counter() - started) / len(rows)
+    for row in rows:
+        row["wall_s"] = share
+    for k in simulations:
+        _by_simulation(cases[k], rows[k])
+    tally = Tally(rows=len(rows), failed=sum(row["error"] is not None for row in rows))
+    seconds: defaultdict[Kind, tuple[int, float]] = defaultdict(lambda: (0, 0.0))
+    simulated = set(simulations)
+    for k, (case, row) in enumerate(zip(cases, rows, strict=True)):
+        kind, wall = Kind.of(case), float(str(row["wall_s"]))
+        count, total = seconds[kind]
+        seconds[kind] = count + 1, total + wall
+        if k in simulated:
+            tally.simulated += 1
+            tally.simulated_s += wall
+        elif case.band and row["error"] is None:
+            tally.spared += 1
+    return Answered([encoded(row) for row in rows], tally, dict(seconds))
+
+
+def failed(asked: Asked, versions: dict[str, str], why: str) -> Answered:
+    """Return the row of a case that no worker could answer."""
+    row = _question(asked, versions[asked.case.method])
+    row["error"] = why
+    return Answered([encoded(row)], Tally(rows=1, failed=1), {})
+
+
+def encoded(row: Row) -> bytes:
+    """Return a row as one line of JSON."""
+    return _ENCODER.encode(row).encode() + b"\n"
+
+
+def _question(asked: Asked, version: str) -> Row:
+    """Return the row of a case with nothing answered."""
+    case = asked.case
+    return {
+        "id": asked.identity.hex(),
+        "alpha_deg": case.alpha_deg,
+        "mu": "inf" if math.isinf(case.mu) else case.mu,
+        "voussoirs": case.voussoirs,
+        "weight": case.weight,
+        "eta": case.eta,
+        "ratio": case.ratio,
+        "asked": case.method,
+        "settings": dict(case.settings) or None,
+        "method": "limit" if case.method == "auto" else case.method,
+        "version": version,
+        "verdict": None,
+        "mode": None,
+        "mode_theory": None,
+        "eta_theory": None,
+        "eta_limit": None,
+        "eta_low": None,
+        "eta_high": None,
+        "confirmed": None,
+        "reason": None,
+        "error": None,
+        "wall_s": 0.0,
+    }
+
+
+def _by_simulation(case: Case, row: Row) -> None:
+    """Fill in what an engine shows, or why it shows nothing."""
+    started = time.perf_counter()
+    row.update(method=case.engine, verdict=None)
+    try:
+        if case.is_bracket:
+            found = bracket(
+                half_angle=math.radians(case.alpha_deg),
+                mu=case.mu,
+                voussoirs=case.voussoirs,
+                weight=case.weight,
+                method=case.engine,
+                tol=case.tol,
+                confirm=case.confirm,
+                settings=dict(case.settings),
+            )
+            row.update(
+                mode=found.mode,
+                eta_limit=found.eta_limit,
+                eta_low=found.eta_low,
+                eta_high=found.eta_high,
+                confirmed=found.confirmed,
+                reason=found.reason,
+            )
+        else:
+            arch = Arch(
+                half_angle=math.radians(case.alpha_deg),
+                eta=float(str(row["eta"])),
+                voussoirs=case.voussoirs,
+                weight=case.weight,
+            )
+            seen = check(arch, mu=case.mu, method=case.engine, settings=dict(case.settings))
+            row.update(
+                verdict=seen.verdict.value,
+                mode=seen.mode,
+                eta_limit=seen.eta_limit,
+                reason=seen.reason,
+            )
+    except MissingPart:
+        raise
+    except Exception as error:
+        row["error"] = reason_of(error)
+    row["wall_s"] = time.perf_counter() - started
+
+
+def reason_of(error: BaseException) -> str:
+    """Say in one line what went wrong."""
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"

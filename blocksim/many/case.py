@@ -1,0 +1,85 @@
+"""A case: one question about one arch, and its identity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from hashlib import blake2b
+from typing import NamedTuple, Protocol
+
+from blocksim.arch.circular import Weight
+
+AUTO_ENGINE = "direct"
+"""What `auto` simulates with."""
+Given = tuple[tuple[str, float], ...]
+"""Settings by name."""
+
+
+class Case(NamedTuple):
+    """One question about one arch.
+
+    Parameters
+    ----------
+    alpha_deg : float
+        Half-angle of embrace [deg].
+    mu : float
+    voussoirs : int
+    weight : str
+    eta : float or None
+        Thickness-to-radius ratio.
+    ratio : float or None
+        Thickness over the least thickness of the voussoirs as built. Where this and
+        `eta` are None, the question is how thin the arch can be.
+    method : str
+    band : float
+        An engine simulates arches within this share of their least thickness.
+    tol : float
+        Relative width of the bracket of an engine; 0 where nothing is bracketed.
+    confirm : bool
+        Let the arch go at both ends of an engine's bracket.
+    settings : tuple of (str, float)
+        Given to the engine instead of what its rule says.
+    """
+
+    alpha_deg: float
+    mu: float
+    voussoirs: int
+    weight: Weight
+    eta: float | None
+    ratio: float | None
+    method: str
+    band: float
+    tol: float
+    confirm: bool = True
+    settings: Given = ()
+
+    @property
+    def engine(self) -> str:
+        """Method that answers where simulation is worth it; static ones never do."""
+        return AUTO_ENGINE if self.method == "auto" else self.method
+
+    @property
+    def is_bracket(self) -> bool:
+        """Whether the question is how thin the arch can be."""
+        return self.eta is None and self.ratio is None
+
+    def identity(self, version: str) -> bytes:
+        """Hash of what is asked and of the version of the method that answers."""
+        return blake2b(f"{tuple(self)!r} {version}".encode(), digest_size=12).digest()
+
+
+class Questions(Protocol):
+    """What a sweep asks: a `Design`, or anything else with these three."""
+
+    @property
+    def method(self) -> tuple[str, ...]:
+        """Methods that occur."""
+        ...
+
+    @property
+    def size(self) -> int:
+        """Number of cases, by which progress is told."""
+        ...
+
+    def cases(self) -> Iterator[Case]:
+        """Give the cases, always in the same order."""
+        ...

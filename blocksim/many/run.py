@@ -1,0 +1,290 @@
+"""A sweep: cases to an executor, a bounded number in flight, rows to disk as they come."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    wait,
+)
+from dataclasses import dataclass
+from pathlib import Path
+
+from blocksim.ask.methods import STATIC
+from blocksim.common.checks import require
+from blocksim.common.errors import MissingPart
+from blocksim.common.files import make_folder
+from blocksim.common.processes import processes
+from blocksim.common.progress import Progress, silent
+from blocksim.many.answers import (
+    Answered,
+    Asked,
+    Kind,
+    Tally,
+    answer,
+    failed,
+    reason_of,
+    version_of,
+)
+from blocksim.many.case import Case, Questions
+from blocksim.many.shards import identities, locked, write_shard
+
+SHARE = 0.05
+"""Time a chunk is meant to take, as a share of that gone by: what a kill loses is small."""
+SHORTEST, LONGEST = 0.2, 10.0
+"""Bounds of that time [s]."""
+LARGEST_CHUNK = 20_000
+STATIC_SECONDS = 1e-4
+"""First guess of the time of a static case; that of an engine is a whole chunk's."""
+
+Chunk = list[Asked]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Summary:
+    """What a sweep did.
+
+    Parameters
+    ----------
+    cases : int
+        In the design, those that occur twice counted once.
+    found : int
+        Of those, rows that were there already.
+    tally : Tally
+        Of the rows made now.
+    wall_s : float
+    """
+
+    cases: int
+    found: int
+    tally: Tally
+    wall_s: float
+
+    @property
+    def saved_s(self) -> float | None:
+        """Time that simulating the spared arches, too, would have taken [s], about.
+
+        At the mean of those simulated; None where none was.
+        """
+        if not self.tally.simulated:
+            return None
+        return self.tally.spared * self.tally.simulated_s / self.tally.simulated
+
+
+def sweep(
+    design: Questions,
+    folder: Path,
+    *,
+    executor: Executor | None = None,
+    workers: int = 2,
+    in_flight: int | None = None,
+    progress: Progress = silent,
+) -> Summary:
+    """Ask about many arches; rows that are there already are not asked for again.
+
+    Parameters
+    ----------
+    design : Design or Questions
+    folder : Path
+        For the rows, made if need be; `read_rows` reads them. One sweep at a time.
+    executor : Executor, optional
+        Whatever runs the work; by default processes of this machine, replaced where
+        one dies.
+    workers : int
+        Number of processes, where there is no executor.
+    in_flight : int, optional
+        Chunks handed out at once, by default two a worker; give at least one for each
+        worker of an executor.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Summary
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written, holds something else, or another sweep is at work
+        in it.
+    MissingPart
+        If an engine is not installed, here or at a worker.
+    BrokenExecutor
+        If the executor given breaks; what is done is on disk.
+    """
+    started = time.perf_counter()
+    require(workers >= 1, "workers", workers, "at least 1")
+    require(in_flight is None or in_flight >= 1, "in_flight", in_flight, "at least 1")
+    versions = {method: version_of(method) for method in design.method}
+    make_folder(folder)
+    many = in_flight or 2 * workers
+    tally = Tally()
+
+    def keep(answered: Answered) -> None:
+        write_shard(folder, answered.lines)
+        tally.add(answered.tally)
+        todo.learn(answered)
+        progress((todo.found + tally.rows) / design.size, _said(tally, started))
+
+    with locked(folder):
+        todo = _Todo(design, versions, identities(folder))
+        progress(0.0, "")
+        hands = _Hands(executor, workers)
+        try:
+            _work(todo, hands, many, versions, keep)
+        except BaseException:
+            hands.leave()
+            raise
+        hands.leave(wait=True)
+    return Summary(
+        cases=todo.found + tally.rows,
+        found=todo.found,
+        tally=tally,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def _said(tally: Tally, started: float) -> str:
+    rate = tally.rows / (time.perf_counter() - started)
+    return f"{tally.rows} rows, {rate:.3g} a second"
+
+
+class _Todo:
+    """Cases still to be answered, in chunks sized by the time they take.
+
+    Attributes
+    ----------
+    found : int
+        Cases passed over because their rows are there.
+    """
+
+    def __init__(self, design: Questions, versions: dict[str, str], done: set[bytes]) -> None:
+        self._cases = design.cases()
+        self._versions = versions
+        self._done = done
+        self._seen: set[bytes] = set()
+        self._pace: dict[Kind, tuple[int, float]] = {}
+        self._started = time.perf_counter()
+        self.found = 0
+
+    def learn(self, answered: Answered) -> None:
+        """Note how long cases took."""
+        for kind, (count, seconds) in answered.seconds.items():
+            before = self._pace.get(kind, (0, 0.0))
+            self._pace[kind] = before[0] + count, before[1] + seconds
+
+    def chunk(self) -> Chunk:
+        """Next cases; none at the end."""
+        chunk: Chunk = []
+        elapsed = time.perf_counter() - self._started
+        left = min(max(elapsed * SHARE, SHORTEST), LONGEST)
+        for case in self._cases:
+            identity = case.identity(self._versions[case.method])
+            if identity in self._seen:
+                continue
+            self._seen.add(identity)
+            if identity in self._done:
+                self.found += 1
+                continue
+            chunk.append(Asked(identity, case))
+            left -= self._seconds(case)
+            if left <= 0 or len(chunk) >= LARGEST_CHUNK:
+                break
+        return chunk
+
+    def _seconds(self, case: Case) -> float:
+        """Time a case will take, by those of its kind so far."""
+        count, seconds = self._pace.get(Kind.of(case), (0, 0.0))
+        if count:
+            return seconds / count
+        return STATIC_SECONDS if case.method in STATIC else LONGEST
+
+
+class _Hands:
+    """The executor given, or processes that are replaced when one of them dies."""
+
+    def __init__(self, given: Executor | None, workers: int) -> None:
+        self._given = given
+        self._workers = workers
+        self._executor = given or processes(workers)
+
+    def submit(self, chunk: Chunk, versions: dict[str, str]) -> Future[Answered]:
+        """Hand a chunk out."""
+        return self._executor.submit(answer, chunk, versions)
+
+    def renew(self) -> bool:
+        """Replace broken processes; an executor given is not ours to replace."""
+        if self._given is not None:
+            return False
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        self._executor = processes(self._workers)
+        return True
+
+    def leave(self, *, wait: bool = False) -> None:
+        """Let go of processes, their work unfinished or not."""
+        if self._given is None:
+            self._executor.shutdown(wait=wait, cancel_futures=True)
+
+
+def _work(
+    todo: _Todo,
+    hands: _Hands,
+    many: int,
+    versions: dict[str, str],
+    keep: Callable[[Answered], None],
+) -> None:
+    """Hand out chunks and keep what comes back, until there are no more.
+
+    A chunk that fails is halved until the case at fault is alone, which becomes a row.
+    Where a process dies, any chunk in flight may be the cause: they go again, one by one.
+    """
+    pending: dict[Future[Answered], Chunk] = {}
+    again: deque[Chunk] = deque()
+    suspects: deque[Chunk] = deque()
+
+    def give_up(chunk: Chunk, why: str, others: deque[Chunk]) -> None:
+        if len(chunk) == 1:
+            keep(failed(chunk[0], versions, why))
+        else:
+            middle = len(chunk) // 2
+            others.extend((chunk[:middle], chunk[middle:]))
+
+    while True:
+        alone = bool(suspects)
+        try:
+            while len(pending) < (1 if alone else many):
+                queue = suspects if alone else again
+                chunk = queue.popleft() if queue else [] if alone else todo.chunk()
+                if not chunk:
+                    break
+                try:
+                    pending[hands.submit(chunk, versions)] = chunk
+                except BrokenExecutor:
+                    queue.appendleft(chunk)
+                    raise
+            if not pending:
+                return
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                chunk = pending[future]
+                try:
+                    answered = future.result()
+                except (BrokenExecutor, MissingPart):
+                    raise
+                except Exception as error:
+                    give_up(chunk, reason_of(error), again)
+                else:
+                    keep(answered)
+                del pending[future]
+        except BrokenExecutor:
+            if not hands.renew():
+                raise
+            chunks = list(pending.values())
+            pending.clear()
+            if alone and chunks:
+                give_up(chunks[0], "its process died, twice", suspects)
+            else:
+                suspects.extend(chunks)

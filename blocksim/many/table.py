@@ -1,0 +1,99 @@
+"""Rows as one Parquet table; the only place that knows pyarrow."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from itertools import islice
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from blocksim.common.errors import MissingPart
+from blocksim.common.files import write_whole
+from blocksim.evidence.setup import SETTINGS
+from blocksim.many.shards import read_rows
+
+ROWS_AT_ONCE = 50_000
+"""Rows held in memory, a row group of the table."""
+COLUMNS = {
+    "id": "string",
+    "alpha_deg": "double",
+    "mu": "double",
+    "voussoirs": "int64",
+    "weight": "string",
+    "eta": "double",
+    "ratio": "double",
+    "asked": "string",
+    "settings": "settings",
+    "method": "string",
+    "version": "string",
+    "verdict": "string",
+    "mode": "string",
+    "mode_theory": "string",
+    "eta_theory": "double",
+    "eta_limit": "double",
+    "eta_low": "double",
+    "eta_high": "double",
+    "confirmed": "bool",
+    "reason": "string",
+    "error": "string",
+    "wall_s": "double",
+}
+"""The keys of a row, and what Arrow calls their types."""
+
+
+def require_parquet() -> None:
+    """Raise `MissingPart` unless tables can be written here."""
+    if find_spec("pyarrow") is None:
+        raise MissingPart("Parquet", "pip install 'blocksim[parquet]'")
+
+
+def write_parquet(folder: Path, path: Path) -> None:
+    """Write the rows of a sweep as a Parquet table, in the order of `read_rows`.
+
+    Columns are the keys of a row; infinite friction is a number, and settings that were
+    not given are null.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the sweep.
+    path : Path
+        Table to write, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If a file is not of a sweep, or the table cannot be written.
+    MissingPart
+        If pyarrow is not installed.
+    """
+    require_parquet()
+    import pyarrow  # pyright: ignore[reportMissingTypeStubs]
+    from pyarrow import parquet  # pyright: ignore[reportMissingTypeStubs]
+
+    arrow: Any = pyarrow
+    tables: Any = parquet
+    schema = _schema(arrow)
+    rows = read_rows(folder)
+
+    def write(file: BinaryIO) -> None:
+        with tables.ParquetWriter(file, schema, compression="zstd") as table:
+            while held := [_numbered(row) for row in islice(rows, ROWS_AT_ONCE)]:
+                table.write_batch(arrow.RecordBatch.from_pylist(held, schema))
+
+    write_whole(path, write)
+
+
+def _numbered(row: dict[str, object]) -> dict[str, object]:
+    """Return a row with its friction as a number."""
+    return {**row, "mu": float(str(row["mu"]))}
+
+
+def _schema(arrow: Any) -> Any:
+    types = {kind: arrow.type_for_alias(kind) for kind in {*COLUMNS.values()} - {"settings"}}
+    fields = [
+        (name, types["int64" if setting.is_whole else "double"])
+        for name, setting in SETTINGS.items()
+    ]
+    types["settings"] = arrow.struct(fields)
+    return arrow.schema([(key, types[kind]) for key, kind in COLUMNS.items()])

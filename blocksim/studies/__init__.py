@@ -1,0 +1,1 @@
+"""Many questions, held against the truth and against time."""

@@ -1,0 +1,265 @@
+"""Speed against accuracy: how near each method comes to the exact answer, in what time.
+
+The least thickness of a few arches is bracketed with settings from coarse to fine (`knobs`).
+The error is that of the bracket's farther end (its centre may be right by luck) against limit
+analysis of the same voussoirs; where the number of voussoirs is what is varied, against theory.
+Time is all it takes, of the processor and by the clock; work is the contacts solved times the
+sweeps over them.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Literal, NamedTuple
+
+from blocksim.arch import limit, theory
+from blocksim.arch.circular import Arch
+from blocksim.ask.search import Answer, Search
+from blocksim.common.progress import Progress, silent
+from blocksim.engines import ENGINES, remedy
+from blocksim.studies.knobs import KNOBS, TOL, look
+
+START = 1.0037
+"""Where brackets start, over the exact value: so that no tolerance is met by luck."""
+REPEATS = 3
+QUICK = slice(None, -1, 2)
+"""Every other setting, and not the finest."""
+LONG = 20.0
+"""Processor time above which a bracket is not repeated, and no finer setting is tried [s]."""
+
+Cost = Literal["time", "work"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """An arch of the chart.
+
+    Parameters
+    ----------
+    name : str
+    half_angle : float
+        alpha [rad].
+    mu : float
+    voussoirs : int
+    """
+
+    name: str
+    half_angle: float
+    mu: float
+    voussoirs: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Point:
+    """One bracket, measured.
+
+    Parameters
+    ----------
+    case, method : str
+    knob : str
+        What was set, of `knobs.KNOBS`.
+    value : float
+        To what.
+    error : float
+        Of the bracket's farther end, relative; inf where there is no bracket.
+    low, high : float or None
+        The bracket's ends, thickness over radius; None where there is none, or not told.
+    undecided : int
+        Ratios without an answer.
+    work : float
+        Contacts solved, times the sweeps over them.
+    processor_s, wall_s : tuple of float
+        Time of the processor and by the clock [s], of every repeat.
+    """
+
+    case: str
+    method: str
+    knob: str
+    value: float
+    error: float
+    low: float | None
+    high: float | None
+    undecided: int
+    work: float
+    processor_s: tuple[float, ...]
+    wall_s: tuple[float, ...]
+
+    @property
+    def time(self) -> float:
+        """Processor time, median of the repeats [s]: other work on the machine adds little."""
+        return median(self.processor_s)
+
+    @property
+    def against(self) -> str:
+        """What the error is measured from."""
+        return KNOBS[self.knob].against
+
+
+def cases(*, quick: bool) -> tuple[Case, ...]:
+    """Return arches spread over the map, hard ones too; small ones if quick."""
+    chosen = (
+        (("semicircle", 90, 0.7, 11), ("sliding shoulder", 125, 0.9, 10))
+        if quick
+        else (
+            ("semicircle", 90, 0.7, 27),
+            ("sliding shoulder", 125, 0.9, 26),
+            ("thin", 40, 0.9, 27),
+            ("steep", 154, 2.6, 27),
+            ("long", 90, 0.7, 101),
+        )
+    )
+    return tuple(
+        Case(
+            name=f"{name}: {degrees} deg, mu {mu}, n {count}",
+            half_angle=math.radians(degrees),
+            mu=mu,
+            voussoirs=count,
+        )
+        for name, degrees, mu, count in chosen
+    )
+
+
+def measure(
+    chosen: Sequence[Case],
+    methods: Iterable[str] | None = None,
+    knobs: Iterable[str] = tuple(KNOBS),
+    *,
+    quick: bool = False,
+    progress: Progress = silent,
+) -> list[Point]:
+    """Bracket arches by every method, with settings from coarse to fine.
+
+    Parameters
+    ----------
+    chosen : sequence of Case
+    methods : iterable of str, optional
+        By default limit analysis and the engines installed here.
+    knobs : iterable of str
+        Of `KNOBS`.
+    quick : bool
+        With fewer settings, each once.
+    progress : Progress, optional
+
+    Returns
+    -------
+    list of Point
+    """
+    names = tuple(methods or ("limit", *(name for name in ENGINES if remedy(name) is None)))
+    asked = [
+        (case, knob, name)
+        for knob in knobs
+        for case in chosen[: KNOBS[knob].arches]
+        for name in names
+        if name in KNOBS[knob].values
+    ]
+    points: list[Point] = []
+    for done, (case, knob, name) in enumerate(asked):
+        values = KNOBS[knob].values[name]
+        for value in values[QUICK] if quick else values:
+            progress(done / len(asked), f"{case.name}, {name}, {knob} {value:.3g}")
+            points.append(_measured(case, name, knob, value, 1 if quick else REPEATS))
+            if points[-1].time > LONG:
+                break
+    return points
+
+
+def front(points: Sequence[Point], cost: Cost = "time") -> list[Point]:
+    """Return the points that no other beats in both cost and error, cheapest first."""
+
+    def spent(point: Point) -> float:
+        return point.time if cost == "time" else point.work
+
+    best: list[Point] = []
+    for point in sorted(points, key=lambda each: (spent(each), each.error)):
+        if math.isfinite(point.error) and (not best or point.error < best[-1].error):
+            best.append(point)
+    return best
+
+
+def on_front(points: Sequence[Point], cost: Cost = "time") -> set[Point]:
+    """Return the points on the front of their own arch and of what they are held against."""
+    peers: dict[tuple[str, str], list[Point]] = {}
+    for point in points:
+        peers.setdefault((point.case, point.against), []).append(point)
+    return {best for group in peers.values() for best in front(group, cost)}
+
+
+def gain(points: Sequence[Point], method: str, over: str) -> float:
+    """Finest error of one method over that of another in the same time or less."""
+    finest = min((p for p in points if p.method == over), key=lambda p: p.error)
+    affordable = [p.error for p in points if p.method == method and p.time <= finest.time]
+    return finest.error / min(affordable, default=math.inf)
+
+
+class _Found(NamedTuple):
+    """A bracket, and what it cost."""
+
+    low: float | None = None
+    high: float | None = None
+    undecided: int = 0
+    work: int = 0
+
+
+def _measured(case: Case, method: str, knob: str, value: float, repeats: int) -> Point:
+    """Bracket one arch by one method with one setting, again and again."""
+    built = replace(case, voussoirs=int(value)) if knob == "voussoirs" else case
+    exact = truth = _exact(built)
+    if KNOBS[knob].against == "theory":
+        truth = theory.least_thickness(case.half_angle, case.mu).eta
+    if exact is None or truth is None:
+        message = "an arch that nothing lets stand has no error to measure"
+        raise ValueError(message)
+    processor_s: list[float] = []
+    wall_s: list[float] = []
+    found = _Found()
+    while len(wall_s) < repeats and max(processor_s, default=0.0) <= LONG:
+        wall, processor = time.perf_counter(), time.process_time()
+        if method == "limit":
+            eta = _exact(built)
+            found = _Found(eta, eta)
+        else:
+            found = _bracketed(built, exact * START, method, knob, value)
+        processor_s.append(time.process_time() - processor)
+        wall_s.append(time.perf_counter() - wall)
+    ends = found.low, found.high
+    return Point(
+        case=case.name,
+        method=method,
+        knob=knob,
+        value=value,
+        error=max(math.inf if end is None else abs(end / truth - 1) for end in ends),
+        low=found.low,
+        high=found.high,
+        undecided=found.undecided,
+        work=found.work,
+        processor_s=tuple(processor_s),
+        wall_s=tuple(wall_s),
+    )
+
+
+def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -> _Found:
+    """Search for the least thickness of one arch by an engine."""
+    finest = KNOBS["tolerance"].values[method][-1]
+    tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
+    work = 0
+
+    def judge(eta: float) -> Answer:
+        nonlocal work
+        arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
+        seen = look(arch, case.mu, method, knob, value)
+        work += seen.work
+        return Answer(seen.verdict, seen.acceleration)
+
+    search = Search(judge)
+    search.expand(start)
+    search.bisect(tol)
+    return _Found(search.low, search.high, search.undecided, work)
+
+
+def _exact(case: Case) -> float | None:
+    """Return the least thickness by limit analysis."""
+    return limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta

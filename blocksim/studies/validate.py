@@ -1,0 +1,327 @@
+"""The main job: every scenario by simulation, held against limit analysis and theory."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from concurrent.futures import as_completed
+from dataclasses import dataclass, replace
+
+from blocksim.arch import limit
+from blocksim.arch.bracket import ETA_MAX, Bracket, bracket
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.arch.scenario import Scenario, load_scenario, shipped
+from blocksim.ask.methods import METHODS, missing
+from blocksim.common.processes import crew
+from blocksim.common.progress import Progress, silent
+from blocksim.engines import get_engine
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.trial import trial
+from blocksim.evidence.verdict import Verdict
+
+TOLS = {"pymunk": 0.001, "pybullet": 0.004}
+"""Engines that are validated, and the relative width of their brackets."""
+ERROR_BOUND = 0.002
+"""A bracket whose centre is farther than this from `limit` is a miss."""
+ASIDE = 0.01
+"""How far below the bracket the mode is observed, and at which verdicts are asked."""
+NEARER = 0.002
+"""How far below the mode is looked at again where it differs from that of `limit`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One scenario by one engine, against what is known.
+
+    Parameters
+    ----------
+    scenario : str
+    engine : str
+    half_angle, mu : float
+    voussoirs : int
+    weight : str
+    modes_published : tuple of Mode
+        Of the continuous arch: several on a line of the map.
+    eta_published, eta_limit : float or None
+    mode_limit : Mode or None
+    eta_low, eta_high : float or None
+        The bracket.
+    error : float or None
+        Centre of the bracket over `eta_limit`, less 1.
+    mode_observed : Mode or None
+        In a moving run 1 % below the bracket.
+    below, above : Verdict or None
+        1 % below and above the bracket, by onset test and moving run; None where not tried.
+    verdict_expected, verdict : Verdict or None
+        Of the arch as the scenario has it, where its claim is that and not the bracket.
+    miss : str
+        What disagrees; empty where nothing does.
+    note : str
+        Why, or what to keep in mind.
+    wall_s : float
+    title, source : str
+        Of the scenario.
+    recording : Recording or None
+        The moving run 1 % below the bracket; None where there was none, or the claim is
+        a verdict.
+    """
+
+    scenario: str
+    engine: str
+    half_angle: float
+    mu: float
+    voussoirs: int
+    weight: str
+    modes_published: tuple[Mode, ...]
+    eta_published: float | None
+    eta_limit: float | None = None
+    mode_limit: Mode | None = None
+    eta_low: float | None = None
+    eta_high: float | None = None
+    error: float | None = None
+    mode_observed: Mode | None = None
+    below: Verdict | None = None
+    above: Verdict | None = None
+    verdict_expected: Verdict | None = None
+    verdict: Verdict | None = None
+    miss: str = ""
+    note: str = ""
+    wall_s: float = 0.0
+    title: str
+    source: str
+    recording: Recording | None = None
+
+
+def scenarios(*, quick: bool) -> list[Scenario]:
+    """Return the shipped scenarios, or those marked quick."""
+    every = [load_scenario(name) for name in shipped()]
+    return [scenario for scenario in every if scenario.quick or not quick]
+
+
+def installed() -> tuple[str, ...]:
+    """Return the engines to validate that can run here."""
+    return tuple(name for name in TOLS if missing(METHODS[name]) is None)
+
+
+def validate(
+    chosen: Sequence[Scenario],
+    engines: Iterable[str] | None = None,
+    *,
+    workers: int = 2,
+    progress: Progress = silent,
+) -> list[Row]:
+    """Bracket every scenario with every engine and compare.
+
+    Parameters
+    ----------
+    chosen : sequence of Scenario
+    engines : iterable of str, optional
+        By default all that are `installed`. Scenarios whose gravity leans out of the
+        plane are for those that see that.
+    workers : int
+        Processes; 1 runs in this one.
+    progress : Progress, optional
+
+    Returns
+    -------
+    list of Row
+        In the order of scenarios, then engines, whatever finishes first.
+    """
+    names = installed() if engines is None else tuple(engines)
+    jobs = [
+        (scenario, engine)
+        for scenario in chosen
+        for engine in names
+        if METHODS[engine].is_spatial or not scenario.lean
+    ]
+    if workers == 1:
+        rows: list[Row] = []
+        for done, job in enumerate(jobs):
+            progress(done / len(jobs), job[0].name)
+            rows.append(validate_one(*job))
+        return rows
+    with crew(workers) as executor:
+        futures = {executor.submit(validate_one, *job): job for job in jobs}
+        for done, future in enumerate(as_completed(futures)):
+            progress((done + 1) / len(jobs), futures[future][0].name)
+        return [future.result() for future in futures]
+
+
+def validate_one(scenario: Scenario, engine: str) -> Row:
+    """Ask one scenario's question of one engine and compare."""
+    if scenario.expected_verdict is not None and scenario.eta is not None:
+        return _judged(scenario, scenario.arch(scenario.eta), engine)
+    started = time.perf_counter()
+    found = bracket(
+        half_angle=scenario.half_angle,
+        mu=scenario.mu,
+        voussoirs=scenario.voussoirs,
+        weight=scenario.weight,
+        method=engine,
+        tol=TOLS[engine],
+        confirm=False,
+    )
+    mode, below, above = found.mode, None, None
+    recording = None
+    if found.eta_low is not None:
+        under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
+        seen = trial(scenario.arch(under), scenario.mu, engine)
+        mode, below = seen.mode, seen.verdict
+        recording = seen.motion.recording if seen.motion else None
+    # Thicker than eta = 2 there is no arch to try.
+    if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
+        over = found.centre * (1 + ASIDE)
+        above = trial(scenario.arch(over), scenario.mu, engine).verdict
+    error = None
+    # Where the limit is the thickest arch there is, nothing above it can be tried.
+    middle = found.centre or found.eta_low
+    if middle is not None and found.eta_limit is not None:
+        error = middle / found.eta_limit - 1
+    miss = "; ".join(_misses(found, error, mode, below, above))
+    return replace(
+        _asked(scenario, engine),
+        eta_limit=found.eta_limit,
+        mode_limit=found.mode_limit,
+        eta_low=found.eta_low,
+        eta_high=found.eta_high,
+        error=error,
+        mode_observed=mode,
+        below=below,
+        above=above,
+        miss=miss,
+        note=_note(scenario, found, mode),
+        wall_s=time.perf_counter() - started,
+        recording=recording,
+    )
+
+
+def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
+    """Compare the verdict on an arch as it is with the one its scenario claims."""
+    started = time.perf_counter()
+    seen = trial(arch, scenario.mu, engine, lean=scenario.lean)
+    right = seen.verdict is scenario.expected_verdict
+    return replace(
+        _asked(scenario, engine),
+        mode_observed=seen.mode,
+        verdict_expected=scenario.expected_verdict,
+        verdict=seen.verdict,
+        miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
+        note="" if right else seen.reason,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def _asked(scenario: Scenario, engine: str) -> Row:
+    """Return the row of a scenario that is still to be answered."""
+    return Row(
+        scenario=scenario.name,
+        engine=engine,
+        half_angle=scenario.half_angle,
+        mu=scenario.mu,
+        voussoirs=scenario.voussoirs,
+        weight=scenario.weight,
+        modes_published=scenario.expected_modes,
+        eta_published=scenario.expected_eta,
+        title=scenario.title,
+        source=scenario.source,
+    )
+
+
+def numbered(rows: Sequence[Row]) -> dict[str, int]:
+    """Give each scenario its number, whatever the engines."""
+    names = dict.fromkeys(row.scenario for row in rows)
+    return {name: number for number, name in enumerate(names, start=1)}
+
+
+def disagreements(rows: Sequence[Row]) -> list[str]:
+    """List where engines differ on the same scenario, each with its likely cause.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+
+    Returns
+    -------
+    list of str
+        Sentences; modes, verdicts and brackets that exclude each other count.
+    """
+    found: list[str] = []
+    for name in dict.fromkeys(row.scenario for row in rows):
+        first, *others = (row for row in rows if row.scenario == name)
+        for other in others:
+            pair = f"{name}: {first.engine} and {other.engine}"
+            # The note of the engine that differs from `limit` says why.
+            cause = (first.note if first.miss else other.note) or "no cause known"
+            if first.mode_observed is not other.mode_observed:
+                seen = f"{first.mode_observed or 'unnamed'}, {other.mode_observed or 'unnamed'}"
+                found.append(f"{pair} see different modes ({seen}): {cause}")
+            if (first.below, first.above) != (other.below, other.above):
+                found.append(f"{pair} judge 1 % aside differently: {cause}")
+            if _exclusive(first, other) or _exclusive(other, first):
+                found.append(f"{pair} have brackets that exclude each other: {cause}")
+    return found
+
+
+def _exclusive(one: Row, other: Row) -> bool:
+    """Tell whether one bracket lies wholly above the other."""
+    return (
+        one.eta_low is not None and other.eta_high is not None and one.eta_low > other.eta_high
+    )
+
+
+def _misses(
+    found: Bracket,
+    error: float | None,
+    mode: Mode | None,
+    below: Verdict | None,
+    above: Verdict | None,
+) -> list[str]:
+    """List what disagrees with limit analysis."""
+    misses: list[str] = []
+    if found.eta_limit is None:
+        if found.eta_high is not None:
+            misses.append("stands, where nothing does")
+    elif error is None:
+        misses.append("no bracket")
+    elif abs(error) > ERROR_BOUND:
+        misses.append(f"error {error:+.2%}")
+    if mode is not found.mode_limit:
+        misses.append(f"mode {mode or 'unnamed'}, limit says {found.mode_limit or 'unnamed'}")
+    if below is not Verdict.COLLAPSES:
+        misses.append(f"{below or 'nothing tried'} 1 % below")
+    if above not in {Verdict.STANDS, None}:
+        misses.append(f"{above} 1 % above")
+    return misses
+
+
+def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
+    """Say why modes differ, where that is known, and what else to keep in mind."""
+    notes: list[str] = []
+    if mode is not found.mode_limit:
+        tied = {mode, found.mode_limit} <= {*scenario.expected_modes}
+        nearer = _mode_nearer(scenario, found)
+        if tied:
+            notes.append("on a line of the map, where both modes coincide")
+        elif nearer is found.mode_limit:
+            notes.append(
+                f"0.2 % below it is {nearer}: 1 % below, a second mode is overcome too"
+            )
+        else:
+            notes.append(f"0.2 % below it is {nearer or 'unnamed'}")
+    most = get_engine(found.method).most_friction
+    if scenario.mu > most:
+        there = limit.least_thickness(
+            scenario.half_angle, most, scenario.voussoirs, scenario.weight
+        )
+        least = "nothing stands" if there.eta is None else f"{there.eta:.6g}, {there.mode}"
+        notes.append(f"friction is {most:g} in the engine, where limit analysis says {least}")
+    return "; ".join(notes)
+
+
+def _mode_nearer(scenario: Scenario, found: Bracket) -> Mode | None:
+    """Mode of the onset test close to the limit."""
+    if found.eta_low is None:
+        return None
+    eta = (found.centre or found.eta_low) * (1 - NEARER)
+    return trial(scenario.arch(eta), scenario.mu, found.method, moving=False).mode
