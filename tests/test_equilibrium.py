@@ -71,7 +71,9 @@ def test_a_block_on_a_slope_rests_unless_it_slides_or_tips(
     steepest = min(0.0 if smooth else mu, 1 / height)
     assume(abs(math.tan(slope) - steepest) > 1e-4)
     assembly = on_a_slope(slope, 1.0, height)
-    joints = tuple(replace(joint, smooth=smooth) for joint in assembly.joints)
+    joints = tuple(
+        replace(joint, friction=0.0 if smooth else None) for joint in assembly.joints
+    )
     assembly = replace(assembly, joints=joints)
     forces = equilibrium(assembly, mu)
     assert (forces is not None) == (math.tan(slope) < steepest)

@@ -168,7 +168,9 @@ def on_a_slope(slope, smooth=False):
     corners = np.array([-along / 2, along / 2, along / 2 + up, -along / 2 + up])
     block = Block(vertices=corners, centre=up / 2, mass=3.0, inertia=0.5, depth=1.0)
     # Seen from the ground into the block, the inner end lies to the right.
-    joint = Joint(SUPPORT, 0, inner=along / 2, outer=-along / 2, smooth=smooth)
+    joint = Joint(
+        SUPPORT, 0, inner=along / 2, outer=-along / 2, friction=0.0 if smooth else None
+    )
     return Assembly(blocks=(block,), joints=(joint,), size=1.0)
 
 

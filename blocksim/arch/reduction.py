@@ -87,7 +87,7 @@ class Reduction:
         joints = [
             replace(joint, before=index - 1, after=index) for index, joint in enumerate(joints)
         ]
-        joints[-1] = replace(joints[-1], after=SUPPORT, smooth=True)
+        joints[-1] = replace(joints[-1], after=SUPPORT, friction=0.0)
         ends = pairwise([*self.kept, len(self._shares)] if self._keystone else self.kept)
         blocks = [
             self._merge(slice(*voussoirs), *faces)

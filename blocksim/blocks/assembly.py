@@ -18,7 +18,7 @@ PLANAR, SPATIAL = 3, 6
 rotation vector's components along x and y, from engines in three dimensions."""
 
 
-def _frozen(values: object, shape: tuple[int, ...]) -> Array:
+def frozen(values: object, shape: tuple[int, ...]) -> Array:
     """Return a read-only float array of the given shape (-1: any length)."""
     array = np.array(values, dtype=np.float64)
     fits = array.ndim == len(shape) and all(
@@ -33,12 +33,12 @@ def _frozen(values: object, shape: tuple[int, ...]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A rigid convex block in the plane.
+    """A rigid block in the plane: a convex polygon, or several that move as one.
 
     Parameters
     ----------
     vertices : (k, 2) float
-        Corners, counter-clockwise, x and y [m].
+        Corners, counter-clockwise, x and y [m]; of several polygons their convex hull.
     centre : (2,) float
         Centre of mass [m]; it follows from the weight model and need not be the
         centroid of the polygon.
@@ -48,6 +48,10 @@ class Block:
         Moment of inertia about the centre of mass [kg m^2].
     depth : float
         Out of the plane [m].
+    name : str
+        What it is called where it comes from a file.
+    parts : tuple of (k, 2) float
+        The convex polygons of a block that is not convex; empty for one polygon.
     """
 
     vertices: Array
@@ -55,11 +59,41 @@ class Block:
     mass: float
     inertia: float
     depth: float
+    name: str = ""
+    parts: tuple[Array, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        object.__setattr__(self, "vertices", _frozen(self.vertices, (-1, 2)))
-        object.__setattr__(self, "centre", _frozen(self.centre, (2,)))
+        object.__setattr__(self, "vertices", frozen(self.vertices, (-1, 2)))
+        object.__setattr__(self, "centre", frozen(self.centre, (2,)))
+        object.__setattr__(self, "parts", tuple(frozen(part, (-1, 2)) for part in self.parts))
+
+    @property
+    def polygons(self) -> tuple[Array, ...]:
+        """The convex polygons it consists of."""
+        return self.parts or (self.vertices,)
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """A body that stays where it is.
+
+    Parameters
+    ----------
+    polygons : tuple of (k, 2) float
+        Convex, corners counter-clockwise [m].
+    name : str
+        What it is called where it comes from a file.
+    """
+
+    polygons: tuple[Array, ...]
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        object.__setattr__(
+            self, "polygons", tuple(frozen(part, (-1, 2)) for part in self.polygons)
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,20 +107,41 @@ class Joint:
     inner, outer : (2,) float
         Its two ends [m]: intrados and extrados for an arch. Seen along the
         direction from `before` to `after`, `inner` lies to the right.
-    smooth : bool
-        Without friction, on the ground: a plane of symmetry.
+    friction : float or None
+        Its own friction coefficient, where it is not that of all others: 0 on a plane of
+        symmetry, which is smooth.
+    across : (2,) float or None
+        Unit normal from `before` to `after`, of a corner that rests on a face: its two
+        ends are the same point, and it has no length.
+    faces : (2, 2, 2) float or None
+        Inner and outer end [m] of the faces of `before` and of `after` that meet in it,
+        where a face reaches beyond the joint.
+    support : int or None
+        Which of the assembly's supports it lies on, where they are known.
     """
 
     before: int
     after: int
     inner: Array
     outer: Array
-    smooth: bool = False
+    friction: float | None = None
+    across: Array | None = None
+    faces: Array | None = None
+    support: int | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        object.__setattr__(self, "inner", _frozen(self.inner, (2,)))
-        object.__setattr__(self, "outer", _frozen(self.outer, (2,)))
+        object.__setattr__(self, "inner", frozen(self.inner, (2,)))
+        object.__setattr__(self, "outer", frozen(self.outer, (2,)))
+        if self.across is not None:
+            object.__setattr__(self, "across", frozen(self.across, (2,)))
+        if self.faces is not None:
+            object.__setattr__(self, "faces", frozen(self.faces, (2, 2, 2)))
+
+    @property
+    def is_corner(self) -> bool:
+        """Whether it is a corner on a face: a contact without length."""
+        return self.across is not None
 
     @property
     def length(self) -> float:
@@ -96,6 +151,8 @@ class Joint:
     @property
     def tangent(self) -> Array:
         """Unit vector from the inner to the outer end, shape (2,)."""
+        if self.across is not None:
+            return np.array([-self.across[1], self.across[0]])
         return (self.outer - self.inner) / self.length
 
     @property
@@ -121,7 +178,11 @@ class JointArrays(NamedTuple):
         Inner and outer end.
     normal, tangent : (joints, 2) float
     length : (joints,) float
-    smooth : (joints,) bool
+    friction : (joints,) float
+        Of each joint's own; nan where it is that of all others.
+    faces : (joints, 2, 2, 2) float
+        Faces of `before` and `after`, their inner and outer ends.
+    is_corner : (joints,) bool
     """
 
     before: NDArray[np.int64]
@@ -130,7 +191,9 @@ class JointArrays(NamedTuple):
     normal: Array
     tangent: Array
     length: Array
-    smooth: NDArray[np.bool_]
+    friction: Array
+    faces: Array
+    is_corner: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,16 +206,19 @@ class Assembly:
     joints : tuple of Joint
     size : float
         A characteristic length [m]; engines work in units of it.
+    supports : tuple of Support
+        The bodies it stands on, where they are known.
     """
 
     blocks: tuple[Block, ...]
     joints: tuple[Joint, ...]
     size: float
+    supports: tuple[Support, ...] = ()
 
     @cached_property
     def centres(self) -> Array:
         """Centres of mass, shape (blocks, 2) [m]."""
-        return _frozen([block.centre for block in self.blocks], (-1, 2))
+        return frozen([block.centre for block in self.blocks], (-1, 2))
 
     @cached_property
     def masses(self) -> Array:
@@ -162,7 +228,7 @@ class Assembly:
         """
         mass = np.array([block.mass for block in self.blocks])
         inertia = np.array([block.inertia for block in self.blocks]) / self.size**2
-        return _frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
+        return frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
 
     @cached_property
     def spatial_masses(self) -> Array:
@@ -174,17 +240,17 @@ class Assembly:
         mass, inertia = self.masses[:, 0], self.masses[:, 2]
         across = inertia / 2 + mass * self.depths**2 / 12
         beyond = np.stack([mass, across, across], axis=1)
-        return _frozen(np.hstack([self.masses, beyond]), (-1, SPATIAL))
+        return frozen(np.hstack([self.masses, beyond]), (-1, SPATIAL))
 
     @cached_property
     def depths(self) -> Array:
         """Depth of each block, shape (blocks,), in units of the size."""
-        return _frozen([block.depth / self.size for block in self.blocks], (-1,))
+        return frozen([block.depth / self.size for block in self.blocks], (-1,))
 
     @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
-        return _frozen(
+        return frozen(
             [np.hypot(*(block.vertices - block.centre).T).max() for block in self.blocks],
             (-1,),
         )
@@ -194,15 +260,19 @@ class Assembly:
         """The joints gathered into arrays, for what looks at them frame by frame."""
         sides = [(joint.before, joint.after) for joint in self.joints]
         before, after = np.array(sides, dtype=np.int64).reshape(-1, 2).T
-        ends = _frozen([(j.inner, j.outer) for j in self.joints], (-1, 2, 2)) / self.size
+        ends = frozen([(j.inner, j.outer) for j in self.joints], (-1, 2, 2)) / self.size
+        own = [np.nan if j.friction is None else j.friction for j in self.joints]
+        faces = [((j.inner, j.outer),) * 2 if j.faces is None else j.faces for j in self.joints]
         return JointArrays(
             before=before,
             after=after,
             ends=ends,
-            normal=_frozen([joint.normal for joint in self.joints], (-1, 2)),
-            tangent=_frozen([joint.tangent for joint in self.joints], (-1, 2)),
-            length=_frozen([joint.length for joint in self.joints], (-1,)) / self.size,
-            smooth=np.array([joint.smooth for joint in self.joints]),
+            normal=frozen([joint.normal for joint in self.joints], (-1, 2)),
+            tangent=frozen([joint.tangent for joint in self.joints], (-1, 2)),
+            length=frozen([joint.length for joint in self.joints], (-1,)) / self.size,
+            friction=frozen(own, (-1,)),
+            faces=frozen(faces, (-1, 2, 2, 2)) / self.size,
+            is_corner=np.array([joint.is_corner for joint in self.joints], dtype=np.bool_),
         )
 
     @cached_property

@@ -225,7 +225,7 @@ class _Bodies:
             physicsClientId=self._client,
         )
         body = self._body(0.0, shape, self._frame.place(centre))
-        if joint.smooth:
+        if joint.friction == 0:
             bullet.changeDynamics(body, -1, lateralFriction=0, physicsClientId=self._client)
         return body
 

@@ -133,7 +133,7 @@ class _Space:
             shape = self._shape(space.static_body, _footing(joint, size, self._inset))
             # A support touches only the block that stands on it.
             shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
-            if joint.smooth:
+            if joint.friction == 0:
                 shape.friction = 0.0
             space.add(shape)
             shapes.append(shape)

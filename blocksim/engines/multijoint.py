@@ -261,6 +261,6 @@ def _model(assembly: Assembly, mu: float) -> Any:
             geomname1=f"joint {k}, block {joint.before}",
             geomname2=f"joint {k}, block {joint.after}",
             condim=3,
-            friction=[0.0 if joint.smooth else mu] * 2 + [0.0] * 3,
+            friction=[0.0 if joint.friction == 0 else mu] * 2 + [0.0] * 3,
         )
     return spec.compile()

@@ -40,7 +40,7 @@ def equilibrium(assembly: Assembly, mu: float) -> Array | None:
     joints = assembly.joint_arrays
     # Steep edges are scaled, or their normal parts would fade.
     upright = 1 / max(1.0, mu)
-    along = np.where(joints.smooth, 0.0, mu * upright)
+    along = np.where(joints.friction == 0, 0.0, mu * upright)
     normal, tangent = joints.normal[:, None, :], joints.tangent[:, None, :]
     edges = upright * normal + SIGNS[:, None] * along[:, None, None] * tangent
     balance = _accelerations(assembly, edges)

@@ -55,7 +55,7 @@ class Geometry:
         self._moves = (self._sides != SUPPORT).astype(np.float64)[:, None, None]
         self._signs = np.repeat([-1.0, 1.0], count)[:, None, None]
         # Friction never sees a slip that is not in the rows.
-        self._grips = (~joints.smooth).astype(np.float64)[:, None, None]
+        self._grips = (joints.friction != 0).astype(np.float64)[:, None, None]
 
     def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
         """Find the contacts, and which joints still are joints.

@@ -1,0 +1,202 @@
+"""What is asked about: blocks, friction in their joints, gravity, and loads."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
+from blocksim.common.checks import is_number, require, require_friction, require_lean
+
+STANDARD_GRAVITY = 9.81
+"""To turn weight into mass [m/s^2]."""
+DOWN = np.array([0.0, -1.0, 0.0])
+"""Gravity where nothing is tilted: x, y, and z out of the plane."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Load:
+    """A force on a block, or on several in proportion to their weights.
+
+    Parameters
+    ----------
+    force : (2,) float
+        x and y [N]; with `per_weight` in units of each block's weight.
+    blocks : tuple of int
+        The blocks it acts on.
+    point : (2,) float or None
+        Where it acts [m], carried by its block; None for the centre of mass.
+    per_weight : bool
+        Whether it is a body force.
+    """
+
+    force: Array
+    blocks: tuple[int, ...]
+    point: Array | None = None
+    per_weight: bool = False
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        object.__setattr__(self, "force", frozen(self.force, (2,)))
+        if self.point is not None:
+            object.__setattr__(self, "point", frozen(self.point, (2,)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Move:
+    """How a support moves as supports spread or settle.
+
+    Parameters
+    ----------
+    support : int
+    direction : (2,) float
+        Way of the support over the parameter, which is in metres.
+    """
+
+    support: int
+    direction: Array
+
+    def __post_init__(self) -> None:
+        """Make the array read-only."""
+        object.__setattr__(self, "direction", frozen(self.direction, (2,)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Problem:
+    """Blocks and everything that acts on them.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    mu : float
+        Friction coefficient of every joint that has none of its own, inf allowed.
+    gravity : (3,) float
+        Force on each block in units of its weight: x and y in the plane, z out of it.
+    dead : tuple of Load
+        Loads besides gravity that stay what they are.
+    live : tuple of Load
+        Loads that are multiplied by `load`.
+    load : float
+        The load factor.
+    moves : tuple of Move
+    title, source : str
+        What it is, and where it comes from.
+    notes : tuple of str
+        What was mended or taken when it was read, for answers to state.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    assembly: Assembly
+    mu: float
+    gravity: Array = field(default_factory=lambda: DOWN)
+    dead: tuple[Load, ...] = ()
+    live: tuple[Load, ...] = ()
+    load: float = 0.0
+    moves: tuple[Move, ...] = ()
+    title: str = ""
+    source: str = ""
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        require(self.mu == 0 or is_number(self.mu, 0, math.inf), "mu", self.mu, "0 or more")
+        finite = is_number(self.load, -math.inf, math.inf) and math.isfinite(self.load)
+        require(finite, "load", self.load, "a finite number")
+        object.__setattr__(self, "gravity", frozen(self.gravity, (3,)))
+
+    @cached_property
+    def friction(self) -> Array:
+        """Friction coefficient of each joint, shape (joints,), inf allowed."""
+        own = self.assembly.joint_arrays.friction
+        return frozen(np.where(np.isnan(own), self.mu, own), (-1,))
+
+    @property
+    def is_planar(self) -> bool:
+        """Whether nothing pulls out of the plane."""
+        return bool(self.gravity[2] == 0)
+
+    @property
+    def unit_force(self) -> float:
+        """Weight of the mean block [N], the unit of force of engines and limit analysis."""
+        masses = [block.mass for block in self.assembly.blocks]
+        return float(np.mean(masses)) * STANDARD_GRAVITY
+
+    def leaning(self, lean: float) -> Problem:
+        """Return the same with gravity leaning out of the plane by an angle [rad]."""
+        require_lean(lean)
+        x, y, _ = self.gravity
+        down = math.cos(lean)
+        return replace(self, gravity=np.array([x * down, y * down, math.sin(lean)]))
+
+    def tilted(self, tilt: float) -> Problem:
+        """Return the same on a table tilted in the plane [rad]; its right-hand side goes down.
+
+        The blocks are seen as before: it is gravity that turns.
+        """
+        allowed = "a finite angle"
+        require(
+            is_number(tilt, -math.inf, math.inf) and math.isfinite(tilt), "tilt", tilt, allowed
+        )
+        (x, y, z), cos, sin = self.gravity, math.cos(tilt), math.sin(tilt)
+        return replace(self, gravity=np.array([x * cos - y * sin, x * sin + y * cos, z]))
+
+    def with_load(self, load: float) -> Problem:
+        """Return the same under another load factor."""
+        return replace(self, load=load)
+
+    def with_friction(self, mu: float) -> Problem:
+        """Return the same with another friction coefficient, but for joints with their own."""
+        require_friction(mu)
+        return replace(self, mu=mu)
+
+    def pull(self, poses: Array | None = None) -> Array:
+        """Forces on the blocks and moments about their centres: gravity, dead and live loads.
+
+        Parameters
+        ----------
+        poses : (blocks, 3 or 6) float, optional
+            Where the blocks are, in units of the size; by default where they were built.
+
+        Returns
+        -------
+        (blocks, 3 or 6) float
+            In units of the mean block's weight, and of that times the size. Six columns
+            (z, and moments about x and y) where the poses have them.
+        """
+        assembly = self.assembly
+        columns = PLANAR if poses is None else poses.shape[1]
+        weight = assembly.masses[:, 0]
+        pull = np.zeros((len(assembly.blocks), columns))
+        pull[:, :2] = weight[:, None] * self.gravity[:2]
+        if columns == SPATIAL:
+            pull[:, PLANAR] = weight * self.gravity[2]
+        for factor, loads in ((1.0, self.dead), (self.load, self.live)):
+            for load in loads:
+                pull[:, :PLANAR] += factor * self.of_load(load, poses)
+        return pull
+
+    def of_load(self, load: Load, poses: Array | None = None) -> Array:
+        """Forces and moments of one load, shape (blocks, 3), units as of `pull`."""
+        assembly = self.assembly
+        found = np.zeros((len(assembly.blocks), PLANAR))
+        chosen = list(load.blocks)
+        if load.per_weight:
+            found[chosen, :2] = assembly.masses[chosen, :1] * load.force
+            return found
+        force = load.force / self.unit_force
+        for index in chosen:
+            found[index, :2] += force
+            if load.point is not None:
+                arm = (load.point - assembly.centres[index]) / assembly.size
+                turn = 0.0 if poses is None else float(poses[index, 2])
+                cos, sin = math.cos(turn), math.sin(turn)
+                x, y = cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]
+                found[index, 2] += x * force[1] - y * force[0]
+        return found
