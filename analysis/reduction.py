@@ -2,10 +2,10 @@
 
 Question: what does it save to simulate no more blocks than it takes
 (`blocksim.arch.reduction`), and does it ever change an answer? Arches of four modes, both
-weights, of more and more voussoirs, are bracketed by each engine with and without, ends let go. Where
-all voussoirs would take minutes an arch (`LARGEST`) only the reduced arch is asked, and held to limit
-analysis. Random arches are put to `direct` on either side of their least thickness, by onset
-test: verdicts and accelerations must be those of all voussoirs.
+weights, of more and more voussoirs, are bracketed by each engine with and without, ends let
+go. Where all voussoirs would take minutes an arch (`LARGEST`) only the reduced arch is
+asked, and held to limit analysis. Random arches are put to `direct` on either side of their
+least thickness, by onset test: verdicts and accelerations must be those of all voussoirs.
 
 Expected: the same brackets and modes, in a time that hardly grows with the voussoirs.
 

@@ -140,10 +140,8 @@ class Problem:
 
         The blocks are seen as before: it is gravity that turns.
         """
-        allowed = "a finite angle"
-        require(
-            is_number(tilt, -math.inf, math.inf) and math.isfinite(tilt), "tilt", tilt, allowed
-        )
+        finite = is_number(tilt, -math.inf, math.inf) and math.isfinite(tilt)
+        require(finite, "tilt", tilt, "a finite angle")
         (x, y, z), cos, sin = self.gravity, math.cos(tilt), math.sin(tilt)
         return replace(self, gravity=np.array([x * cos - y * sin, x * sin + y * cos, z]))
 
@@ -157,7 +155,7 @@ class Problem:
         return replace(self, mu=mu)
 
     def pull(self, poses: Array | None = None) -> Array:
-        """Forces on the blocks and moments about their centres: gravity, dead and live loads.
+        """Sum gravity, dead and live loads on each block, and their moments about its centre.
 
         Parameters
         ----------
@@ -183,7 +181,7 @@ class Problem:
         return pull
 
     def of_load(self, load: Load, poses: Array | None = None) -> Array:
-        """Forces and moments of one load, shape (blocks, 3), units as of `pull`."""
+        """Return forces and moments of one load, shape (blocks, 3), units as of `pull`."""
         assembly = self.assembly
         found = np.zeros((len(assembly.blocks), PLANAR))
         chosen = list(load.blocks)
