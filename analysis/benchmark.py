@@ -31,10 +31,11 @@ from analysis.command import run
 from blocksim import Arch, bracket, check
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.bulk import which_stand
+from blocksim.arch.motion import simulate
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines import ENGINES, remedy
-from blocksim.evidence.trial import hold, simulate
+from blocksim.evidence.trial import hold
 from blocksim.report.tables import processor
 from blocksim.view.film import Film
 
@@ -149,7 +150,7 @@ def tasks(*, quick: bool) -> dict[str, Task]:
 def _of_engine(engine: str, below: Arch, above: Arch) -> dict[str, Task]:
     tol = TOLERANCES.get(engine, COARSE)
     return {
-        f"{engine}, onset test": lambda: hold(above, MU, engine),
+        f"{engine}, onset test": lambda: hold(above.problem(MU), engine),
         f"{engine}, check": lambda: check(below, mu=MU, method=engine),
         f"{engine}, bracket to {tol:g}": lambda: bracket(
             half_angle=ALPHA, mu=MU, voussoirs=below.voussoirs, method=engine, tol=tol

@@ -84,7 +84,7 @@ def ask(draw: Draw) -> Outcome:
         tol=TOL,
     )
     below, above = (
-        trial(draw.arch(factor), draw.mu, "direct", moving=False).verdict
+        trial(draw.arch(factor).problem(draw.mu), "direct", moving=False).verdict
         for factor in (1 - ASIDE, 1 + ASIDE)
     )
     return Outcome(

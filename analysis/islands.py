@@ -89,7 +89,7 @@ def ask(case: Case, engine: str) -> Row:
     """Hold an arch at rest, and let it go if that is asked for."""
     draw = case.draw
     started = time.process_time()
-    held = hold(draw.arch(case.ratio), draw.mu, engine)
+    held = hold(draw.arch(case.ratio).problem(draw.mu), engine)
     cpu_s = time.process_time() - started
     ended = conclude(held, moving=case.let_go)
     return {

@@ -41,6 +41,7 @@ from analysis.command import run
 from blocksim.arch.circular import GRAVITY, Arch
 from blocksim.ask.search import Answer, Search
 from blocksim.blocks.assembly import SUPPORT, Array, Block
+from blocksim.blocks.problem import Problem
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
 from blocksim.report.chart import write_points
@@ -251,7 +252,7 @@ def least(case: Case, *, centroids: bool = True) -> float | None:
         if centroids:
             blocks = (_even(block) for block in assembly.blocks)
             assembly = replace(assembly, blocks=tuple(blocks))
-        return equilibrium(assembly, case.mu) is not None
+        return equilibrium(Problem(assembly=assembly, mu=case.mu)).forces is not None
 
     low, high = 1e-4, THICKEST
     if not stands(high):

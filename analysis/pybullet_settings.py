@@ -102,7 +102,7 @@ def setup(arch: str, ratio: float) -> Setup:
     alpha = math.radians(degrees)
     least = least_thickness(alpha, mu, voussoirs).eta or 0.0
     built = Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs)
-    return Setup.of(built, mu, "pybullet")
+    return Setup.of(built.problem(mu), "pybullet")
 
 
 def left_over(arch: str, name: str, sweeps: Array) -> list[float]:
@@ -124,7 +124,7 @@ def moved(step: float, sweeps: int, until: float) -> tuple[list[float], list[flo
     case = replace(case, settings=replace(case.settings, step=step, sweeps=sweeps))
     world = case.world()
     for _ in range(3):
-        world.hold(40 * case.arch.voussoirs**2)
+        world.hold(40 * len(case.assembly.blocks) ** 2)
     start = world.poses()
     times, ways = [], []
     for frame in range(round(until / 0.5)):

@@ -31,6 +31,7 @@ from analysis.command import run
 from analysis.drawing import Draw, draws
 from blocksim import Arch, Bracket, Mode, bracket
 from blocksim.arch.circular import Weight
+from blocksim.arch.reduction import Reduction
 from blocksim.evidence.onset import PROBE, Onset
 from blocksim.evidence.trial import Trial, trial
 from blocksim.view.style import FONT, INK, METHODS
@@ -139,7 +140,13 @@ def pair(draw: Draw, ratio: float) -> tuple[Arch, Trial, Trial]:
     """Put one arch to the onset test of `direct`, all voussoirs and reduced."""
     arch = draw.arch(ratio)
     whole, reduced = (
-        trial(arch, draw.mu, "direct", moving=False, reduce=reduce) for reduce in (False, True)
+        trial(
+            arch.problem(draw.mu),
+            "direct",
+            moving=False,
+            reduction=Reduction.of(arch, draw.mu) if reduce else None,
+        )
+        for reduce in (False, True)
     )
     return arch, whole, reduced
 

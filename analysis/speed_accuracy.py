@@ -23,7 +23,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from analysis.command import run
-from blocksim import Arch, limit
+from blocksim import Arch
+from blocksim.arch import limit
 from blocksim.ask.search import Answer, Search
 from blocksim.evidence.setup import Setup
 from blocksim.report.chart import write_chart
@@ -94,7 +95,7 @@ def lenient_error(case: Case) -> float:
 
     def judge(eta: float) -> Answer:
         arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
-        setup = Setup.of(arch, case.mu, "pymunk", settings=settings)
+        setup = Setup.of(arch.problem(case.mu), "pymunk", settings=settings)
         return Answer(let_go(setup, moved=SETTLED, until=LATE).verdict, math.nan)
 
     search = Search(judge)

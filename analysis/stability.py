@@ -42,6 +42,7 @@ from analysis.stability_grids import GRIDS, QUICK, Case, Grid
 from blocksim import Arch, motion
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Assembly, displacement
+from blocksim.blocks.problem import Problem
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES, get_engine, remedy
 from blocksim.engines.base import Engine
@@ -87,15 +88,20 @@ class Row:
     value: float
 
 
-def setup_of(engine: str, case: Case, ratio: float) -> Setup:
-    """Return an arch at a ratio of its least thickness, in an engine."""
+def arch_at(case: Case, ratio: float) -> Arch:
+    """Return an arch at a ratio of its least thickness."""
     degrees, mu, voussoirs = case
     alpha = math.radians(degrees)
     least = least_thickness(alpha, mu, voussoirs).eta
     if least is None or not 0 < least * ratio <= 2:
         message = f"no thickness lets {case} stand"
         raise ValueError(message)
-    return Setup.of(Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs), mu, engine)
+    return Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs)
+
+
+def setup_of(engine: str, case: Case, ratio: float) -> Setup:
+    """Return such an arch in an engine."""
+    return Setup.of(arch_at(case, ratio).problem(case[1]), engine)
 
 
 def judged(verdict: Verdict, ratio: float) -> str:
@@ -110,7 +116,7 @@ def released(engine: str, grid: Grid) -> Iterator[Row]:
     for case in grid.arches:
         for ratio in RATIOS:
             setup = setup_of(engine, case, ratio)
-            sure = onset(setup.world(), setup.assembly, setup.mu, setup.settings)
+            sure = onset(setup.world(), setup.taken, setup.settings)
             for step in grid.steps:
                 for sweeps in grid.sweeps:
                     chosen = replace(
@@ -142,7 +148,7 @@ def held(engine: str, grid: Grid) -> Iterator[Row]:
                 if decided and share != rule:
                     continue  # More of them are not spent.
                 allowed = replace(setup.settings, hold_sweeps=math.ceil(share * squared))
-                seen = onset(setup.world(), setup.assembly, setup.mu, allowed)
+                seen = onset(setup.world(), setup.taken, allowed)
                 at = {"length": length, "allowed": share, "rule": rule}
                 yield Row(
                     "held",
@@ -167,8 +173,8 @@ def lines(engine: str, grid: Grid) -> Iterator[Row]:
     ]
     for name, value, case, radius in asked:
         for ratio in RATIOS:
-            arch = replace(setup_of(engine, case, ratio).arch, radius=radius, depth=radius)
-            seen = trial(arch, case[1], engine)
+            arch = replace(arch_at(case, ratio), radius=radius, depth=radius)
+            seen = trial(arch.problem(case[1]), engine)
             yield Row(
                 "lines",
                 engine,
@@ -185,7 +191,7 @@ def lasting(engine: str, grid: Grid) -> Iterator[Row]:
     for case in grid.lasting:
         setup = setup_of(engine, case, 1.005)
         world = setup.world()
-        sure = onset(world, setup.assembly, setup.mu, setup.settings)
+        sure = onset(world, setup.taken, setup.settings)
         seen = moving_run(setup, world, sure.repeat, until=grid.last)
         ways, times = seen.recording.displacement, seen.recording.times
         for mark in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0):
@@ -217,7 +223,7 @@ def energy(engine: str, grid: Grid) -> Iterator[Row]:
             sweeps = max(1, round(setup.settings.sweeps * factor))
             trying = replace(setup, settings=replace(setup.settings, step=step, sweeps=sweeps))
             world = trying.world()
-            onset(world, setup.assembly, setup.mu, trying.settings)
+            onset(world, setup.taken, trying.settings)
             poses = [world.poses()]
             for _ in range(max(3, math.ceil(WATCHED / step))):
                 world.advance(1)
@@ -255,11 +261,12 @@ def away(engine: str, grid: Grid) -> Iterator[Row]:
             start = setup.world().hold(10_000)
             for distance in grid.distances:
                 assembly = moved_away(setup.assembly, distance)
-                world = library.build(assembly, setup.mu, setup.settings)
+                problem = Problem(assembly=assembly, mu=setup.problem.mu)
+                world = library.build(problem, setup.settings)
                 off = float(displacement(world.hold(10_000) - start, setup.assembly))
-                world = library.build(assembly, setup.mu, setup.settings)
+                world = library.build(problem, setup.settings)
                 with patch("blocksim.evidence.onset.FARTHEST", math.inf):
-                    verdict = onset(world, assembly, setup.mu, setup.settings).verdict
+                    verdict = onset(world, problem, setup.settings).verdict
                 at = {"distance": distance}
                 yield Row("away", engine, case, ratio, at, judged(verdict, ratio), off)
 

@@ -8,16 +8,18 @@ from blocksim.arch.check import Check as Check
 from blocksim.arch.check import check as check
 from blocksim.arch.circular import Arch as Arch
 from blocksim.arch.modes import Mode as Mode
+from blocksim.arch.motion import load_recording as load_recording
+from blocksim.arch.motion import simulate as simulate
 from blocksim.blocks.assembly import Assembly as Assembly
 from blocksim.blocks.assembly import Block as Block
 from blocksim.blocks.assembly import Joint as Joint
 from blocksim.blocks.joints import JointState as JointState
+from blocksim.blocks.problem import Load as Load
+from blocksim.blocks.problem import Problem as Problem
 from blocksim.common.errors import BlocksimError as BlocksimError
 from blocksim.common.errors import InputError as InputError
 from blocksim.common.errors import MissingPart as MissingPart
 from blocksim.evidence.recording import Recording as Recording
-from blocksim.evidence.recording import load_recording as load_recording
-from blocksim.evidence.trial import simulate as simulate
 from blocksim.evidence.verdict import Verdict as Verdict
 
 __version__ = "0.1.0"

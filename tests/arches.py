@@ -11,6 +11,7 @@ from blocksim.arch import limit
 from blocksim.arch.bracket import Bracket, bracket
 from blocksim.arch.circular import Arch, Weight
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
+from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine
 from blocksim.evidence.onset import onset
 from blocksim.evidence.verdict import Verdict
@@ -51,8 +52,8 @@ def held_in(
 ) -> tuple[Verdict, Array]:
     """Verdict of the onset test, and the accelerations after so many sweeps more."""
     settings = engine.settings(assembly)
-    world = engine.build(assembly, mu, settings)
-    seen = onset(world, assembly, mu, settings)
+    world = engine.build(Problem(assembly=assembly, mu=mu), settings)
+    seen = onset(world, Problem(assembly=assembly, mu=mu), settings)
     return seen.verdict, world.hold(sweeps)
 
 

@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 
 from blocksim.arch import limit, theory
 from blocksim.arch.bracket import bracket
-from blocksim.arch.circular import Arch
+from blocksim.arch.circular import arch_of
 from blocksim.arch.modes import Mode
 from blocksim.ask.search import ETA_MAX, Answer, Search
+from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.trial import Held, hold
 from blocksim.evidence.verdict import Verdict
@@ -174,9 +175,11 @@ def test_where_nothing_stands(method: str) -> None:
 def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     held: list[float] = []
 
-    def counted(arch: Arch, **asked: object) -> Held:
+    def counted(problem: Problem, **asked: object) -> Held:
+        arch = arch_of(problem)
+        assert arch
         held.append(arch.eta)
-        return hold(arch, **asked)
+        return hold(problem, **asked)
 
     monkeypatch.setattr(sys.modules["blocksim.arch.bracket"], "hold", counted)
     asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from arches import arch_at
 
+from blocksim.arch.motion import load_recording, simulate
 from blocksim.ask.search import Answer, Search
 from blocksim.blocks.joints import joint_motion
 from blocksim.engines.base import trusted
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.evidence.onset import onset
-from blocksim.evidence.recording import load_recording
 from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import simulate, trial
+from blocksim.evidence.trial import trial
 from blocksim.evidence.verdict import Verdict
 
 CASES = [
@@ -34,7 +34,7 @@ CASES = [
 
 
 def held(arch, mu):
-    return trial(arch, mu, "direct", moving=False).verdict
+    return trial(arch.problem(mu), "direct", moving=False).verdict
 
 
 def world_of(arch, mu, step=0.01):
@@ -128,10 +128,10 @@ def test_it_is_repeatable_bit_by_bit():
 
 
 def test_over_its_residual_the_answer_is_undecided():
-    setup = Setup.of(arch_at(0.9, 90, 0.9, 20), 0.9, "direct")
+    setup = Setup.of(arch_at(0.9, 90, 0.9, 20).problem(0.9), "direct")
     settings = replace(setup.settings, residual=0.0)
     world = replace(setup, settings=settings).world()
-    assert onset(world, setup.assembly, 0.9, settings).verdict is Verdict.UNDECIDED
+    assert onset(world, setup.taken, settings).verdict is Verdict.UNDECIDED
     assert not trusted(world, settings)
 
 
@@ -147,6 +147,6 @@ def test_a_recording_keeps_its_quality(tmp_path):
 
 def test_onset_and_motion_agree_close_to_the_limit():
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
-        seen = trial(arch_at(ratio, 90, 0.9, 12), 0.9, "direct")
+        seen = trial(arch_at(ratio, 90, 0.9, 12).problem(0.9), "direct")
         assert seen.verdict is expected
         assert seen.motion.verdict is expected

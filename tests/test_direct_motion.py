@@ -8,11 +8,11 @@ import pytest
 from arches import arch_at
 
 from blocksim.arch.circular import Arch
+from blocksim.arch.motion import simulate
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.motion import moving_run
 from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import simulate
 from blocksim.evidence.verdict import Verdict
 
 
@@ -83,7 +83,7 @@ def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
 
-    setup = Setup.of(arch_at(0.9, 90, 0.9, 12), 0.9, "direct")
+    setup = Setup.of(arch_at(0.9, 90, 0.9, 12).problem(0.9), "direct")
     # Below the round-off of corners at rest nothing could pass.
     strict = replace(setup, settings=replace(setup.settings, penetration=-1.0))
     world = strict.world()

@@ -11,10 +11,12 @@ from arches import on_a_slope
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from blocksim import Arch, limit
+from blocksim import Arch
+from blocksim.arch import limit
 from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
 from blocksim.blocks.assembly import PLANAR, Array, Assembly
+from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
 from blocksim.limit import equilibrium
 
@@ -55,7 +57,7 @@ def test_arches_have_forces_of_equilibrium_above_their_least_thickness(
     assume(least is not None and 1e-3 < least * ratio <= 2)
     arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
     assembly = arch.assembly()
-    forces = equilibrium(assembly, mu)
+    forces = equilibrium(Problem(assembly=assembly, mu=mu)).forces
     assert (forces is not None) == (ratio > 1)
     if forces is not None:
         assert inside(forces, mu)
@@ -75,7 +77,7 @@ def test_a_block_on_a_slope_rests_unless_it_slides_or_tips(
         replace(joint, friction=0.0 if smooth else None) for joint in assembly.joints
     )
     assembly = replace(assembly, joints=joints)
-    forces = equilibrium(assembly, mu)
+    forces = equilibrium(Problem(assembly=assembly, mu=mu)).forces
     assert (forces is not None) == (math.tan(slope) < steepest)
     if forces is not None:
         pressure, friction = forces[0].sum(axis=0)
@@ -91,7 +93,7 @@ def test_half_an_arch_rests_when_the_whole_does(count: int, ratio: float) -> Non
     least = limit.least_thickness(alpha, mu, count).eta
     assert least is not None
     arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count)
-    forces = equilibrium(Reduction.of(arch, mu).assembly, mu)
+    forces = equilibrium(Problem(assembly=Reduction.of(arch, mu).assembly, mu=mu)).forces
     assert (forces is not None) == (ratio > 1)
     if forces is not None:
         np.testing.assert_allclose(forces[-1, :, 1], 0.0, atol=1e-12)
@@ -105,8 +107,8 @@ def test_pymunk_keeps_what_it_is_given(count: int) -> None:
     assert least is not None
     assembly = Arch(half_angle=math.radians(125), eta=least * 1.02, voussoirs=count).assembly()
     engine = get_engine("pymunk")
-    world = engine.build(assembly, mu, engine.settings(assembly))
-    forces = equilibrium(assembly, mu)
+    world = engine.build(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
+    forces = equilibrium(Problem(assembly=assembly, mu=mu)).forces
     assert forces is not None
     assert world.begin(forces)
     joints = assembly.joint_arrays

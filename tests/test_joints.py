@@ -15,12 +15,13 @@ from hypothesis import strategies as st
 
 from blocksim.arch.circular import Arch, crown_width
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
-from blocksim.arch.observed import closed_joints, observed_mode
+from blocksim.arch.observed import observed_mode
 from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.joints import (
     JointState,
     ObservedJoint,
     classify,
+    closed_joints,
     joint_motion,
     overlap_share,
 )
@@ -200,7 +201,7 @@ def test_theoretical_rotational_mechanism(count: int, hinge: int) -> None:
     expected[0] = expected[count] = expected[middle] = STATE.HINGE_EXTRADOS
     expected[middle - hinge] = expected[middle + hinge] = STATE.HINGE_INTRADOS
     assert {i: joint.state for i, joint in enumerate(found)} == expected
-    assert observed_mode(found, arch.half_angle, count) is Mode.RRR
+    assert observed_mode(found, arch) is Mode.RRR
     assert overlap_share(arch.assembly(), poses) < 1e-5
 
 

@@ -16,12 +16,14 @@ from arches import arch_at, box, held_in, on_a_slope
 from blocksim.arch.bracket import bracket
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
+from blocksim.arch.motion import simulate
 from blocksim.ask.doctor import examine
 from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.problem import Problem
 from blocksim.common.errors import MissingPart
 from blocksim.engines import get_engine
 from blocksim.evidence.onset import onset
-from blocksim.evidence.trial import hold, simulate, trial
+from blocksim.evidence.trial import hold, trial
 from blocksim.evidence.verdict import Verdict
 from blocksim.studies.validate import installed
 
@@ -52,7 +54,7 @@ def test_both_sides_of_the_least_thickness(
     ratio: float,
     expected: Verdict,
 ) -> None:
-    seen = trial(arch_at(ratio, angle, mu, count, weight), mu, "mujoco", moving=False)
+    seen = trial(arch_at(ratio, angle, mu, count, weight).problem(mu), "mujoco", moving=False)
     assert seen.verdict is expected
     assert seen.mode is (mode if ratio < 1 else None)
 
@@ -61,7 +63,7 @@ def test_both_sides_of_the_least_thickness(
     ("ratio", "expected"), [SIDES[0], pytest.param(*SIDES[1], marks=pytest.mark.long)]
 )
 def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict) -> None:
-    seen = trial(arch_at(ratio, 90, 0.7, 7), 0.7, "mujoco")
+    seen = trial(arch_at(ratio, 90, 0.7, 7).problem(0.7), "mujoco")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -77,14 +79,14 @@ def test_bracket_holds_the_limit() -> None:
 @pytest.mark.parametrize("ratio", [0.99, 1.002])
 def test_few_thick_voussoirs_with_much_friction(ratio: float) -> None:
     """Known limit: below its least thickness, joints slide too fast for its contacts."""
-    seen = trial(arch_at(ratio, 155, 3.0, 11), 3.0, "mujoco", moving=False)
+    seen = trial(arch_at(ratio, 155, 3.0, 11).problem(3.0), "mujoco", moving=False)
     assert seen.verdict is (Verdict.UNDECIDED if ratio < 1 else Verdict.STANDS)
 
 
 def test_what_still_settles_is_no_collapse() -> None:
     """The first thousand steps of this arch end in a motion that opens joints only."""
     arch = arch_at(1.005, 145, 1.6, 17)
-    assert trial(arch, 1.6, "mujoco", moving=False).verdict is Verdict.STANDS
+    assert trial(arch.problem(1.6), "mujoco", moving=False).verdict is Verdict.STANDS
 
 
 @pytest.mark.parametrize("ratio", [0.9, 1.1])
@@ -93,8 +95,11 @@ def test_a_thin_shallow_arch_is_not_answered(ratio: float) -> None:
     arch = arch_at(ratio, 30, 0.7, 27)
     engine = get_engine("mujoco")
     settings = replace(engine.settings(arch.assembly()), hold_sweeps=1500)
-    world = engine.build(arch.assembly(), 0.7, settings)
-    assert onset(world, arch.assembly(), 0.7, settings).verdict is Verdict.UNDECIDED
+    world = engine.build(Problem(assembly=arch.assembly(), mu=0.7), settings)
+    assert (
+        onset(world, Problem(assembly=arch.assembly(), mu=0.7), settings).verdict
+        is Verdict.UNDECIDED
+    )
 
 
 @pytest.mark.parametrize("degrees", [5, 20, 45])
@@ -162,6 +167,8 @@ def test_validate_is_of_the_two_impulse_engines() -> None:
 
 def test_where_friction_allows_both_it_does_not_say_that_an_arch_falls() -> None:
     """Begun from blocks that fall, it slides 2 % above the limit, and rests at 10 %."""
-    verdicts = [hold(arch_at(ratio, 155, 4.0, 9), 4.0, "mujoco").onset for ratio in (1.02, 1.1)]
+    verdicts = [
+        hold(arch_at(ratio, 155, 4.0, 9).problem(4.0), "mujoco").onset for ratio in (1.02, 1.1)
+    ]
     assert [seen.verdict for seen in verdicts] == [Verdict.UNDECIDED, Verdict.STANDS]
     assert verdicts[0].may_rest

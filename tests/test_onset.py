@@ -12,9 +12,12 @@ import numpy as np
 import pytest
 from arches import arch_at, bracket_at
 
-from blocksim import Arch, limit
+from blocksim import Arch
+from blocksim.arch import limit
 from blocksim.arch.circular import Weight
+from blocksim.arch.reduction import Reduction
 from blocksim.arch.theory.map import divide_friction
+from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
 from blocksim.evidence.trial import hold, trial
 from blocksim.evidence.verdict import Verdict
@@ -37,7 +40,7 @@ def test_motion_is_an_answer_above_the_limit(case: Case) -> None:
     """Begun from nothing, impulses never come to rest: this is no lack of sweeps."""
     arch, mu = arch_at(1.005, *case), case[1]
     assembly, engine = arch.assembly(), get_engine("pymunk")
-    world = engine.build(assembly, mu, engine.settings(assembly))
+    world = engine.build(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
     assert np.abs(world.hold(200_000)).max() > 1e-5
 
 
@@ -49,7 +52,7 @@ def test_motion_is_an_answer_above_the_limit(case: Case) -> None:
 def test_an_arch_stands_if_it_can_rest(
     engine: str, ratio: float, right: str, case: Case
 ) -> None:
-    assert trial(arch_at(ratio, *case), case[1], engine).verdict == right
+    assert trial(arch_at(ratio, *case).problem(case[1]), engine).verdict == right
 
 
 @every_case
@@ -68,8 +71,8 @@ def test_brackets_close_where_there_are_two_answers(case: Case) -> None:
 def test_what_was_given_is_told() -> None:
     """The answer says whether it took forces of equilibrium to find rest."""
     case = TWO_ANSWERS[-1]
-    assert "it was given" in hold(arch_at(1.01, *case), case[1], "pymunk").onset.reason
-    alone = hold(arch_at(1.01, 90.0, 0.7, 27), 0.7, "pymunk").onset
+    assert "it was given" in hold(arch_at(1.01, *case).problem(case[1]), "pymunk").onset.reason
+    alone = hold(arch_at(1.01, 90.0, 0.7, 27).problem(0.7), "pymunk").onset
     assert alone.verdict is Verdict.STANDS
     assert alone.forces is None
 
@@ -77,8 +80,8 @@ def test_what_was_given_is_told() -> None:
 @every_case
 def test_an_engine_that_cannot_be_given_forces_says_no_wrong_thing(case: Case) -> None:
     pytest.importorskip("pybullet", exc_type=ImportError)
-    below = hold(arch_at(0.9995, *case), case[1], "pybullet").onset
-    above = hold(arch_at(1.0005, *case), case[1], "pybullet").onset
+    below = hold(arch_at(0.9995, *case).problem(case[1]), "pybullet").onset
+    above = hold(arch_at(1.0005, *case).problem(case[1]), "pybullet").onset
     assert below.verdict is not Verdict.STANDS
     assert above.verdict is not Verdict.COLLAPSES
     assert "given" not in below.reason + above.reason
@@ -89,7 +92,7 @@ def test_pybullet_says_why_it_is_undecided() -> None:
     pytest.importorskip("pybullet", exc_type=ImportError)
     case = TWO_ANSWERS[-1]
     for ratio, both in ((0.9995, False), (1.0005, True)):
-        seen = hold(arch_at(ratio, *case), case[1], "pybullet").onset
+        seen = hold(arch_at(ratio, *case).problem(case[1]), "pybullet").onset
         assert ("friction allows both" in seen.reason) == both
         assert seen.verdict is (Verdict.UNDECIDED if both else Verdict.COLLAPSES)
     found = bracket_at(*case, method="pybullet", tol=4e-3)
@@ -116,7 +119,12 @@ def test_pymunk_is_right_where_two_answers_are_likeliest(reduce: bool) -> None:
         arches += 1
         for ratio in (0.97, 0.99, 0.998, 1.0005, 1.002, 1.01, 1.03, 1.1):
             arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
-            seen = trial(arch, mu, "pymunk", moving=arches % 5 == 0, reduce=reduce)
+            seen = trial(
+                arch.problem(mu),
+                "pymunk",
+                moving=arches % 5 == 0,
+                reduction=Reduction.of(arch, mu) if reduce else None,
+            )
             assert seen.verdict is (Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES)
             given += seen.onset.forces is not None
     assert given > 5

@@ -18,11 +18,11 @@ from blocksim.arch import limit
 from blocksim.arch.check import check
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
+from blocksim.arch.motion import load_recording, simulate
 from blocksim.blocks.assembly import SPATIAL, Array, Assembly
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Engine
-from blocksim.evidence.recording import load_recording
-from blocksim.evidence.trial import hold, simulate, trial
+from blocksim.evidence.trial import hold, trial
 from blocksim.evidence.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
@@ -56,7 +56,7 @@ def test_both_sides_of_the_least_thickness(
 ) -> None:
     """Onset test and moving run, 1 % below and above."""
     assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    seen = trial(arch_at(ratio, angle, mu, count, weight), mu, "pybullet")
+    seen = trial(arch_at(ratio, angle, mu, count, weight).problem(mu), "pybullet")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -66,7 +66,7 @@ def test_mode_just_below_the_least_thickness(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     arch = arch_at(0.995, angle, mu, count, weight)
-    seen = trial(arch, mu, "pybullet", moving=False)
+    seen = trial(arch.problem(mu), "pybullet", moving=False)
     assert seen.verdict is Verdict.COLLAPSES
     assert seen.mode is mode
 
@@ -159,8 +159,8 @@ def test_a_thin_arch_is_never_answered_wrongly(ratio: float, right: Verdict) -> 
 
 def test_the_reason_names_bounded_friction() -> None:
     thick = replace(THIN, eta=0.3)
-    assert "as friction" not in trial(thick, 0.7, "pybullet", moving=False).reason
-    rough = trial(thick, 20.0, "pybullet", moving=False)
+    assert "as friction" not in trial(thick.problem(0.7), "pybullet", moving=False).reason
+    rough = trial(thick.problem(20.0), "pybullet", moving=False)
     assert "pybullet took 10 as friction" in rough.reason
 
 
@@ -174,9 +174,9 @@ def test_planar_methods_take_no_lean(method: str) -> None:
 
 def test_other_spaces_do_not_disturb_a_held_one() -> None:
     """Bullet has settings that all its spaces share."""
-    alone, beside = (hold(THIN, 0.7, "pybullet") for _ in range(2))
+    alone, beside = (hold(THIN.problem(0.7), "pybullet") for _ in range(2))
     undisturbed = alone.release(3.0).recording
-    hold(replace(THIN, eta=1.0), 0.7, "pybullet")
+    hold(replace(THIN, eta=1.0).problem(0.7), "pybullet")
     assert beside.release(3.0).recording.state_hash == undisturbed.state_hash
 
 
@@ -188,11 +188,11 @@ def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
     again = load_recording(path)
     assert again.poses.shape == (len(again.times), THIN.voussoirs, SPATIAL)
     assert again.state_hash == recording.state_hash
-    assert again.settings.lean == 0.7
+    assert again.problem.gravity[2] == math.sin(0.7)
     assert again.beyond_plane[-1] > 1e-2
 
 
 def test_the_thinnest_arches_are_given_up_soon() -> None:
     """Sweeps would grow without end as joints shorten; what few can tell is undecided."""
     arch = Arch(half_angle=math.radians(60), eta=1e-9, voussoirs=3)
-    assert trial(arch, 1.0, "pybullet").verdict is Verdict.UNDECIDED
+    assert trial(arch.problem(1.0), "pybullet").verdict is Verdict.UNDECIDED

@@ -21,16 +21,18 @@ from hypothesis import strategies as st
 from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
+from blocksim.arch.motion import simulate
 from blocksim.arch.theory import least_thickness
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.joints import joint_motion
+from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.engines import get_engine
 from blocksim.engines.base import Settings
 from blocksim.evidence.motion import SOONEST, moving_run
 from blocksim.evidence.onset import onset
 from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import simulate, trial
+from blocksim.evidence.trial import trial
 from blocksim.evidence.verdict import Verdict
 
 ARCHES = [
@@ -55,11 +57,11 @@ def test_both_sides_of_the_least_thickness(
 ) -> None:
     """Onset test and moving run, 1 % below and above."""
     assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    thin = trial(arch_at(0.99, angle, mu, count, weight), mu, "pymunk")
+    thin = trial(arch_at(0.99, angle, mu, count, weight).problem(mu), "pymunk")
     assert thin.verdict is Verdict.COLLAPSES
     assert thin.motion.verdict is Verdict.COLLAPSES
     assert thin.mode is not None
-    thick = trial(arch_at(1.01, angle, mu, count, weight), mu, "pymunk")
+    thick = trial(arch_at(1.01, angle, mu, count, weight).problem(mu), "pymunk")
     assert thick.verdict is Verdict.STANDS
     assert thick.onset.acceleration < Settings.still
     assert thick.mode is None
@@ -70,7 +72,7 @@ def test_mode_just_below_the_least_thickness(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     arch = arch_at(0.998, angle, mu, count, weight)
-    seen = trial(arch, mu, "pymunk", moving=False)
+    seen = trial(arch.problem(mu), "pymunk", moving=False)
     assert seen.verdict is Verdict.COLLAPSES
     assert seen.mode is mode
 
@@ -79,7 +81,7 @@ def test_mode_just_below_the_least_thickness(
 def test_purely_sliding_at_any_thickness(eta: float) -> None:
     arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=15)
     assert limit.least_thickness(arch.half_angle, 0.28, 15).eta is None
-    seen = trial(arch, 0.28, "pymunk")
+    seen = trial(arch.problem(0.28), "pymunk")
     assert seen.verdict is Verdict.COLLAPSES
     if eta >= 0.5:  # thin ones are overcome by turning, too
         assert seen.mode is Mode.SS
@@ -102,10 +104,10 @@ def test_bracket_holds_the_limit(
 def test_thin_arches_are_never_answered_wrongly() -> None:
     """Known limit: thin shallow arches of many voussoirs need more sweeps than allowed."""
     for ratio, right in ((0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)):
-        setup = Setup.of(arch_at(ratio, 20, 0.7, 27), 0.7, "pymunk")
+        setup = Setup.of(arch_at(ratio, 20, 0.7, 27).problem(0.7), "pymunk")
         for sweeps in (1000, 20_000, 100_000):
             chosen = replace(setup.settings, hold_sweeps=sweeps)
-            seen = onset(setup.world(), setup.assembly, setup.mu, chosen)
+            seen = onset(setup.world(), setup.taken, chosen)
             assert seen.verdict in {right, Verdict.UNDECIDED}
             assert seen.sweeps <= sweeps
         assert seen.verdict is Verdict.UNDECIDED
@@ -116,16 +118,16 @@ def test_thin_arches_are_never_answered_wrongly() -> None:
 @pytest.mark.parametrize("ratio", [0.98, 1.02])
 def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> None:
     """Impulses that overshoot open joints without overlap, but against the weight."""
-    setup = Setup.of(arch_at(ratio, 20, 0.7, count), 0.7, "pymunk")
+    setup = Setup.of(arch_at(ratio, 20, 0.7, count).problem(0.7), "pymunk")
     chosen = replace(setup.settings, hold_sweeps=100_000)
-    seen = onset(setup.world(), setup.assembly, setup.mu, chosen)
+    seen = onset(setup.world(), setup.taken, chosen)
     assert seen.verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize(("ratio", "right"), [(0.98, "collapses"), (1.02, "stands")])
 def test_twice_as_wide_arches_are_answered(ratio: float, right: str) -> None:
     """The other side of that limit: 40 degrees."""
-    seen = trial(arch_at(ratio, 40, 0.7, 12), 0.7, "pymunk", moving=False)
+    seen = trial(arch_at(ratio, 40, 0.7, 12).problem(0.7), "pymunk", moving=False)
     assert seen.verdict.value == right
 
 
@@ -134,7 +136,7 @@ def test_the_weight_drives_the_mechanism(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     """Work balance: what weight gives, motion gains, but for friction where joints slide."""
-    setup = Setup.of(arch_at(0.99, angle, mu, count, weight), mu, "pymunk")
+    setup = Setup.of(arch_at(0.99, angle, mu, count, weight).problem(mu), "pymunk")
     world = setup.world()
     for _ in range(4):
         motion = world.hold(20_000)
@@ -207,7 +209,7 @@ def test_size_and_material_change_no_verdict(
         depth=depth,
     )
     expected = Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES
-    assert trial(arch, 0.9, "pymunk").verdict is expected
+    assert trial(arch.problem(0.9), "pymunk").verdict is expected
 
 
 def held(assembly: Assembly, mu: float) -> tuple[Verdict, Array]:
@@ -236,7 +238,7 @@ def test_order_of_insertion(
 
 def accelerations(assembly: Assembly, mu: float) -> np.ndarray:
     engine = get_engine("pymunk")
-    world = engine.build(assembly, mu, engine.settings(assembly))
+    world = engine.build(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
     for _ in range(3):
         found = world.hold(3000)
     return found
@@ -318,9 +320,9 @@ def test_energy_does_not_grow(
     """Poses alone give it: with central differences free fall conserves it exactly."""
     assert mode in set(Mode)
     arch = arch_at(0.9, angle, mu, count, weight)
-    setup = Setup.of(arch, mu, "pymunk")
+    setup = Setup.of(arch.problem(mu), "pymunk")
     world = setup.world()
-    onset(world, setup.assembly, setup.mu, setup.settings)
+    onset(world, setup.taken, setup.settings)
     step = setup.settings.step
     poses = []
     for _ in range(round(2.0 / step)):
@@ -343,7 +345,7 @@ def test_energy_does_not_grow(
 
 def test_blocks_at_rest_are_put_back() -> None:
     """`hold` moves nothing, however often."""
-    setup = Setup.of(replace(SMALL, eta=0.05), 0.6, "pymunk")
+    setup = Setup.of(replace(SMALL, eta=0.05).problem(0.6), "pymunk")
     world = setup.world()
     before = world.poses()
     for _ in range(3):
@@ -353,9 +355,9 @@ def test_blocks_at_rest_are_put_back() -> None:
 
 
 def test_standing_arch_stays_where_it_was_built() -> None:
-    setup = Setup.of(replace(SMALL, eta=0.15), 0.6, "pymunk")
+    setup = Setup.of(replace(SMALL, eta=0.15).problem(0.6), "pymunk")
     world = setup.world()
-    first = onset(world, setup.assembly, setup.mu, setup.settings)
+    first = onset(world, setup.taken, setup.settings)
     motion = moving_run(setup, world, first.repeat)
     assert motion.verdict is Verdict.STANDS
     assert motion.recording.displacement.max() < 1e-5
@@ -390,7 +392,7 @@ def test_what_it_starts_with_names_the_mode() -> None:
     mu = 0.1802
     arch = Arch(half_angle=math.radians(75), eta=0.126, voussoirs=20)
     published = least_thickness(arch.half_angle, mu)
-    seen = trial(arch, mu, "pymunk")
+    seen = trial(arch.problem(mu), "pymunk")
     assert seen.mode is Mode.SS
     assert published.modes == (Mode.SS,)
     sliding = sorted({abs(joint.angle) for joint in seen.joints if joint.state == "slides"})

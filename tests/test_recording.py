@@ -5,28 +5,33 @@ from __future__ import annotations
 import json
 import math
 import zipfile
-from dataclasses import replace
+from dataclasses import asdict, replace
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from blocksim.arch.circular import Arch
+from blocksim.arch.circular import Arch, arch_of
+from blocksim.arch.motion import load_recording
 from blocksim.blocks.assembly import displacement
+from blocksim.blocks.record import to_record
 from blocksim.common.errors import InputError
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines.base import Settings
-from blocksim.evidence.recording import Recording, load_recording
+from blocksim.evidence.recording import Recording
 
 ARCH = Arch(half_angle=1.2, eta=0.15, voussoirs=5, weight="sector", radius=4.0, depth=0.5)
+
+
+PROBLEM = to_record(ARCH.problem(math.inf))
+BUILT = PROBLEM["assembly"]
 
 
 def recording(frames: int = 4) -> Recording:
     random = np.random.default_rng(7)
     return Recording(
-        arch=ARCH,
-        mu=math.inf,
+        problem=ARCH.problem(math.inf),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.005, sweeps=250, hold_sweeps=50_000),
@@ -42,7 +47,8 @@ def test_roundtrip_is_exact(tmp_path: Path) -> None:
     two = load_recording(path)
     assert np.array_equal(one.poses, two.poses)
     assert np.array_equal(one.times, two.times)
-    assert (two.arch, two.mu, two.settings) == (one.arch, one.mu, one.settings)
+    assert (arch_of(two.problem), two.mu, two.settings) == (ARCH, one.mu, one.settings)
+    assert to_record(two.problem) == to_record(one.problem)
     assert (two.engine, two.engine_version) == (one.engine, one.engine_version)
     assert two.state_hash == one.state_hash
     assert [file.name for file in tmp_path.iterdir()] == ["run.npz"]
@@ -108,7 +114,7 @@ def test_every_damaged_byte_is_noticed_or_harmless(tmp_path: Path) -> None:
         else:
             assert np.array_equal(same.poses, recording().poses)
             assert np.array_equal(same.times, recording().times)
-            assert same.arch == ARCH
+            assert arch_of(same.problem) == ARCH
     assert noticed > len(places) / 2
 
 
@@ -157,15 +163,18 @@ def altered(path: Path, **changes: object) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"format": 2}, "of format 1"),
+        ({"format": 3}, "of format 2"),
         ({"poses": np.zeros((4, 6, 3))}, "poses of shape"),
         ({"times": np.zeros(3)}, "poses of shape"),
         ({"times": np.array(1.0)}, "poses of shape"),
         ({"poses": np.zeros((4, 5, 3))}, "undamaged"),
         ({"state_hash": "0" * 16}, "undamaged"),
-        ({"mu": "much"}, "written by blocksim simulate"),
-        ({"arch": {"half_angle": 1.0}}, "written by blocksim simulate"),
-        ({"arch": {"half_angle": 9.0, "eta": 1, "voussoirs": 5}}, "written by blocksim"),
+        ({"problem": {"mu": "much"}}, "written by blocksim simulate"),
+        ({"problem": None}, "written by blocksim simulate"),
+        ({"problem": {**PROBLEM, "mu": -1.0}}, "written by blocksim simulate"),
+        ({"problem": {**PROBLEM, "gravity": [0.0, "down", 0.0]}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "assembly": {**BUILT, "size": 0}}}, "written by blocksim"),
+        ({"problem": {**PROBLEM, "assembly": {**BUILT, "joints": [{}]}}}, "written by"),
         ({"settings": {"unknown": 1}}, "written by blocksim simulate"),
         ({"settings": None}, "written by blocksim simulate"),
     ],
@@ -186,12 +195,8 @@ def test_altered_contents(tmp_path: Path, changes: dict[str, object], words: str
         {"poses": np.full((4, 5, 3), math.nan)},
         {"poses": np.full((4, 5, 3), -math.inf)},
         {"poses": np.full((4, 5, 3), 1e200)},
-        {"mu": math.nan},
-        {"mu": -1.0},
         {"engine": "\x1b[31mred"},
         {"engine": "x" * 5000},
-        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, lean=math.nan)},
-        {"settings": Settings(step=0.1, sweeps=1, hold_sweeps=1, lean="much")},
     ],
 )
 def test_what_is_no_motion_of_an_arch_is_refused(
@@ -276,8 +281,13 @@ def test_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["run.npz"]
 
 
-def test_older_recordings_called_the_lean_a_tilt(tmp_path: Path) -> None:
+def test_older_recordings_of_arches_are_still_read(tmp_path: Path) -> None:
+    """Format 1 knew arches only, and called gravity's lean a tilt."""
     path = tmp_path / "run.npz"
     old = {"step": 0.1, "sweeps": 1, "hold_sweeps": 2, "tilt": 0.3, "plane_lock": False}
-    altered(path, settings=old)
-    assert load_recording(path).settings.lean == 0.3
+    altered(path, format=1, problem=None, arch=asdict(ARCH), mu=0.7, settings=old)
+    found = load_recording(path)
+    assert arch_of(found.problem) == ARCH
+    assert found.mu == 0.7
+    assert found.problem.gravity == pytest.approx([0.0, -math.cos(0.3), math.sin(0.3)])
+    assert np.array_equal(found.poses, recording().poses)

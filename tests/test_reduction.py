@@ -25,6 +25,7 @@ from blocksim.arch.limit.statics import half_joints
 from blocksim.arch.reduction import MIRROR, Reduction
 from blocksim.ask.methods import METHODS
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES, get_engine
 from blocksim.evidence.onset import onset
@@ -71,7 +72,7 @@ def every_joint(arch, mu):
     an unsymmetric one; of the half, merging must not change any.
     """
     joints = tuple(range(arch.voussoirs // 2 + 1))
-    return hold(arch, mu, "direct", reduction=Reduction(arch.assembly(), joints))
+    return hold(arch.problem(mu), "direct", reduction=Reduction(arch.assembly(), joints))
 
 
 def unbalanced(assembly, resultants, rates):
@@ -176,7 +177,7 @@ def on_a_slope(slope, smooth=False):
 
 def placed(engine, assembly, mu):
     library = get_engine(engine)
-    return library.build(assembly, mu, library.settings(assembly))
+    return library.build(Problem(assembly=assembly, mu=mu), library.settings(assembly))
 
 
 def test_a_block_rests_with_its_weight_below_its_centre(engine):
@@ -202,7 +203,7 @@ def test_nothing_holds_a_block_on_a_smooth_slope(engine):
 def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
     arch = arch_at(ratio, 125, 0.9, voussoirs)
     for reduction in (None, Reduction.of(arch, 0.9)):
-        world = Setup.of(arch, 0.9, engine, reduction=reduction).world()
+        world = Setup.of(arch.problem(0.9), engine, reduction=reduction).world()
         rates = world.hold(SWEEPS[engine])[:, :3]
         left = unbalanced(arch.assembly(), world.resultants(), rates)
         # Bodies that overlap have two places for one force.
@@ -213,8 +214,8 @@ def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
 def test_resultants_are_those_of_all_voussoirs(voussoirs):
     """In a collapse hinges fix the resultants; at rest there is a choice."""
     arch = arch_at(0.97, 90, 0.7, voussoirs)
-    every = Setup.of(arch, 0.7, "direct").world()
-    few = Setup.of(arch, 0.7, "direct", reduction=Reduction.of(arch, 0.7)).world()
+    every = Setup.of(arch.problem(0.7), "direct").world()
+    few = Setup.of(arch.problem(0.7), "direct", reduction=Reduction.of(arch, 0.7)).world()
     every.hold(1)
     few.hold(1)
     assert few.resultants() == pytest.approx(every.resultants(), abs=1e-7)
@@ -230,8 +231,8 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
     arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
     crown = () if voussoirs % 2 else (voussoirs // 2,)
     wrong = Reduction(arch.assembly(), (0, *crown))
-    held = hold(arch, mu, "direct", reduction=wrong)
-    assert held.onset.verdict is hold(arch, mu, "direct").onset.verdict
+    held = hold(arch.problem(mu), "direct", reduction=wrong)
+    assert held.onset.verdict is hold(arch.problem(mu), "direct").onset.verdict
     assert held.setup.blocks < 10
     half = every_joint(arch, mu)
     scale = max(half.onset.acceleration, 1e-6)
@@ -241,11 +242,11 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
 def test_without_a_second_look_a_wrong_guess_would_stand():
     arch = arch_at(0.98, 90, 0.7, 28)
     wrong = Reduction(arch.assembly(), (0, 14))
-    setup = Setup.of(arch, 0.7, "direct", reduction=wrong)
+    setup = Setup.of(arch.problem(0.7), "direct", reduction=wrong)
     world = setup.world()
-    assert onset(world, setup.assembly, setup.mu, setup.settings).verdict is Verdict.STANDS
+    assert onset(world, setup.taken, setup.settings).verdict is Verdict.STANDS
     assert wrong.overstrained(world.resultants(), 0.7, 1e-9)
-    held = hold(arch, 0.7, "direct", reduction=wrong)
+    held = hold(arch.problem(0.7), "direct", reduction=wrong)
     assert held.onset.verdict is Verdict.COLLAPSES
     assert held.splits > 0
 
@@ -256,7 +257,7 @@ def test_joints_that_slide_are_split_again():
     right = Reduction.of(arch, mu).kept
     assert len(right) == 4
     merged = tuple(joint for joint in right if joint != right[2])
-    held = hold(arch, mu, "direct", reduction=Reduction(arch.assembly(), merged))
+    held = hold(arch.problem(mu), "direct", reduction=Reduction(arch.assembly(), merged))
     assert held.splits > 0
     assert accelerations(held) == pytest.approx(accelerations(every_joint(arch, mu)), abs=1e-9)
 
@@ -287,7 +288,13 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
     """Five voussoirs with much friction: the halves of the keystone would part."""
     arch = Arch(half_angle=math.radians(146.91), eta=0.5742, voussoirs=5)
     few, every = (
-        trial(arch, 2.43, "direct", moving=False, reduce=reduce) for reduce in (True, False)
+        trial(
+            arch.problem(2.43),
+            "direct",
+            moving=False,
+            reduction=Reduction.of(arch, 2.43) if reduce else None,
+        )
+        for reduce in (True, False)
     )
     assert few.blocks == every.blocks == 5
     assert few.onset.acceleration == every.onset.acceleration
@@ -313,7 +320,7 @@ def test_limit_analysis_names_the_joints_that_act_at_the_least_thickness():
 def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight):
     for ratio, expected in ((1 - 1e-9, Verdict.COLLAPSES), (1 + 1e-9, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = trial(arch, mu, "direct", moving=False, reduce=True)
+        seen = trial(arch.problem(mu), "direct", moving=False, reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected
         assert seen.blocks <= 6
 
@@ -332,7 +339,13 @@ def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
     assume(eta is not None and 1e-3 < eta * ratio <= 2)
     arch = Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
     few, every = (
-        trial(arch, mu, "direct", moving=False, reduce=reduce) for reduce in (True, False)
+        trial(
+            arch.problem(mu),
+            "direct",
+            moving=False,
+            reduction=Reduction.of(arch, mu) if reduce else None,
+        )
+        for reduce in (True, False)
     )
     assert few.verdict is every.verdict
     assert few.mode is every.mode
@@ -343,7 +356,7 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
     """All 301 voussoirs would take it minutes."""
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = trial(arch, mu, "pymunk", reduce=True)
+        seen = trial(arch.problem(mu), "pymunk", reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected, seen.reason
         if expected is Verdict.COLLAPSES:
             state = limit.least_thickness(arch.half_angle, mu, voussoirs, weight)
@@ -357,7 +370,7 @@ def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
     pytest.importorskip("pybullet")
     for ratio, expected in ((0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
-        seen = trial(arch, mu, "pybullet", reduce=True)
+        seen = trial(arch.problem(mu), "pybullet", reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected, seen.reason
         assert seen.motion.recording.poses.shape[1:] == (voussoirs, 6)
 
@@ -388,7 +401,12 @@ def test_where_no_thickness_stands_none_is_found():
 @pytest.mark.parametrize("voussoirs", [14, 15])
 def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
     arch = arch_at(0.98, 125, 0.9, voussoirs)
-    few, every = (trial(arch, 0.9, "direct", reduce=reduce) for reduce in (True, False))
+    few, every = (
+        trial(
+            arch.problem(0.9), "direct", reduction=Reduction.of(arch, 0.9) if reduce else None
+        )
+        for reduce in (True, False)
+    )
     assert few.verdict is every.verdict is Verdict.COLLAPSES
     assert few.mode is every.mode
     assert few.joints == every.joints
@@ -410,7 +428,9 @@ def test_the_answer_tells_what_was_simulated(engine):
 def test_scale_and_density_change_nothing():
     arch = arch_at(0.98, 125, 0.9, 27)
     other = replace(arch, radius=64.0, depth=0.25, specific_weight=16_000.0)
-    one, two = (hold(a, 0.9, "direct", reduction=Reduction.of(a, 0.9)) for a in (arch, other))
+    one, two = (
+        hold(a.problem(0.9), "direct", reduction=Reduction.of(a, 0.9)) for a in (arch, other)
+    )
     assert accelerations(one) == pytest.approx(accelerations(two), abs=1e-12)
 
 

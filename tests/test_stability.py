@@ -14,6 +14,7 @@ import pytest
 from analysis.stability import moved_away, setup_of
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import overlap_share
+from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality
 from blocksim.evidence import motion
 from blocksim.evidence.motion import Motion, moving_run
@@ -32,7 +33,7 @@ def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> 
 
 
 def held(setup: Setup) -> Onset:
-    return onset(setup.world(), setup.assembly, setup.mu, setup.settings)
+    return onset(setup.world(), setup.taken, setup.settings)
 
 
 def released(setup: Setup, until: float | None = None) -> Motion:
@@ -96,8 +97,8 @@ def test_far_from_the_origin(engine: str, far: bool, ratio: float, right: Verdic
     """Beyond, round-off would hide what starts to move, or throw blocks."""
     setup = setup_at(ratio, 90, 0.7, 9, engine)
     assembly = moved_away(setup.assembly, FARTHEST * (1.01 if far else 0.99))
-    world = setup.engine.build(assembly, setup.mu, setup.settings)
-    seen = onset(world, assembly, setup.mu, setup.settings)
+    world = setup.engine.build(Problem(assembly=assembly, mu=setup.problem.mu), setup.settings)
+    seen = onset(world, Problem(assembly=assembly, mu=setup.problem.mu), setup.settings)
     assert seen.verdict is (Verdict.UNDECIDED if far else right)
     assert ("from the origin" in seen.reason) == far
 
@@ -123,7 +124,7 @@ def test_settings_beyond_those_measured_are_named(
     chosen = replace(rule, step=rule.step * step, sweeps=round(rule.sweeps * sweeps))
     changed = replace(setup, settings=chosen)
     world = changed.world()
-    first = onset(world, changed.assembly, changed.mu, chosen)
+    first = onset(world, Problem(assembly=changed.assembly, mu=changed.mu), chosen)
     seen = conclude(Held(setup=changed, world=world, onset=first), moving=moving)
     assert ("to be sure" in seen.reason) == (moving and word != "")
     assert not moving or word in seen.reason

@@ -18,12 +18,13 @@ from running import blocksim
 from scipy.spatial.transform import Rotation
 
 from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.arch.motion import load_recording
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, classify, joint_motion
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
-from blocksim.evidence.recording import Recording, load_recording
+from blocksim.evidence.recording import Recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
 from blocksim.view.film import Film
 from blocksim.view.order import painting_order

@@ -142,7 +142,7 @@ def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
 def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     """What stands is watched to the end."""
     setup = Setup.of(
-        arch(SMALL, 1.5), SMALL.mu, method, settings={"step": 1 / 480, "sweeps": 20}
+        arch(SMALL, 1.5).problem(SMALL.mu), method, settings={"step": 1 / 480, "sweeps": 20}
     )
     seen = let_go(setup)
     assert seen.verdict is Verdict.STANDS

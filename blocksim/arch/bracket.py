@@ -10,6 +10,7 @@ from functools import partial
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.modes import Mode
+from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.ask.search import ETA_MAX, Answer, Search
@@ -181,7 +182,7 @@ def bracket(
             reason="static limit analysis of the voussoirs as built",
         )
     else:
-        held = partial(hold, mu=mu, engine=rung.name, settings=settings)
+        held = partial(hold, engine=rung.name, settings=settings)
         answer = _by_simulation(
             arch, answer, continuous.eta, held, progress, confirm=confirm, reduce=reduce
         )
@@ -205,6 +206,7 @@ def _by_simulation(
 ) -> Bracket:
     """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
     ends: dict[Verdict, Held] = {}
+    eta_of: dict[Verdict, float] = {}
     reduction: Reduction | None = None
     blocks = splits = both = 0
 
@@ -216,12 +218,15 @@ def _by_simulation(
             reduction = reduction.at(built)
         elif reduce:
             reduction = Reduction.of(built, answer.mu)
-        held = held_at(built, reduction=reduction)
-        reduction = held.setup.reduction
+        held = held_at(built.problem(answer.mu), reduction=reduction)
+        # An engine may have split it, or given it up.
+        kept = held.setup.reduction
+        reduction = kept if isinstance(kept, Reduction) else None
         blocks, splits = max(blocks, held.setup.blocks), splits + held.splits
         both += held.onset.may_rest
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = held
+        eta_of[held.onset.verdict] = eta
         return Answer(held.onset.verdict, held.onset.acceleration)
 
     search = Search(judge, progress)
@@ -234,10 +239,10 @@ def _by_simulation(
         if expected in ends and (confirm or expected is Verdict.COLLAPSES):
             held = ends[expected]
             if confirm:
-                progress(0.95, f"moving run at {held.setup.arch.eta:.6g}")
+                progress(0.95, f"moving run at {eta_of[expected]:.6g}")
             ended = conclude(held, moving=confirm)
             verdicts.append(ended.verdict is expected)
-            mode = ended.mode if ended.verdict is Verdict.COLLAPSES else mode
+            mode = observed_mode(ended.joints, arch) or mode
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}
     reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
-from blocksim.arch.observed import closed_joints
+from blocksim.arch.observed import observed_mode
+from blocksim.arch.reduction import Reduction
 from blocksim.ask.methods import choose, chosen_words
-from blocksim.blocks.joints import JointState, ObservedJoint
-from blocksim.common.checks import require_friction, require_lean
+from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.setup import BY_RULE, Overrides
 from blocksim.evidence.trial import trial
@@ -35,7 +35,9 @@ class Check:
         Least thickness of the voussoirs as built and of the continuous arch; None where
         no thickness up to 2 stands.
     mode : Mode or None
-        How it collapses; None where it stands or the joints form none of the modes.
+        How it starts to collapse; None where it stands or the joints form none of the modes.
+    mode_in_motion : Mode or None
+        The same a little later, in the moving run, when more joints may have joined in.
     joints : tuple of ObservedJoint
         From the left springing to the right.
     simulated : float or None
@@ -57,6 +59,7 @@ class Check:
     eta_limit: float | None
     eta_theory: float | None
     mode: Mode | None
+    mode_in_motion: Mode | None
     joints: tuple[ObservedJoint, ...]
     simulated: float | None
     state_hash: str | None
@@ -105,13 +108,12 @@ def check(
         If the engine's library is not installed.
     """
     started = time.perf_counter()
-    require_friction(mu)
-    require_lean(lean)
-    spatial = lean != 0
-    rung = choose(method, spatial=spatial, settings=settings, reduce=reduce)
+    problem = arch.problem(mu, lean)
+    rung = choose(method, problem=problem, settings=settings, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
-    closed = closed_joints(arch)
+    closed = closed_joints(problem.assembly)
+    in_motion: Mode | None = None
     simulated = state_hash = blocks = splits = None
     if rung.name == "theory":
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
@@ -124,15 +126,15 @@ def check(
         joints = _limit_joints(arch, built) if falls else closed
     else:
         seen = trial(
-            arch,
-            mu,
+            problem,
             rung.name,
-            lean=lean,
             settings=settings,
-            reduce=reduce,
+            reduction=Reduction.of(arch, mu) if reduce else None,
             progress=progress,
         )
-        verdict, reason, mode, joints = seen.verdict, seen.reason, seen.mode, seen.joints
+        verdict, reason, joints = seen.verdict, seen.reason, seen.joints
+        mode = observed_mode(joints, arch)
+        in_motion = observed_mode(seen.joints_in_motion, arch)
         simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
         state_hash = seen.motion.recording.state_hash if seen.motion else None
         blocks, splits = seen.blocks, seen.splits
@@ -145,6 +147,7 @@ def check(
         eta_limit=built.eta,
         eta_theory=continuous.eta,
         mode=mode,
+        mode_in_motion=in_motion,
         joints=joints,
         simulated=simulated,
         state_hash=state_hash,

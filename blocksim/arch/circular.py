@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Literal, get_args
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
-from blocksim.common.checks import is_number, require
+from blocksim.blocks.problem import STANDARD_GRAVITY as GRAVITY
+from blocksim.blocks.problem import Problem
+from blocksim.common.checks import is_number, require, require_friction
 
 Weight = Literal["centreline", "sector"]
 WEIGHTS: tuple[str, ...] = get_args(Weight)
 
 SMALL = 0.1
 """Angle below which a series is better than a difference [rad]."""
-GRAVITY = 9.81
-"""Standard gravity [m/s^2], to turn specific weight into mass."""
+KIND = "circular-arch"
+"""How problems made from an arch are told."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,6 +143,28 @@ class Arch:
             for i in range(self.voussoirs + 1)
         )
         return Assembly(blocks=blocks, joints=joints, size=self.radius)
+
+    def problem(self, mu: float, lean: float = 0.0) -> Problem:
+        """Ask about it under its own weight.
+
+        Parameters
+        ----------
+        mu : float
+            Friction coefficient of every joint, above 0, inf allowed.
+        lean : float
+            Angle by which gravity leans out of the plane [rad].
+        """
+        require_friction(mu)
+        upright = Problem(
+            assembly=self.assembly(), mu=mu, origin={"kind": KIND, **asdict(self)}
+        )
+        return upright.leaning(lean) if lean else upright
+
+
+def arch_of(problem: Problem) -> Arch | None:
+    """Return the arch a problem was made from; None where it was no arch."""
+    made = dict(problem.origin)
+    return Arch(**made) if made.pop("kind", None) == KIND else None  # type: ignore[arg-type]
 
 
 def centroid_factor(eta: float, weight: Weight) -> float:

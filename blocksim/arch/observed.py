@@ -7,17 +7,7 @@ from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.joints import JointState, ObservedJoint
 
 
-def closed_joints(arch: Arch) -> tuple[ObservedJoint, ...]:
-    """Joints of an arch at rest."""
-    return tuple(
-        ObservedJoint(angle=float(angle), state=JointState.CLOSED)
-        for angle in arch.joint_angles
-    )
-
-
-def observed_mode(
-    joints: tuple[ObservedJoint, ...], half_angle: float, voussoirs: int
-) -> Mode | None:
+def observed_mode(joints: tuple[ObservedJoint, ...], arch: Arch) -> Mode | None:
     """Name the mode of the observed joints of an arch, both halves folded onto one.
 
     A hinge that falls between two joints shows as both of them: neighbours that do the
@@ -26,23 +16,21 @@ def observed_mode(
     Parameters
     ----------
     joints : tuple of ObservedJoint
-    half_angle : float
-        alpha [rad].
-    voussoirs : int
+    arch : Arch
 
     Returns
     -------
     Mode or None
         None where they form none of the seven modes.
     """
-    spacing = 2 * half_angle / voussoirs
+    spacing = 2 * arch.half_angle / arch.voussoirs
     active: list[ActiveJoint] = []
     for observed in sorted(joints, key=lambda joint: -abs(joint.angle)):
         for kind in _KINDS[observed.state]:
             joint = ActiveJoint(abs(observed.angle), *kind)
             if not any(_neighbours(joint, other, spacing) for other in active):
                 active.append(joint)
-    return name_mode(active, crown_width(half_angle, voussoirs))
+    return name_mode(active, crown_width(arch.half_angle, arch.voussoirs))
 
 
 _TURNS_OUTSIDE, _TURNS_INSIDE, _SLIDES = (False, False), (False, True), (True, False)

@@ -64,6 +64,10 @@ class Reduction:
             expected.add(middle)
         return cls(arch.assembly(), tuple(sorted({0, *expected})))
 
+    def world(self, world: World) -> World:
+        """Return the world of all voussoirs, from that of the blocks simulated."""
+        return ReducedWorld(world, self)
+
     def at(self, arch: Arch) -> Reduction:
         """Keep the same joints of an arch that differs in thickness only."""
         return replace(self, whole=arch.assembly())

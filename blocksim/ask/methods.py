@@ -12,7 +12,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from blocksim import engines
+from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.setup import BY_RULE, SETTINGS, Overrides, require_setting
 
@@ -34,6 +37,9 @@ class Method:
         Smallest relative width of a bracket it can answer for; its error is less.
     is_spatial : bool
         Whether it sees motion out of the plane.
+    is_general : bool
+        Whether it is right on any assembly, with any load. Others were shown right on
+        chains of blocks under their own weight, of which arches are one kind.
     reduces : bool
         Whether it tells what joints carry, which a reduced arch takes.
     settings : tuple of str
@@ -44,6 +50,7 @@ class Method:
     sees: str
     finest: float
     is_spatial: bool = False
+    is_general: bool = False
     reduces: bool = False
     settings: tuple[str, ...] = ()
 
@@ -65,11 +72,13 @@ METHODS = {
             name="limit",
             sees="the arch as built: the same, and the joints that turn or slide",
             finest=0.0,
+            is_general=True,
         ),
         Method(
             name="direct",
             sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
             finest=1e-8,
+            is_general=True,
             reduces=True,
             settings=("step", "still", "rest"),
         ),
@@ -97,13 +106,15 @@ METHODS = {
 }
 
 CHOICES = ("auto", *METHODS)
+CHAIN = 2
+"""Most joints of a block in a chain."""
 
 
 def choose(
     method: str,
     tol: float = 0.0,
     *,
-    spatial: bool = False,
+    problem: Problem | None = None,
     moving: bool = False,
     settings: Overrides = BY_RULE,
     reduce: bool = False,
@@ -116,8 +127,8 @@ def choose(
         One of `CHOICES`.
     tol : float
         Relative width of the bracket asked for, 0 where there is none.
-    spatial : bool
-        Whether the question is of motion out of the plane.
+    problem : Problem, optional
+        What the question is about, where it is known; an upright arch, if not.
     moving : bool
         Whether it is of motion at all.
     settings : mapping of str to float
@@ -135,18 +146,22 @@ def choose(
     if method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
     if method == "auto":
-        rung = next(
+        able = (
             each
             for each in METHODS.values()
             if each.name != "theory"
             and each.finest <= (tol or math.inf)
-            and each.is_spatial >= spatial
             and each.is_static <= (not moving)
         )
+        rung = next((each for each in able if not _beyond(each, problem)), None)
+        if rung is None:
+            raise InputError("method", method, f"another: {_beyond(METHODS[SPATIAL], problem)}")
     else:
         rung = METHODS[method]
-    if spatial and not rung.is_spatial:
-        raise InputError("method", method, f"{SPATIAL} with a lean")
+    spatial = problem is not None and not problem.is_planar
+    beyond = _beyond(rung, problem)
+    if beyond:
+        raise InputError("method", method, beyond)
     if moving and rung.is_static:
         able = ", ".join(engines.ENGINES)
         raise InputError("method", method, f"one of {able}: others move nothing")
@@ -162,6 +177,42 @@ def choose(
             raise InputError("settings", name, allowed)
         require_setting(name, value)
     return rung
+
+
+def _beyond(method: Method, problem: Problem | None) -> str:
+    """Say what is allowed where a problem is beyond a method; empty where it is not."""
+    if problem is None:
+        return ""
+    if not problem.is_planar and not method.is_spatial:
+        return f"{SPATIAL} where gravity leans out of the plane"
+    if method.name == "theory" and not problem.origin:
+        return "limit or an engine: theory is of circular arches only"
+    if method.is_general or method.is_static:
+        return ""
+    able = " or ".join(each.name for each in METHODS.values() if each.is_general)
+    for has, what in (
+        (problem.dead or (problem.live and problem.load), "loads besides gravity"),
+        (_own_friction(problem), "joints with friction of their own"),
+        (problem.assembly.joint_arrays.is_corner.any(), "corners on faces"),
+        (not _is_chain(problem), "blocks that are no chain"),
+    ):
+        if has:
+            return f"{able}: {method.name} was not shown right on {what}"
+    return ""
+
+
+def _own_friction(problem: Problem) -> bool:
+    own = problem.assembly.joint_arrays.friction
+    return bool((np.isfinite(own) | np.isinf(own)).any())
+
+
+def _is_chain(problem: Problem) -> bool:
+    """Tell whether blocks stand in a row, each between two joints at most."""
+    joints = problem.assembly.joint_arrays
+    sides = np.concatenate([joints.before, joints.after])
+    met = np.bincount(sides[sides >= 0], minlength=len(problem.assembly.blocks))
+    sizes = [len(block.polygons) for block in problem.assembly.blocks]
+    return int(met.max(initial=0)) <= CHAIN and max(sizes) == 1
 
 
 def chosen_words(method: str, rung: Method) -> str:

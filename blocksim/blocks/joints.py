@@ -164,6 +164,14 @@ class ObservedJoint:
     state: JointState
 
 
+def closed_joints(assembly: Assembly) -> tuple[ObservedJoint, ...]:
+    """Joints of an assembly at rest."""
+    return tuple(
+        ObservedJoint(angle=math.atan2(x, y), state=JointState.CLOSED)
+        for x, y in assembly.joint_arrays.tangent.tolist()
+    )
+
+
 def classify(
     assembly: Assembly, poses: Array, *, least: float | None = None
 ) -> tuple[ObservedJoint, ...]:

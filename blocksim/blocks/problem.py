@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -84,6 +85,9 @@ class Problem:
     moves : tuple of Move
     title, source : str
         What it is, and where it comes from.
+    origin : mapping
+        The parameters it was made from, and by which `kind` of generator; empty where its
+        blocks were given.
     notes : tuple of str
         What was mended or taken when it was read, for answers to state.
 
@@ -102,6 +106,7 @@ class Problem:
     moves: tuple[Move, ...] = ()
     title: str = ""
     source: str = ""
+    origin: Mapping[str, object] = field(default_factory=dict[str, object])
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

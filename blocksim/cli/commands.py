@@ -12,6 +12,7 @@ from rich.table import Table
 from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.check import check as ask_check
 from blocksim.arch.circular import GRAVITY
+from blocksim.arch.motion import simulate as record_motion
 from blocksim.arch.scenario import load_scenario, shipped
 from blocksim.ask.doctor import examine
 from blocksim.cli.console import (
@@ -58,7 +59,6 @@ from blocksim.cli.sweeping import run_sweep
 from blocksim.common.checks import is_number, require
 from blocksim.common.files import make_folder, require_place
 from blocksim.engines import ENGINES
-from blocksim.evidence.trial import simulate as record_motion
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import (
     bracket_lines,

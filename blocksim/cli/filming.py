@@ -11,6 +11,7 @@ from typing import Annotated, Literal, NamedTuple
 import typer
 
 from blocksim.arch.limit import least_thickness
+from blocksim.arch.motion import load_recording, simulate
 from blocksim.arch.scenario import Scenario
 from blocksim.ask.methods import SPATIAL
 from blocksim.cli.console import progress, say
@@ -18,8 +19,7 @@ from blocksim.cli.options import named_options, question
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.engines import ENGINES
-from blocksim.evidence.recording import Recording, load_recording
-from blocksim.evidence.trial import simulate
+from blocksim.evidence.recording import Recording
 from blocksim.studies.validate import ASIDE
 
 FALL = 6.0

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.problem import Problem
 
 FRICTION_CAP = 1e3
 """Most friction of an engine without a bound of its own.
@@ -48,10 +49,6 @@ class Settings:
         Worst residual of the contacts at which an answer still counts.
     penetration : float
         Deepest overlap at which an answer still counts [size].
-    lean : float
-        Angle by which gravity leans out of the plane [rad].
-
-    Planar engines know no lean; `ladder.choose` sees to that.
     """
 
     step: float
@@ -63,7 +60,6 @@ class Settings:
     noise: float = 1e-7
     residual: float = math.inf
     penetration: float = math.inf
-    lean: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,6 +179,6 @@ class Engine(Protocol):
         """Choose settings that suit an assembly."""
         ...
 
-    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
-        """Put an assembly into the engine, all contacts closed, at rest."""
+    def build(self, problem: Problem, settings: Settings) -> World:
+        """Put the blocks of a problem into the engine, all contacts closed, at rest."""
         ...

@@ -38,6 +38,7 @@ from typing import Any
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint, displacement
+from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality, Settings, World
 from blocksim.engines.boxes import Frame, footing, plate
 from blocksim.engines.faces import faces_of
@@ -133,9 +134,9 @@ class Bullet:
             noise=NOISE,
         )
 
-    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
-        """Put an assembly into a new world."""
-        return _Bodies(assembly, mu, settings, self._frame)
+    def build(self, problem: Problem, settings: Settings) -> World:
+        """Put the blocks of a problem into a new space."""
+        return _Bodies(problem, settings, self._frame)
 
 
 def _pairs(assembly: Assembly) -> float:
@@ -146,7 +147,8 @@ def _pairs(assembly: Assembly) -> float:
 class _Bodies:
     """Bullet's space with one body for each block."""
 
-    def __init__(self, assembly: Assembly, mu: float, settings: Settings, frame: Frame) -> None:
+    def __init__(self, problem: Problem, settings: Settings, frame: Frame) -> None:
+        assembly, mu = problem.assembly, problem.mu
         self._assembly, self._settings, self._frame = assembly, settings, frame
         self._pairs = settings.sweeps / SWEEPS
         self._client = bullet.connect(bullet.DIRECT)
@@ -179,7 +181,7 @@ class _Bodies:
                     )
         bullet.stepSimulation(physicsClientId=self._client)
         bullet.setGravity(
-            *frame.vector(0.0, -math.cos(settings.lean), math.sin(settings.lean)),
+            *frame.vector(*problem.gravity.tolist()),
             physicsClientId=self._client,
         )
 

@@ -28,6 +28,7 @@ import numpy as np
 import pymunk
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.faces import crowding, faces_of, ledge, side
 
@@ -87,16 +88,18 @@ class Chipmunk:
             ),
         )
 
-    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
-        """Put an assembly into a new space."""
-        return _Space(assembly, mu, settings)
+    def build(self, problem: Problem, settings: Settings) -> World:
+        """Put the blocks of a problem into a new space."""
+        return _Space(problem, settings)
 
 
 class _Space:
     """A pymunk space with one body for each block."""
 
-    def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        assembly, mu = problem.assembly, problem.mu
         self._assembly, self._settings = assembly, settings
+        self._gravity = (float(problem.gravity[0]), float(problem.gravity[1]))
         self._inset = min(INSET, INSET_SHARE * assembly.shortest)
         self._friction = math.sqrt(min(mu, FRICTION_CAP))
         # Footings come after the blocks, in the order of their joints.
@@ -111,7 +114,7 @@ class _Space:
         """Put the blocks into a new space, without impulses."""
         assembly, size = self._assembly, self._assembly.size
         space = pymunk.Space()
-        space.gravity = (0.0, -1.0)
+        space.gravity = self._gravity
         space.collision_slop = self._inset
         space.collision_persistence = 1
         faces = faces_of(assembly)

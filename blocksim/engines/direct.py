@@ -18,6 +18,7 @@ from importlib.metadata import version
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
 
@@ -64,9 +65,9 @@ class Direct:
             penetration=PENETRATION,
         )
 
-    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
-        """Put an assembly at rest."""
-        return Blocks(assembly, mu, settings)
+    def build(self, problem: Problem, settings: Settings) -> World:
+        """Put the blocks of a problem at rest."""
+        return Blocks(problem, settings)
 
 
 class Blocks:
@@ -74,16 +75,16 @@ class Blocks:
 
     Parameters
     ----------
-    assembly : Assembly
-    mu : float
+    problem : Problem
     settings : Settings
     """
 
-    def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        self._asked, assembly = problem, problem.assembly
         size = assembly.size
         self._mass = assembly.masses
         self._step = settings.step
-        self._mu = min(mu, FRICTION_CAP)
+        self._mu = min(problem.mu, FRICTION_CAP)
         self._reach = assembly.reach / size
         self._neighbours = Neighbours(assembly)
         self._keys = self._neighbours.keys
@@ -91,8 +92,7 @@ class Blocks:
         self._joints = len(assembly.joints)
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
         self._velocities = np.zeros_like(self._poses)
-        self._gravity = np.zeros_like(self._poses)
-        self._gravity[:, 1] = -1.0
+        self._gravity = problem.pull() / self._mass
         self._solution: Solution | None = None
         self._residual = self._penetration = 0.0
 

@@ -33,6 +33,7 @@ import mujoco  # pyright: ignore[reportMissingTypeStubs]
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
+from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.boxes import Box, footing, plate
 from blocksim.engines.faces import faces_of
@@ -97,9 +98,9 @@ class MultiJoint:
             residual=CHATTER,
         )
 
-    def build(self, assembly: Assembly, mu: float, settings: Settings) -> World:
-        """Put an assembly into a new model."""
-        return _Bodies(assembly, mu, settings)
+    def build(self, problem: Problem, settings: Settings) -> World:
+        """Put the blocks of a problem into a new space."""
+        return _Bodies(problem, settings)
 
 
 class _Bodies:
@@ -108,11 +109,12 @@ class _Bodies:
     A sweep is one of MuJoCo's steps, which solves the contacts to their end.
     """
 
-    def __init__(self, assembly: Assembly, mu: float, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        assembly, mu = problem.assembly, problem.mu
         self._part = settings.step / settings.sweeps
         self._parts = settings.sweeps
         self._scatter, self._steady = 0.0, True
-        self._model = _model(assembly, min(mu, FRICTION_CAP))
+        self._model = _model(assembly, min(mu, FRICTION_CAP), problem.gravity)
         self._state = library.MjData(self._model)
         self._places = np.column_stack(
             [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
@@ -208,12 +210,12 @@ class _Bodies:
         return Quality(residual=self._scatter if self._steady else math.inf)
 
 
-def _model(assembly: Assembly, mu: float) -> Any:
+def _model(assembly: Assembly, mu: float, gravity: Array) -> Any:
     """Return a model of bodies that touch where the assembly has joints."""
     size = assembly.size
     spec = library.MjSpec()
     option = spec.option
-    option.gravity = [0.0, -1.0, 0.0]
+    option.gravity = gravity.tolist()
     option.cone = library.mjtCone.mjCONE_ELLIPTIC
     option.solver = library.mjtSolver.mjSOL_NEWTON
     option.tolerance = TOLERANCE

@@ -21,7 +21,7 @@ an arch that can rest does. Which one is found depends on where the search for i
 and few thick voussoirs with much friction move whatever it is (155 deg, mu 3, n = 7: up to 10 %
 above the least thickness, its forces without fault). An arch stands if it can rest. A mechanism
 that slides is therefore believed only where no forces exist that would balance the weights
-(`limit.equilibrium`); where they do, the engine begins again, with these. If it keeps them, the
+(`blocksim.limit`); where they do, the engine begins again, with these. If it keeps them, the
 arch stands: the forces are not taken on trust. An engine that cannot be given any is undecided.
 So it goes where sweeps run out (from `LATE` on) over what is a mechanism to a thousandth: a
 mode of sliding can take 10^6 sweeps to die away (125.02 deg, mu 0.8594, n = 10).
@@ -36,8 +36,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, Assembly, displacement
+from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import overlap_share, slip_share
+from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Settings, World, trusted
 from blocksim.evidence.verdict import Verdict
@@ -71,7 +72,7 @@ class Onset:
     sweeps : int
         Sweeps spent.
     forces : (joints, 2, 2) float or None
-        Forces of equilibrium (`limit.equilibrium`) it was given, if it was.
+        Forces of equilibrium (`blocksim.limit`) it was given, if it was.
     may_rest : bool
         Whether it starts to move where forces of equilibrium exist.
     too_far : bool
@@ -114,33 +115,31 @@ class Onset:
 
 def onset(
     world: World,
-    assembly: Assembly,
-    mu: float,
+    problem: Problem,
     settings: Settings,
     progress: Progress = silent,
     *,
-    simulated: Assembly | None = None,
+    simulated: Problem | None = None,
 ) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
     Parameters
     ----------
     world : World
-    assembly : Assembly
-        The blocks of the world.
-    mu : float
-        Their friction coefficient.
+    problem : Problem
+        The blocks of the world, with the friction the engine takes.
     settings : Settings
         What counts as at rest, and the most sweeps to spend.
     progress : Progress, optional
-    simulated : Assembly, optional
-        Those blocks the engine knows, where they are others (`blocksim.arch.reduction`).
+    simulated : Problem, optional
+        Of those blocks the engine knows, where they are others (`blocksim.arch.reduction`).
 
     Returns
     -------
     Onset
         The world keeps its impulses and can be released from there.
     """
+    assembly = problem.assembly
     if np.abs(assembly.centres).max() > FARTHEST * assembly.size:
         return Onset(
             verdict=Verdict.UNDECIDED,
@@ -154,18 +153,18 @@ def onset(
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
     total, sweeps = 0, first
     forces = given = None
-    unasked = not (world.finds_rest or settings.lean)
+    unasked = problem.is_planar and not world.finds_rest
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
-        seen = _look(world, assembly, settings, built, accelerations, total)
+        seen = _look(world, problem, settings, built, accelerations, total)
         falls = seen.verdict is Verdict.COLLAPSES
         nearly = falls or (
             total > LATE * allowed and overlap_share(assembly, seen.mechanism) < NEARLY
         )
         if unasked and nearly and slip_share(assembly, seen.mechanism) > SLIPS:
             unasked = False
-            forces = equilibrium(simulated or assembly, mu)
+            forces = equilibrium(simulated or problem).forces
             if forces is not None and world.begin(forces):
                 sweeps, given = first, forces
                 continue
@@ -180,13 +179,14 @@ def onset(
 
 def _look(
     world: World,
-    assembly: Assembly,
+    problem: Problem,
     settings: Settings,
     built: Array,
     accelerations: Array,
     sweeps: int,
 ) -> Onset:
     """Read the accelerations that a number of sweeps have led to."""
+    assembly = problem.assembly
     largest = float(displacement(accelerations, assembly))
     mechanism = built + accelerations * (PROBE / largest if largest > 0 else 0.0)
     verdict = Verdict.UNDECIDED
@@ -194,17 +194,15 @@ def _look(
         if largest < settings.still:
             verdict = Verdict.STANDS
         elif overlap_share(assembly, mechanism) < settings.closing and (
-            world.quality().residual is not None
-            or _driven(assembly, accelerations, settings.lean)
+            world.quality().residual is not None or _driven(problem, built, accelerations)
         ):
             verdict = Verdict.COLLAPSES
     return Onset(verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=sweeps)
 
 
-def _driven(assembly: Assembly, accelerations: Array, lean: float) -> bool:
-    """Tell whether the weight does the work of the motion, from rest over one step."""
-    masses = assembly.spatial_masses[:, : accelerations.shape[1]]
-    weight = np.array([0.0, -math.cos(lean), 0.0, math.sin(lean), 0.0, 0.0])
-    of_weight = float((masses * accelerations * weight[: accelerations.shape[1]]).sum())
+def _driven(problem: Problem, built: Array, accelerations: Array) -> bool:
+    """Tell whether the loads do the work of the motion, from rest over one step."""
+    masses = problem.assembly.spatial_masses[:, : accelerations.shape[1]]
+    of_loads = float((problem.pull(built) * accelerations).sum())
     of_motion = float((masses * accelerations**2).sum())
-    return of_weight > WORK * of_motion
+    return of_loads > WORK * of_motion

@@ -7,20 +7,22 @@ import json
 import math
 import zipfile
 import zlib
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
-from blocksim.arch.circular import Arch
-from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, displacement
-from blocksim.common.checks import require, require_friction, require_lean
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, displacement
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.record import from_record, to_record
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_file, write_whole
 from blocksim.engines.base import Quality, Settings
 
-FORMAT = 1
+FORMAT = 2
 WRITTEN = "written by blocksim simulate"
 LARGEST_FILE = 1 << 30
 """Bytes; a larger file is not opened."""
@@ -44,32 +46,41 @@ _UNREADABLE = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recording:
-    """The motion of an arch in one engine.
+    """The motion of blocks in one engine.
+
+    Lengths are in units of the assembly's size, which is the radius r of an arch.
 
     Parameters
     ----------
-    arch : Arch
-    mu : float
-        Friction coefficient.
+    problem : Problem
     engine, engine_version : str
     settings : Settings
     times : (frames,) float
-        In units of sqrt(r/g), from the release.
-    poses : (frames, voussoirs, 3 or 6) float
-        Centres of mass x, y in units of r and rotations [rad]; from engines in three
+        In units of sqrt(size/g), from the release.
+    poses : (frames, blocks, 3 or 6) float
+        Centres of mass x, y in units of the size and rotations [rad]; from engines in three
         dimensions also z, out of the plane, and the rotation vector's x and y.
     quality : Quality
         How well contact and friction were kept.
     """
 
-    arch: Arch
-    mu: float
+    problem: Problem
     engine: str
     engine_version: str
     settings: Settings
     times: Array
     poses: Array
     quality: Quality = field(default_factory=Quality)
+
+    @property
+    def assembly(self) -> Assembly:
+        """Its blocks and joints."""
+        return self.problem.assembly
+
+    @property
+    def mu(self) -> float:
+        """Friction coefficient of its joints, but for those with their own."""
+        return self.problem.mu
 
     @property
     def state_hash(self) -> str:
@@ -80,7 +91,7 @@ class Recording:
     @property
     def displacement(self) -> Array:
         """Largest displacement of any corner since the release [r], shape (frames,)."""
-        return displacement(self.poses - self.poses[0], self.arch.assembly())
+        return displacement(self.poses - self.poses[0], self.assembly)
 
     @property
     def beyond_plane(self) -> Array:
@@ -89,11 +100,11 @@ class Recording:
         if moved.shape[-1] == PLANAR:
             return np.zeros(len(self.times))
         moved[..., :PLANAR] = 0.0
-        return displacement(moved, self.arch.assembly())
+        return displacement(moved, self.assembly)
 
     def seconds(self, gravity: float) -> Array:
         """Return times in seconds for a gravity in m/s^2."""
-        return self.times * math.sqrt(self.arch.radius / gravity)
+        return self.times * math.sqrt(self.assembly.size / gravity)
 
     def save(self, path: Path) -> None:
         """Write a compressed .npz: arrays and one JSON text, nothing executable.
@@ -105,12 +116,11 @@ class Recording:
         """
         header = {
             "format": FORMAT,
-            "arch": asdict(self.arch),
-            "mu": self.mu,
+            "problem": to_record(self.problem),
             "engine": self.engine,
             "engine_version": self.engine_version,
-            "settings": asdict(self.settings),
-            "quality": asdict(self.quality),
+            "settings": to_record(self.settings),
+            "quality": to_record(self.quality),
             "state_hash": self.state_hash,
         }
         text = np.array(json.dumps(header))
@@ -121,8 +131,18 @@ class Recording:
         write_whole(path, write)
 
 
-def load_recording(path: Path) -> Recording:
+Header = dict[str, Any]
+"""What a recording says beside its arrays."""
+
+
+def read_recording(path: Path, renew: Callable[[Header], Header] = dict) -> Recording:
     """Read a recording and check that it is one.
+
+    Parameters
+    ----------
+    path : Path
+    renew : callable, optional
+        Makes the header of an older format one of today's.
 
     Raises
     ------
@@ -133,9 +153,10 @@ def load_recording(path: Path) -> Recording:
     require_file(path, "recording", "an existing .npz file", LARGEST_FILE)
     try:
         header, times, poses = _parts(path)
+        header = renew(header)
+        require(header.get("format") == FORMAT, "recording", where, f"of format {FORMAT}")
         recording = Recording(
-            arch=Arch(**header["arch"]),
-            mu=float(header["mu"]),
+            problem=from_record(header["problem"]),
             engine=str(header["engine"]),
             engine_version=str(header["engine_version"]),
             settings=_settings(header["settings"]),
@@ -144,17 +165,17 @@ def load_recording(path: Path) -> Recording:
             quality=Quality(**header.get("quality", {})),
         )
         _require_header(recording)
+    except InputError as error:
+        raise error if error.field == "recording" else _foreign(where) from None
     except _UNREADABLE:
-        raise InputError("recording", where, WRITTEN) from None
-    expected = (recording.times.size, recording.arch.voussoirs)
+        raise _foreign(where) from None
+    expected = (recording.times.size, len(recording.assembly.blocks))
     shaped = recording.times.ndim == 1 and recording.poses.shape in {
         (*expected, PLANAR),
         (*expected, SPATIAL),
     }
-    if header.get("format") != FORMAT or not shaped:
-        raise InputError(
-            "recording", where, f"of format {FORMAT}, poses of shape {(*expected, PLANAR)}"
-        )
+    if not shaped:
+        raise InputError("recording", where, f"of poses of shape {(*expected, PLANAR)}")
     if header.get("state_hash") != recording.state_hash:
         raise InputError("recording", where, "undamaged (its state hash does not match)")
     if not _moves(recording):
@@ -162,10 +183,17 @@ def load_recording(path: Path) -> Recording:
     return recording
 
 
+def _foreign(where: str) -> InputError:
+    return InputError("recording", where, WRITTEN)
+
+
 def _settings(written: dict[str, Any]) -> Settings:
-    """Read settings, those of older recordings, too: they called the lean a tilt."""
-    named = {"lean" if name == "tilt" else name: value for name, value in dict(written).items()}
-    named.pop("plane_lock", None)
+    """Read settings, whose numbers may be infinite."""
+    inf = math.inf
+    given = dict(written).items()
+    named: dict[str, Any] = {name: inf if each == "inf" else each for name, each in given}
+    if not all(isinstance(each, int | float) for each in named.values()):
+        raise TypeError
     return Settings(**named)
 
 
@@ -186,8 +214,6 @@ def _parts(path: Path) -> tuple[dict[str, Any], Array, Array]:
 
 def _require_header(recording: Recording) -> None:
     """Raise `InputError` where what is said beside the poses cannot be."""
-    require_friction(recording.mu)
-    require_lean(recording.settings.lean)
     name = f"{recording.engine} {recording.engine_version}"
     require(name.isascii() and name.isprintable() and len(name) < 80, "engine", name, "a name")
 

@@ -1,16 +1,16 @@
-"""An arch in an engine: everything a recording must know to be made again."""
+"""A problem in an engine: everything a recording must know to be made again."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
-from blocksim.arch.circular import Arch
-from blocksim.arch.reduction import ReducedWorld, Reduction
 from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.problem import Problem
 from blocksim.common.checks import is_number, require
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
@@ -70,78 +70,102 @@ LONGER, FEWER = 2.0, 0.5
 """Steps and sweeps, over the rule's, up to which moving runs of every engine were right."""
 
 
+class Reduced(Protocol):
+    """What stands for all blocks of a problem in an engine: fewer, that move alike."""
+
+    @property
+    def assembly(self) -> Assembly:
+        """The blocks that are simulated."""
+        ...
+
+    def world(self, world: World) -> World:
+        """Return the world of all blocks, from that of those simulated."""
+        ...
+
+    def overstrained(self, resultants: Array, mu: float, allowed: float) -> tuple[int, ...]:
+        """Return joints taken not to move that would."""
+        ...
+
+    def parts(self, resultants: Array) -> bool:
+        """Tell whether it cannot stand for all blocks."""
+        ...
+
+    def split(self, joints: tuple[int, ...]) -> Reduced:
+        """Let more joints move."""
+        ...
+
+
 @dataclass(frozen=True, kw_only=True)
 class Setup:
-    """An arch, its friction, an engine and its settings.
+    """A problem, an engine and its settings.
 
     Parameters
     ----------
-    arch : Arch
-    mu : float
+    problem : Problem
     engine : Engine
     settings : Settings
     given : mapping of str to float
         Those settings that do not follow the engine's rule.
-    reduction : Reduction or None
-        What the engine is given in place of all voussoirs.
+    reduction : Reduced or None
+        What the engine is given in place of all blocks.
     """
 
-    arch: Arch
-    mu: float
+    problem: Problem
     engine: Engine
     settings: Settings
     given: Overrides = field(default_factory=dict[str, float])
-    reduction: Reduction | None = None
+    reduction: Reduced | None = None
 
     @classmethod
     def of(
         cls,
-        arch: Arch,
-        mu: float,
+        problem: Problem,
         engine: str,
         *,
-        lean: float = 0.0,
         settings: Overrides = BY_RULE,
-        reduction: Reduction | None = None,
+        reduction: Reduced | None = None,
     ) -> Setup:
-        """Take the settings that the engine chooses for the arch, or those given.
-
-        Lean [rad] as in `Settings`, for engines in three dimensions.
-        """
+        """Take the settings that the engine chooses for the blocks, or those given."""
         library = get_engine(engine)
         given = {
             name: int(value) if SETTINGS[name].is_whole else value
             for name, value in settings.items()
         }
-        chosen = library.settings(reduction.whole if reduction else arch.assembly())
         return cls(
-            arch=arch,
-            mu=mu,
+            problem=problem,
             engine=library,
-            settings=replace(chosen, lean=lean, **given),
+            settings=replace(library.settings(problem.assembly), **given),
             given=settings,
             reduction=reduction,
         )
 
-    @cached_property
-    def assembly(self) -> Assembly:
-        """The arch's blocks and joints."""
-        return self.reduction.whole if self.reduction else self.arch.assembly()
-
     @property
-    def simulated(self) -> Assembly:
-        """The blocks and joints the engine is given."""
-        return (self.reduction or self).assembly
+    def assembly(self) -> Assembly:
+        """All blocks and joints."""
+        return self.problem.assembly
+
+    @cached_property
+    def taken(self) -> Problem:
+        """The problem with the friction the engine takes, which may be bounded."""
+        most = self.engine.most_friction
+        return self.problem if self.problem.mu <= most else replace(self.problem, mu=most)
+
+    @cached_property
+    def simulated(self) -> Problem:
+        """The same of the blocks the engine is given."""
+        if self.reduction is None:
+            return self.taken
+        return replace(self.taken, assembly=self.reduction.assembly)
 
     @property
     def blocks(self) -> int:
         """How many blocks the engine is given."""
-        return len(self.simulated.blocks)
+        return len(self.simulated.assembly.blocks)
 
     def world(self) -> World:
         """Blocks in the engine, at rest."""
-        world = self.engine.build(self.simulated, self.mu, self.settings)
-        return ReducedWorld(world, self.reduction) if self.reduction else world
+        world = self.engine.build(self.simulated, self.settings)
+        return self.reduction.world(world) if self.reduction else world
 
     @property
     def unsure(self) -> str:
@@ -170,8 +194,7 @@ class Setup:
     ) -> Recording:
         """Return frames as a recording."""
         return Recording(
-            arch=self.arch,
-            mu=self.mu,
+            problem=self.problem,
             engine=self.engine.name,
             engine_version=self.engine.version,
             settings=self.settings,

@@ -1,28 +1,23 @@
-"""One arch in one engine: onset test, moving run, and what they show together."""
+"""A problem in an engine: onset test, moving run, and what they show together."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from blocksim.arch.circular import Arch
-from blocksim.arch.modes import Mode
-from blocksim.arch.observed import closed_joints, observed_mode
-from blocksim.arch.reduction import Reduction
-from blocksim.ask.methods import choose
-from blocksim.blocks.joints import ObservedJoint, classify
-from blocksim.common.checks import require_friction, require_lean
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
+from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import World
 from blocksim.evidence.motion import Motion, moving_run
 from blocksim.evidence.onset import Onset, onset
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.setup import BY_RULE, Overrides, Setup, given_words
+from blocksim.evidence.setup import BY_RULE, Overrides, Reduced, Setup, given_words
 from blocksim.evidence.verdict import Verdict
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Held:
-    """An arch in an engine after the onset test: at rest, and ready to be let go once.
+    """Blocks in an engine after the onset test: at rest, and ready to be let go once.
 
     Parameters
     ----------
@@ -39,14 +34,14 @@ class Held:
     splits: int = 0
 
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
-        """Let the arch go; see `moving_run`."""
+        """Let the blocks go; see `moving_run`."""
         repeat = self.onset.repeat
         return moving_run(self.setup, self.world, repeat, until=until, progress=progress)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trial:
-    """What an engine showed of one arch.
+    """What an engine showed of one problem.
 
     Parameters
     ----------
@@ -56,11 +51,14 @@ class Trial:
         The evidence, and which kind it is.
     onset : Onset
     motion : Motion or None
-        None where the arch was not let go.
-    joints : tuple of ObservedJoint
-        Empty where gravity leans out of the plane and the arch collapses: their states
-        are those of motion in the plane.
-    mode : Mode or None
+        None where the blocks were not let go.
+    joints, joints_in_motion : tuple of ObservedJoint
+        What joints do as a collapse starts, by the onset test, and a little later, in the
+        moving run; closed where the blocks stand. Empty where gravity leans out of the
+        plane and they collapse: their states are those of motion in the plane. The second
+        is empty where there was no moving run, too.
+    mechanism : (blocks, 3 or 6) float or None
+        Poses after a small displacement along the onset mechanism, where they collapse.
     blocks, splits : int
         Blocks that were simulated, and joints that a reduction had to split again.
     """
@@ -70,95 +68,67 @@ class Trial:
     onset: Onset
     motion: Motion | None
     joints: tuple[ObservedJoint, ...]
-    mode: Mode | None
+    joints_in_motion: tuple[ObservedJoint, ...]
+    mechanism: Array | None
     blocks: int
     splits: int
 
 
 def trial(
-    arch: Arch,
-    mu: float,
+    problem: Problem,
     engine: str,
     *,
     moving: bool = True,
-    lean: float = 0.0,
     settings: Overrides = BY_RULE,
-    reduce: bool = False,
+    reduction: Reduced | None = None,
     progress: Progress = silent,
 ) -> Trial:
-    """Put an arch into an engine: onset test, then, if asked for, the moving run.
+    """Put a problem into an engine: onset test, then, if asked for, the moving run.
 
     Parameters
     ----------
-    arch : Arch
-    mu : float
+    problem : Problem
     engine : str
     moving : bool
-        Let the arch go after the onset test. It is not let go where that test is
-        undecided: unbalanced impulses would throw it.
-    lean : float
-        As in `Settings`, for engines in three dimensions.
+        Let the blocks go after the onset test. They are not let go where that test is
+        undecided: unbalanced impulses would throw them.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
-    reduce : bool
-        Simulate no more blocks than it takes (`blocksim.arch.reduction`); not out of the plane.
+    reduction : Reduced, optional
+        Simulate these blocks in place of all.
     progress : Progress, optional
 
     Returns
     -------
     Trial
     """
-    held = hold(
-        arch,
-        mu,
-        engine,
-        lean=lean,
-        settings=settings,
-        reduction=Reduction.of(arch, mu) if reduce else None,
-        progress=progress,
-    )
+    held = hold(problem, engine, settings=settings, reduction=reduction, progress=progress)
     return conclude(held, moving=moving, progress=progress)
 
 
 def hold(
-    arch: Arch,
-    mu: float,
+    problem: Problem,
     engine: str,
     *,
-    lean: float = 0.0,
     settings: Overrides = BY_RULE,
-    reduction: Reduction | None = None,
+    reduction: Reduced | None = None,
     progress: Progress = silent,
 ) -> Held:
-    """Do the first part of a trial: put the arch into the engine, and the onset test.
+    """Do the first part of a trial: put the problem into the engine, and the onset test.
 
     With a reduction that is done again until no joint would move of those taken not to,
-    and with all voussoirs where a keystone would not stay in the plane of symmetry.
+    and with all blocks where it cannot stand for them.
     """
     splits = 0
     while True:
-        setup = Setup.of(
-            arch,
-            mu,
-            engine,
-            lean=lean,
-            settings=settings,
-            reduction=reduction,
-        )
+        setup = Setup.of(problem, engine, settings=settings, reduction=reduction)
         world = setup.world()
-        friction = min(mu, setup.engine.most_friction)
-        first = onset(
-            world,
-            setup.assembly,
-            friction,
-            setup.settings,
-            progress,
-            simulated=setup.simulated,
-        )
+        simulated = setup.simulated
+        first = onset(world, setup.taken, setup.settings, progress, simulated=simulated)
         if reduction and (first.may_rest or first.verdict is not Verdict.UNDECIDED):
             resultants = world.resultants()
-            moving = reduction.overstrained(resultants, friction, setup.settings.still)
-            # Large blocks move where they may rest sooner than the voussoirs they are made of.
+            moving = reduction.overstrained(resultants, simulated.mu, setup.settings.still)
+            # Large blocks move where they may rest sooner than those they are made of.
             if first.may_rest or reduction.parts(resultants):
                 reduction, splits = None, 0
                 continue
@@ -171,7 +141,6 @@ def hold(
 def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
     """Do the second part of a trial: the moving run if asked for, and what all of it shows."""
     setup, first = held.setup, held.onset
-    arch, lean = setup.arch, setup.settings.lean
     verdict, reason, motion = first.verdict, first.reason, None
     if moving and verdict is not Verdict.UNDECIDED:
         motion = held.release(progress=progress)
@@ -179,23 +148,23 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
     reason += _asides(held, motion) + given_words(setup.given)
-    joints, mode = closed_joints(arch), None
-    if lean and verdict is Verdict.COLLAPSES:
-        joints = ()  # their states are those of motion in the plane
-    elif verdict is Verdict.COLLAPSES:
-        # In motion more joints may join in: then what it starts with names the mode.
-        for mechanism in ([motion.mechanism] if motion else []) + [first.mechanism]:
-            joints = classify(setup.assembly, mechanism)
-            mode = observed_mode(joints, arch.half_angle, arch.voussoirs)
-            if mode:
-                break
+    joints = closed_joints(setup.assembly)
+    in_motion = joints if motion else ()
+    mechanism = None
+    if verdict is Verdict.COLLAPSES:
+        mechanism = first.mechanism
+        planar = setup.problem.is_planar
+        joints = classify(setup.assembly, first.mechanism) if planar else ()
+        seen = planar and motion
+        in_motion = classify(setup.assembly, motion.mechanism) if motion and seen else ()
     return Trial(
         verdict=verdict,
         reason=reason,
         onset=first,
         motion=motion,
         joints=joints,
-        mode=mode,
+        joints_in_motion=in_motion,
+        mechanism=mechanism,
         blocks=setup.blocks,
         splits=held.splits,
     )
@@ -206,71 +175,19 @@ def _asides(held: Held, motion: Motion | None) -> str:
     setup = held.setup
     said: list[str] = []
     if setup.reduction:
-        said.append(reduced_words(setup.blocks, setup.arch.voussoirs, held.splits))
-    if setup.settings.lean and motion:
+        said.append(reduced_words(setup.blocks, len(setup.assembly.blocks), held.splits))
+    if motion and not setup.problem.is_planar:
         said.append(f"moved {motion.recording.beyond_plane[-1]:.1e} r out of its plane")
     if motion and setup.unsure:
         said.append(setup.unsure)
-    if setup.mu > setup.engine.most_friction:
+    if setup.problem.mu > setup.engine.most_friction:
         said.append(f"{setup.engine.name} took {setup.engine.most_friction:g} as friction")
     return "".join(f"; {each}" for each in said)
 
 
-def reduced_words(blocks: int, voussoirs: int, splits: int) -> str:
+def reduced_words(blocks: int, of: int, splits: int) -> str:
     """Tell what a reduction has come to."""
     return (
         "reduced by symmetry and by merging "
-        f"(blocks: {blocks} of {voussoirs}, joints split again: {splits})"
+        f"(blocks: {blocks} of {of}, joints split again: {splits})"
     )
-
-
-def simulate(
-    arch: Arch,
-    *,
-    mu: float,
-    method: str,
-    duration: float | None = None,
-    lean: float = 0.0,
-    settings: Overrides = BY_RULE,
-    progress: Progress = silent,
-) -> Recording:
-    """Let an arch go in an engine, after the onset test, and record it.
-
-    Parameters
-    ----------
-    arch : Arch
-    mu : float
-        Friction coefficient, above 0, inf allowed.
-    method : str
-        An engine, or `auto`.
-    duration : float, optional
-        Time to record [sqrt(r/g)]; by default until the verdict is certain.
-    lean : float
-        Angle by which gravity leans out of the plane [rad].
-    settings : mapping of str to float
-        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
-    progress : Progress, optional
-
-    Returns
-    -------
-    Recording
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, or the method moves nothing.
-    MissingPart
-        If the engine's library is not installed.
-    """
-    require_friction(mu)
-    require_lean(lean)
-    rung = choose(method, spatial=lean != 0, moving=True, settings=settings)
-    held = hold(
-        arch,
-        mu,
-        rung.name,
-        lean=lean,
-        settings=settings,
-        progress=progress,
-    )
-    return held.release(duration, progress).recording

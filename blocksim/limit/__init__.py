@@ -1,3 +1,6 @@
 """Limit analysis of any assembly of blocks."""
 
-from blocksim.limit.equilibrium import equilibrium as equilibrium
+from blocksim.limit.programme import Collapse as Collapse
+from blocksim.limit.programme import Equilibrium as Equilibrium
+from blocksim.limit.programme import collapse as collapse
+from blocksim.limit.programme import equilibrium as equilibrium

@@ -147,9 +147,9 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
     """
     if knob in {"step", "sweeps"}:
         given = {"step": STEP, "sweeps": SWEEPS[method], knob: value}
-        return let_go(Setup.of(arch, mu, method, settings=given))
+        return let_go(Setup.of(arch.problem(mu), method, settings=given))
     given = {knob: value} if knob == "hold_sweeps" else {}
-    seen = trial(arch, mu, method, moving=False, settings=given)
+    seen = trial(arch.problem(mu), method, moving=False, settings=given)
     work = CONTACTS[method] * (arch.voussoirs + 1) * seen.onset.sweeps
     return Look(verdict=seen.verdict, acceleration=seen.onset.acceleration, work=work)
 

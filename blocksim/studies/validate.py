@@ -11,6 +11,7 @@ from blocksim.arch import limit
 from blocksim.arch.bracket import ETA_MAX, Bracket, bracket
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
+from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import Scenario, load_scenario, shipped
 from blocksim.ask.methods import METHODS, missing
 from blocksim.common.processes import crew
@@ -166,13 +167,14 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
     recording = None
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
-        seen = trial(scenario.arch(under), scenario.mu, engine)
-        mode, below = seen.mode, seen.verdict
+        arch = scenario.arch(under)
+        seen = trial(arch.problem(scenario.mu), engine)
+        mode, below = observed_mode(seen.joints, arch), seen.verdict
         recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
         over = found.centre * (1 + ASIDE)
-        above = trial(scenario.arch(over), scenario.mu, engine).verdict
+        above = trial(scenario.arch(over).problem(scenario.mu), engine).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
     middle = found.centre or found.eta_low
@@ -199,11 +201,11 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
 def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
     """Compare the verdict on an arch as it is with the one its scenario claims."""
     started = time.perf_counter()
-    seen = trial(arch, scenario.mu, engine, lean=scenario.lean)
+    seen = trial(arch.problem(scenario.mu, scenario.lean), engine)
     right = seen.verdict is scenario.expected_verdict
     return replace(
         _asked(scenario, engine),
-        mode_observed=seen.mode,
+        mode_observed=observed_mode(seen.joints, arch),
         verdict_expected=scenario.expected_verdict,
         verdict=seen.verdict,
         miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
@@ -324,4 +326,6 @@ def _mode_nearer(scenario: Scenario, found: Bracket) -> Mode | None:
     if found.eta_low is None:
         return None
     eta = (found.centre or found.eta_low) * (1 - NEARER)
-    return trial(scenario.arch(eta), scenario.mu, found.method, moving=False).mode
+    arch = scenario.arch(eta)
+    seen = trial(arch.problem(scenario.mu), found.method, moving=False)
+    return observed_mode(seen.joints, arch)

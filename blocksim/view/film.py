@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.arch import limit
-from blocksim.arch.circular import GRAVITY
+from blocksim.arch.circular import GRAVITY, arch_of
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.recording import Recording
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
@@ -161,7 +161,7 @@ class Film:
         parts: list[Part] = []
         labels: list[Label] = []
         for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
-            radius = stage.recording.arch.radius
+            radius = stage.recording.assembly.size
             length = _round_length(0.5 * radius)
             bar, words = view.scale_bar(length / radius, f"{length:g} m")
             parts.append((panel, [*view.still, *bar]))
@@ -177,12 +177,15 @@ class Film:
 
     def _title(self, stage: Stage, panel: Panel) -> list[Label]:
         """Arch, engine and ratio to the least thickness, above a panel."""
-        size, arch = self._size, stage.recording.arch
+        size, arch = self._size, arch_of(stage.recording.problem)
         friction = "∞" if math.isinf(stage.recording.mu) else f"{stage.recording.mu:.4g}"
-        head = (
-            f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
-            f"μ = {friction}   n = {arch.voussoirs}"
-        )
+        blocks = len(stage.assembly.blocks)
+        head = stage.recording.problem.title or f"{blocks} blocks   μ = {friction}"
+        if arch:
+            head = (
+                f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
+                f"μ = {friction}   n = {arch.voussoirs}"
+            )
         below = f"{stage.recording.engine} {stage.recording.engine_version}   {_load(stage)}"
         x, top = panel.x + 24 * size, self.height
         return [
@@ -218,7 +221,7 @@ class Film:
 
 def _unit(recording: Recording) -> float:
     """Seconds in one sqrt(r/g)."""
-    return math.sqrt(recording.arch.radius / GRAVITY)
+    return math.sqrt(recording.assembly.size / GRAVITY)
 
 
 def _slowness(seconds: float) -> float:
@@ -242,10 +245,12 @@ def _round_length(length: float) -> float:
 def _load(stage: Stage) -> str:
     """Say what the arch is up against: its own weight, or gravity that leans."""
     recording = stage.recording
-    lean = math.degrees(recording.settings.lean)
+    lean = math.degrees(math.asin(recording.problem.gravity[2]))
     if lean:
         return f"gravity leans {lean:.3g}° out of the plane"
-    arch = recording.arch
+    arch = arch_of(recording.problem)
+    if arch is None:
+        return ""
     least = limit.least_thickness(
         arch.half_angle, recording.mu, arch.voussoirs, arch.weight
     ).eta

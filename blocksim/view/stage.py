@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
@@ -75,7 +76,7 @@ class Stage:
 
     def __init__(self, recording: Recording) -> None:
         self.recording = recording
-        self.assembly = recording.arch.assembly()
+        self.assembly = recording.assembly
         size = self.assembly.size
         self.depth = float(self.assembly.depths.max())
         outlines = [(block.vertices - block.centre) / size for block in self.assembly.blocks]
@@ -122,9 +123,10 @@ class Stage:
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
         """Line of thrust of the arch at rest, by limit analysis, in pieces (k, 2)."""
-        if self.recording.settings.lean:
+        arch = arch_of(self.recording.problem)
+        if arch is None or not self.recording.problem.is_planar:
             return ()
-        line, _ = lines_of(picture_of_arch(self.recording.arch, self.recording.mu))
+        line, _ = lines_of(picture_of_arch(arch, self.recording.mu))
         drawn = np.isfinite(line).all(axis=1)
         pieces = np.split(line, np.flatnonzero(np.diff(drawn)) + 1)
         within = drawn.mean() > WITHIN
@@ -210,7 +212,7 @@ class Stage:
 
     def _joints(self, poses: Array) -> tuple[JointState, ...]:
         # Joint states are those of motion in the plane.
-        if self.recording.settings.lean:
+        if not self.recording.problem.is_planar:
             return (JointState.CLOSED,) * len(self.assembly.joints)
         return tuple(joint.state for joint in classify(self.assembly, poses, least=SEEN))
 

@@ -18,6 +18,7 @@ import pytest
 from scipy.optimize import brentq, linprog
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, displacement
+from blocksim.blocks.problem import Problem
 from blocksim.engines import ENGINES, get_engine
 from blocksim.evidence.motion import LONGEST, MOVED, QUIET
 from blocksim.evidence.onset import onset
@@ -67,9 +68,10 @@ def settles(
     """
     library = get_engine(engine)
     chosen = library.settings(assembly)
-    settings = replace(chosen, lean=lean, hold_sweeps=chosen.hold_sweeps * patience)
-    world = library.build(assembly, mu, settings)
-    held = onset(world, assembly, mu, settings)
+    settings = replace(chosen, hold_sweeps=chosen.hold_sweeps * patience)
+    problem = Problem(assembly=assembly, mu=mu).leaning(lean)
+    world = library.build(problem, settings)
+    held = onset(world, problem, settings)
     if held.verdict is Verdict.UNDECIDED or not moving:
         return held.verdict
     start, time, moved = world.poses(), 0.0, 0.0

@@ -1,0 +1,85 @@
+"""An arch let go, and recorded."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from blocksim.arch.circular import Arch
+from blocksim.ask.simulate import simulate as simulate_problem
+from blocksim.blocks.record import to_record
+from blocksim.common.progress import Progress, silent
+from blocksim.evidence.recording import FORMAT, Recording, read_recording
+from blocksim.evidence.setup import BY_RULE, Overrides
+
+
+def simulate(
+    arch: Arch,
+    *,
+    mu: float,
+    method: str,
+    duration: float | None = None,
+    lean: float = 0.0,
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> Recording:
+    """Let an arch go in an engine, after the onset test, and record it.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+        Friction coefficient, above 0, inf allowed.
+    method : str
+        An engine, or `auto`.
+    duration : float, optional
+        Time to record [sqrt(r/g)]; by default until the verdict is certain.
+    lean : float
+        Angle by which gravity leans out of the plane [rad].
+    settings : mapping of str to float
+        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the method moves nothing.
+    MissingPart
+        If the engine's library is not installed.
+    """
+    return simulate_problem(
+        arch.problem(mu, lean),
+        method=method,
+        duration=duration,
+        settings=settings,
+        progress=progress,
+    )
+
+
+def load_recording(path: Path) -> Recording:
+    """Read a recording, also one of format 1, which knew arches only.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, or no recording.
+    """
+    return read_recording(path, _renewed)
+
+
+def _renewed(header: dict[str, Any]) -> dict[str, Any]:
+    """Make a header of format 1 one of today's: it had an arch in place of a problem."""
+    if header.get("format") != 1:
+        return header
+    settings = dict(header["settings"])
+    # Gravity that leans was called a tilt once, and blocks could be kept in their plane.
+    settings.pop("plane_lock", None)
+    lean = float(settings.pop("lean", settings.pop("tilt", 0.0)))
+    mu = math.inf if header["mu"] == "inf" else float(header["mu"])
+    problem = Arch(**header["arch"]).problem(mu, lean)
+    return {**header, "format": FORMAT, "problem": to_record(problem), "settings": settings}

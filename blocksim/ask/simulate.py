@@ -1,0 +1,47 @@
+"""Blocks let go, and recorded."""
+
+from __future__ import annotations
+
+from blocksim.ask.methods import choose
+from blocksim.blocks.problem import Problem
+from blocksim.common.progress import Progress, silent
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.setup import BY_RULE, Overrides
+from blocksim.evidence.trial import hold
+
+
+def simulate(
+    problem: Problem,
+    *,
+    method: str = "auto",
+    duration: float | None = None,
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> Recording:
+    """Let blocks go in an engine, after the onset test, and record them.
+
+    Parameters
+    ----------
+    problem : Problem
+    method : str
+        An engine, or `auto`.
+    duration : float, optional
+        Time to record [sqrt(size/g)]; by default until the verdict is certain.
+    settings : mapping of str to float
+        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    InputError
+        If the method moves nothing, or cannot do what the problem asks for.
+    MissingPart
+        If the engine's library is not installed.
+    """
+    chosen = choose(method, problem=problem, moving=True, settings=settings)
+    held = hold(problem, chosen.name, settings=settings, progress=progress)
+    return held.release(duration, progress).recording

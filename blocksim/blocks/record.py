@@ -1,0 +1,95 @@
+"""A problem as plain data, exact to the last bit, and back: what recordings carry.
+
+Unlike a structure file, which people write, it leaves nothing to be worked out: masses,
+inertias and joints are those the engine had.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from blocksim.blocks.assembly import Assembly, Block, Joint, Support
+from blocksim.blocks.problem import Load, Move, Problem
+
+
+def to_record(value: object) -> Any:
+    """Return a problem, or a part of one, as dicts, lists, strings and numbers.
+
+    Infinity, which JSON has not, is the string ``inf``.
+    """
+    if is_dataclass(value):
+        return {each.name: to_record(getattr(value, each.name)) for each in fields(value)}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        named = cast("Mapping[str, object]", value)
+        return {key: to_record(each) for key, each in named.items()}
+    if isinstance(value, tuple | list):
+        return [to_record(each) for each in cast("list[object]", value)]
+    if isinstance(value, float) and math.isinf(value):
+        return "inf"
+    return value
+
+
+def from_record(record: Mapping[str, Any]) -> Problem:
+    """Return the problem that `to_record` was given.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If it is no such record.
+    """
+    given = dict(record)
+    built = dict(given.pop("assembly"))
+    assembly = Assembly(
+        blocks=tuple(_block(each) for each in built["blocks"]),
+        joints=tuple(Joint(**each) for each in built["joints"]),
+        size=float(built["size"]),
+        supports=tuple(Support(**each) for each in built["supports"]),
+    )
+    _require_sound(assembly)
+    return Problem(
+        assembly=assembly,
+        mu=float(given.pop("mu")),
+        dead=tuple(_load(each) for each in given.pop("dead")),
+        live=tuple(_load(each) for each in given.pop("live")),
+        moves=tuple(Move(**each) for each in given.pop("moves")),
+        origin=_numbers(given.pop("origin")),
+        notes=tuple(str(each) for each in given.pop("notes")),
+        **given,
+    )
+
+
+def _block(record: dict[str, Any]) -> Block:
+    given: dict[str, Any] = {**record, "parts": tuple(record["parts"])}
+    return Block(**given)
+
+
+def _load(record: dict[str, Any]) -> Load:
+    given: dict[str, Any] = {**record, "blocks": tuple(record["blocks"])}
+    return Load(**given)
+
+
+def _numbers(record: Mapping[str, Any]) -> dict[str, object]:
+    return {key: math.inf if value == "inf" else value for key, value in record.items()}
+
+
+def _require_sound(assembly: Assembly) -> None:
+    """Raise `ValueError` where a stranger's record cannot be of blocks."""
+    count, supports = len(assembly.blocks), len(assembly.supports)
+    numbers = [assembly.size]
+    for block in assembly.blocks:
+        numbers += [block.mass, block.inertia, block.depth]
+    sound = count > 0 and all(math.isfinite(each) and each > 0 for each in numbers)
+    for joint in assembly.joints:
+        sides = (joint.before, joint.after)
+        sound = sound and all(side in range(-1, count) for side in sides)
+        sound = sound and (joint.support is None or 0 <= joint.support < supports)
+    if not sound:
+        message = "no assembly of blocks"
+        raise ValueError(message)
