@@ -12,7 +12,8 @@ from types import ModuleType
 
 import pytest
 
-from blocksim import Arch, limit, theory
+from blocksim import Arch
+from blocksim.arch import limit, theory
 from blocksim.report.chart import read_points
 from blocksim.studies.chart import cases
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from blocksim import Arch, limit, theory
+from blocksim import Arch
+from blocksim.arch import limit, theory
 from blocksim.cli.console import chart_table
 from blocksim.common.errors import InputError
 from blocksim.evidence.motion import QUIET

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -39,6 +40,8 @@ _UNREADABLE = (
     MemoryError,
     RuntimeError,
     zipfile.BadZipFile,
+    SyntaxError,
+    tokenize.TokenError,
     zlib.error,
 )
 """What an empty, damaged or foreign file makes numpy, zipfile and json raise."""
