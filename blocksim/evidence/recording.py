@@ -212,6 +212,7 @@ def _parts(path: Path) -> tuple[dict[str, Any], Array, Array]:
             times, poses = archive["times"], archive["poses"]
     kinds = times.dtype.kind + poses.dtype.kind
     require(kinds == "ff", "arrays", kinds, "of numbers")
+    require(isinstance(header, dict), "header", header, "a table")
     return header, times.astype(np.float64), poses.astype(np.float64)
 
 
