@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
@@ -128,9 +129,14 @@ def entries_of(table: dict[str, Any]) -> StructureFile:
         In one line: the first entry that is wrong.
     """
     try:
-        return TypeAdapter(StructureFile).validate_python(table)
+        return _schema().validate_python(table)
     except ValidationError as error:
         raise _first_of(error) from None
+
+
+@cache
+def _schema() -> TypeAdapter[StructureFile]:
+    return TypeAdapter(StructureFile)
 
 
 def _first_of(error: ValidationError) -> InputError:

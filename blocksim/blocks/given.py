@@ -8,11 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.outlines import following
 from blocksim.blocks.touching import Touch
 from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
 
 OFF = 0.01
 """How far a joint may lie off both of its faces, in units of the size: drawn in mortar."""
+
+SQUARE = 0.999
+"""Least cosine between a given normal and the one across the ends, to be the same."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -48,7 +53,7 @@ def as_given(
     size: float,
     tolerance: float,
     notes: list[str],
-) -> list[Touch]:
+) -> list[tuple[Touch, float | None]]:
     """Lay given joints on the faces of their bodies.
 
     Parameters
@@ -62,18 +67,22 @@ def as_given(
     notes : list of str
         To which it adds what was mended.
 
+    Returns
+    -------
+    list of (Touch, float or None)
+        With its own friction.
+
     Raises
     ------
     InputError
-        If a joint lies off the faces of both bodies, has no length, or neither normal.
+        If a joint lies off the faces of both bodies, has no length, or a corner no normal.
     """
-    found: list[Touch] = []
+    found: list[tuple[Touch, float | None]] = []
     off: list[str] = []
     for index, joint in enumerate(joints):
-        field, ends = f"joints[{index}]", joint.ends
+        field, ends, normal = f"joints[{index}]", joint.ends, joint.normal
         between = f"blocks {names[joint.a]} and {names[joint.b]}"
-        one = _face(outlines[joint.a], ends)
-        other = _face(outlines[joint.b], ends)
+        one, other = _face(outlines[joint.a], ends), _face(outlines[joint.b], ends)
         nearest = min(one[0], other[0])
         require(
             nearest <= OFF * size,
@@ -83,40 +92,44 @@ def as_given(
         )
         if nearest > tolerance:
             off.append(between)
-        # Across the joint, from a to b, by the face that it lies on.
-        out = _outward(one[1]) if one[0] <= other[0] else -_outward(other[1])
+        if normal is not None:
+            way = float(np.hypot(*normal))
+            require(way > 0, f"{field}.normal", normal.tolist(), "a direction, not 0, 0")
+            normal = normal / way
         if len(ends) == 1:
-            normal = joint.normal
-            require(
-                normal is not None, f"{field}.normal", "missing", "given for a corner on a face"
+            if normal is None:
+                raise InputError(f"{field}.normal", MISSING, "given for a corner on a face")
+            found.append(
+                (_corner(joint, ends[0], one, other, normal, tolerance), joint.friction)
             )
-            way = np.hypot(*normal)
-            require(bool(way > 0), f"{field}.normal", normal.tolist(), "a direction, not 0, 0")
-            found.append(_corner(joint, one, other, normal / way, tolerance))
             continue
-        length = float(np.hypot(*(ends[1] - ends[0])))
-        require(length > tolerance, f"{field}.ends", ends.tolist(), "two points that differ")
         along = ends[1] - ends[0]
-        across = np.array([along[1], -along[0]])
-        if joint.normal is not None:
-            square = abs(float(across @ joint.normal)) / length
-            require(
-                square > 0.99 * float(np.hypot(*joint.normal)) > 0,
-                f"{field}.normal",
-                joint.normal.tolist(),
-                "square to the joint",
+        length = float(np.hypot(*along))
+        require(length > tolerance, f"{field}.ends", ends.tolist(), "two points that differ")
+        across = np.array([along[1], -along[0]]) / length
+        # From a to b: as the faces say on which it lies, or else as the normal says.
+        out = _outward(one[1]) if one[0] <= other[0] else -_outward(other[1])
+        if normal is not None and abs(float(across @ normal)) < SQUARE:
+            notes.append(
+                f"joint of {between}: its normal is not square, so each end is a corner"
             )
-            if float(joint.normal @ out) < 0:
-                notes.append(
-                    f"joint {index} of {between}: normal turned, it points from b to a"
-                )
+            found += [
+                (_corner(joint, end, one, other, normal, tolerance), joint.friction)
+                for end in ends
+            ]
+            continue
+        if normal is not None and float(normal @ out) < 0:
+            if nearest <= tolerance:
+                notes.append(f"joint of {between}: normal turned, it pointed from b to a")
+            else:
+                out = normal
         if float(across @ out) < 0:
             ends = ends[::-1]
         faces = [
             ends if face[0] > tolerance else _in_sense(face[1], ends) for face in (one, other)
         ]
         known = np.stack(faces) if joint.faces is None else joint.faces
-        found.append(Touch(joint.a, joint.b, ends, known))
+        found.append((Touch(joint.a, joint.b, ends, known), joint.friction))
     if off:
         notes.append(
             f"{len(off)} joints given lie off their faces by more than {tolerance:.3g} m, "
@@ -128,7 +141,7 @@ def as_given(
 def _face(outlines: Sequence[Array], ends: Array) -> tuple[float, Array]:
     """Return the face nearest to a joint, and how far the joint's farther end is off it."""
     start = np.concatenate(outlines)
-    finish = np.concatenate([np.roll(outline, -1, axis=0) for outline in outlines])
+    finish = np.concatenate([following(outline) for outline in outlines])
     way = finish - start
     square = (way * way).sum(axis=1)
     off = np.zeros(len(start))
@@ -152,13 +165,14 @@ def _in_sense(face: Array, ends: Array) -> Array:
 
 def _corner(
     joint: GivenJoint,
+    at: Array,
     one: tuple[float, Array],
     other: tuple[float, Array],
     normal: Array,
     tolerance: float,
 ) -> Touch:
     """Lay a corner on the face that the normal stands on."""
-    ends = np.repeat(joint.ends, 2, axis=0)
+    ends = np.stack([at, at])
     along = np.stack([np.zeros(2), np.array([-normal[1], normal[0]])])
     faces = [
         _in_sense(face, along)

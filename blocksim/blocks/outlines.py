@@ -32,10 +32,20 @@ class Moments:
     polar: float
 
 
+def following(corners: Array) -> Array:
+    """Return for each corner the next one around."""
+    return np.concatenate([corners[1:], corners[:1]])
+
+
+def before(corners: Array) -> Array:
+    """Return for each corner the one before it."""
+    return np.concatenate([corners[-1:], corners[:-1]])
+
+
 def signed_area(vertices: Array) -> float:
     """Return the area of a polygon, negative where its corners are clockwise."""
     x, y = (vertices - vertices[0]).T
-    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y))
+    return 0.5 * float(np.dot(x, following(y)) - np.dot(following(x), y))
 
 
 def moments(polygons: Sequence[Array]) -> Moments:
@@ -50,7 +60,7 @@ def moments(polygons: Sequence[Array]) -> Moments:
     area, first, second = 0.0, np.zeros(2), 0.0
     for polygon in polygons:
         near = polygon - about
-        after = np.roll(near, -1, axis=0)
+        after = following(near)
         cross = near[:, 0] * after[:, 1] - after[:, 0] * near[:, 1]
         area += float(cross.sum()) / 2
         first += (cross[:, None] * (near + after)).sum(axis=0) / 6
@@ -77,13 +87,13 @@ def mended(vertices: Array, tolerance: float) -> tuple[Array, list[str]]:
         What was mended.
     """
     done: list[str] = []
-    apart = np.hypot(*(vertices - np.roll(vertices, 1, axis=0)).T) > tolerance
+    apart = np.hypot(*(vertices - before(vertices)).T) > tolerance
     if not apart.all():
         done.append("a doubled corner left out")
         vertices = vertices[apart]
     if len(vertices) < 3:
         return vertices, done
-    back, on = vertices - np.roll(vertices, 1, axis=0), np.roll(vertices, -1, axis=0) - vertices
+    back, on = vertices - before(vertices), following(vertices) - vertices
     chord = back + on
     cross = np.abs(back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0])
     forward = (back * on).sum(axis=1) > 0
@@ -99,7 +109,7 @@ def mended(vertices: Array, tolerance: float) -> tuple[Array, list[str]]:
 
 def is_convex(vertices: Array, tolerance: float) -> bool:
     """Tell whether every corner of a counter-clockwise polygon turns left, or is straight."""
-    back, on = vertices - np.roll(vertices, 1, axis=0), np.roll(vertices, -1, axis=0) - vertices
+    back, on = vertices - before(vertices), following(vertices) - vertices
     cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
     return bool((cross >= -tolerance * np.hypot(*(back + on).T)).all())
 

@@ -180,8 +180,7 @@ def assembly_of_bodies(
                 f"{depth:.3g} m",
                 f"at most {tolerance:.3g} m: move one of them, or give the joints",
             )
-        found = _found(shapes, bodies, tolerance, notes)
-        friction: list[float | None] = [None] * len(found)
+        found = [(touch, None) for touch in _found(shapes, bodies, tolerance, notes)]
     else:
         if overlaps:
             pairs = [(one, other) for one, other, _ in overlaps]
@@ -189,15 +188,14 @@ def assembly_of_bodies(
         outlines = [shape.outlines for shape in shapes]
         names = [_name(bodies, index) for index in range(len(bodies))]
         found = as_given(joints, outlines, names, size, tolerance, notes)
-        friction = [joint.friction for joint in joints]
         notes.append(f"{len(found)} joints as given")
-    _require_held(found, bodies)
+    _require_held([touch for touch, _ in found], bodies)
     blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
     place = {index: at for at, index in enumerate(moving)}
     fixed = [index for index, body in enumerate(bodies) if body.fixed]
     bed = {index: at for at, index in enumerate(fixed)}
     supports = tuple(Support(shapes[index].parts, bodies[index].name) for index in fixed)
-    made = [_joint(touch, own, place, bed) for touch, own in zip(found, friction, strict=True)]
+    made = [_joint(touch, own, place, bed) for touch, own in found]
     if joints is None:
         made.sort(
             key=lambda joint: (
@@ -275,8 +273,8 @@ def _shape(
 
 def _corners(region: Any) -> Array:
     """Return the corners of shapely's polygon, counter-clockwise."""
-    ring = shapely.get_exterior_ring(shapely.orient_polygons(region))
-    return cast(Array, shapely.get_coordinates(ring))[:-1]
+    turned: Any = shapely.orient_polygons(region)
+    return shapely.get_coordinates(turned.exterior)[:-1]
 
 
 def _overlaps(
@@ -290,7 +288,7 @@ def _overlaps(
     real = (owner[one] < owner[other]) & ~(fixed[one] & fixed[other])
     one, other = one[real], other[real]
     common = shapely.intersection(parts[one], parts[other])
-    area, around = shapely.area(common), shapely.length(common)
+    area, around = cast(Any, shapely).area(common), cast(Any, shapely).length(common)
     depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
     deep = np.flatnonzero(depth > tolerance)
     found = [(int(owner[one[k]]), int(owner[other[k]]), float(depth[k])) for k in deep]
@@ -328,7 +326,7 @@ def _found(
 
 def _near(faces: Faces, bodies: Sequence[Body], distance: float) -> Any:
     """Pairs of faces of different bodies, not both fixed, within a distance."""
-    lines = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
+    lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
     one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=distance)
     fixed = np.array([body.fixed for body in bodies])
     a, b = faces.body[one], faces.body[other]

@@ -158,8 +158,7 @@ def _problem(written: StructureFile) -> Problem:
             require(not fixed[place], key, name, "a block that is not fixed")
             on.append(int(moving[place]))
         require(len(set(on)) == len(on), key, load.blocks, "each block once")
-        force = load.body if load.body is not None else load.force
-        assert force is not None
+        force = load.body or load.force or [0.0, 0.0]
         require(
             len(force) == 2 or not force[2], f"{field}.body", force, "x and y, on these blocks"
         )

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.outlines import following
 
 NEARLY = 100.0
 """A gap up to this many tolerances is nearly a joint: said, but no joint. So is a length."""
@@ -68,7 +69,7 @@ class Touch(NamedTuple):
 def faces_of_polygons(polygons: Sequence[Array], bodies: Sequence[int]) -> Faces:
     """Gather the sides of counter-clockwise polygons, each with the body it belongs to."""
     start = np.concatenate(polygons)
-    end = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
+    end = np.concatenate([following(polygon) for polygon in polygons])
     body = np.repeat(np.array(bodies, dtype=np.int64), [len(polygon) for polygon in polygons])
     return Faces(start, end, body)
 
@@ -217,8 +218,8 @@ def merged(found: Sequence[Touch], tolerance: float) -> list[Touch]:
     by_bodies: dict[tuple[int, int], list[Touch]] = defaultdict(list)
     for touch in found:
         if touch.normal is None:
-            touch = touch if touch.one < touch.other else touch.turned()
-            by_bodies[touch.one, touch.other].append(touch)
+            stretch = touch if touch.one < touch.other else touch.turned()
+            by_bodies[stretch.one, stretch.other].append(stretch)
         else:
             kept.append(touch)
     for stretches in by_bodies.values():
