@@ -19,7 +19,9 @@ from blocksim.common.errors import InputError
 GROUND = [(-1, -1), (9, -1), (9, 0), (-1, 0)]
 
 
-def box(x: float, y: float, width: float = 1.0, height: float = 1.0) -> list[tuple[float, float]]:
+def box(
+    x: float, y: float, width: float = 1.0, height: float = 1.0
+) -> list[tuple[float, float]]:
     return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
 
 
@@ -68,9 +70,7 @@ def test_a_joint_of_equal_faces_needs_none():
 
 def test_a_face_meets_several_blocks_and_two_blocks_meet_twice():
     """A beam on two posts, and a bridge-like block that stands on one base with two feet."""
-    assembly = Assembly.of_polygons(
-        [GROUND, box(0, 0), box(3, 0), box(0, 1, 4)], fixed=[0]
-    )
+    assembly = Assembly.of_polygons([GROUND, box(0, 0), box(3, 0), box(0, 1, 4)], fixed=[0])
     assert pairs(assembly) == [(SUPPORT, 0), (SUPPORT, 1), (0, 2), (1, 2)]
     feet = [(0, 0), (1, 0), (1, 1), (3, 1), (3, 0), (4, 0), (4, 2), (0, 2)]
     twice = Assembly.of_polygons([GROUND, feet], fixed=[0])
@@ -182,7 +182,9 @@ def test_a_centre_of_weight_leaves_the_inertia():
         ([GROUND, box(0, 0)], [0, 1], "not fixed"),
     ],
 )
-def test_refused_in_one_line(bodies: list[list[tuple[float, float]]], fixed: list[int], said: str):
+def test_refused_in_one_line(
+    bodies: list[list[tuple[float, float]]], fixed: list[int], said: str
+):
     with pytest.raises(InputError) as raised:
         Assembly.of_polygons(bodies, fixed=fixed)
     assert said in str(raised.value)
@@ -192,7 +194,10 @@ def test_refused_in_one_line(bodies: list[list[tuple[float, float]]], fixed: lis
 def test_a_gap_that_is_nearly_a_joint_is_said_and_not_guessed():
     bodies = [GROUND, box(0, 0), box(1 + 2e-5, 0)]
     _, notes = assembly_of_bodies(
-        [Body(polygons=(body,), fixed=body is GROUND, name=f"n{at}") for at, body in enumerate(bodies)]
+        [
+            Body(polygons=(body,), fixed=body is GROUND, name=f"n{at}")
+            for at, body in enumerate(bodies)
+        ]
     )
     assert any("nearly touching" in note and "n1 and n2" in note for note in notes)
     assembly = Assembly.of_polygons(bodies, fixed=[0])
@@ -260,7 +265,12 @@ def test_found_joints_do_not_depend_on_how_it_is_drawn(
     assert np.abs(found[order_of] - want[want_of]).max() < 1e-5
 
 
-HULLS = {"compas_cra_bridge", "compas_cra_shelf", "compas_cra_shelf_s2", "compas_cra_shelf_stable"}
+HULLS = {
+    "compas_cra_bridge",
+    "compas_cra_shelf",
+    "compas_cra_shelf_s2",
+    "compas_cra_shelf_stable",
+}
 """Blocks are hulls that overlap; joints are given."""
 DRAWN_APART = {"rigid_ipc_arch_25", "rigid_ipc_arch_101"}
 """Blocks have gaps; joints are given in their middle."""
@@ -287,4 +297,6 @@ def test_where_joints_cannot_be_found_it_is_said(name: str):
     with pytest.raises(InputError, match=said):
         structure_of({key: scene[key] for key in scene if key != "joints"})
     notes = structure_of(scene).notes
-    assert any(("overlaps taken" if name in HULLS else "lie off their faces") in n for n in notes)
+    assert any(
+        ("overlaps taken" if name in HULLS else "lie off their faces") in n for n in notes
+    )

@@ -113,10 +113,10 @@ def as_given(
             notes.append(
                 f"joint of {between}: its normal is not square, so each end is a corner"
             )
-            found += [
-                (_corner(joint, end, one, other, normal, tolerance), joint.friction)
-                for end in ends
-            ]
+            for end in ends:
+                on, beside = (_face(outlines[body], end[None]) for body in (joint.a, joint.b))
+                touch = _corner(joint, end, on, beside, normal, tolerance)
+                found.append((touch, joint.friction))
             continue
         if normal is not None and float(normal @ out) < 0:
             if nearest <= tolerance:
