@@ -1,4 +1,4 @@
-"""Structure files: the corpus reads, records read back, broken files are refused in one line."""
+"""Structure files: the corpus reads, records read back, broken files get one line."""
 
 from __future__ import annotations
 
