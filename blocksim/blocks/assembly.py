@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
@@ -214,6 +215,24 @@ class Assembly:
     joints: tuple[Joint, ...]
     size: float
     supports: tuple[Support, ...] = ()
+
+    @classmethod
+    def of_polygons(
+        cls,
+        polygons: Sequence[ArrayLike],
+        *,
+        fixed: Collection[int],
+        weights: Sequence[float] | None = None,
+        centres: Sequence[ArrayLike] | None = None,
+        density: float = 1.0,
+    ) -> Assembly:
+        """Find the joints of polygons; see `polygons.assembly_of_polygons`."""
+        # Imported here: that module builds on this one.
+        from blocksim.blocks.polygons import assembly_of_polygons
+
+        return assembly_of_polygons(
+            polygons, fixed=fixed, weights=weights, centres=centres, density=density
+        )
 
     @cached_property
     def centres(self) -> Array:

@@ -1,0 +1,162 @@
+"""What a structure file may say: its keys, their types and ranges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cache
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
+from blocksim.common.errors import MISSING, InputError
+
+FARTHEST = 1e15
+"""Largest number in a file, of any unit."""
+
+Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST, allow_inf_nan=False, strict=True)]
+Positive = Annotated[float, Field(gt=0, le=FARTHEST, allow_inf_nan=False, strict=True)]
+Point = tuple[Number, Number]
+Corners = Annotated[list[Point], Field(min_length=3, max_length=MOST_CORNERS)]
+Name = Annotated[str, Field(min_length=1, max_length=100, strict=True)]
+Id = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
+Friction = (
+    Annotated[float, Field(ge=0, le=FARTHEST, allow_inf_nan=False, strict=True)]
+    | Literal["inf"]
+)
+_FORBID: dict[str, str] = {"extra": "forbid"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlockEntry:
+    """Entry of `blocks`: `vertices`, or `polygons` that move as one; see `Body`."""
+
+    __pydantic_config__: ClassVar = _FORBID
+
+    id: Id
+    vertices: Corners | None = None
+    polygons: Annotated[list[Corners], Field(min_length=1, max_length=MOST_CORNERS)] | None = (
+        None
+    )
+    fixed: Annotated[bool, Field(strict=True)] = False
+    weight: Positive | None = None
+    centre: Point | None = None
+    inertia: Positive | None = None
+    depth: Positive = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointEntry:
+    """Entry of `joints`: two ends, or one and a `normal` from `a` into `b`.
+
+    `faces` are those of `a` and `b` that meet in it, where they are known.
+    """
+
+    __pydantic_config__: ClassVar = _FORBID
+
+    a: Id
+    b: Id
+    ends: Annotated[list[Point], Field(min_length=1, max_length=2)]
+    normal: Point | None = None
+    friction: Friction | None = None
+    faces: tuple[tuple[Point, Point], tuple[Point, Point]] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadEntry:
+    """Entry of `dead` or `live`: a `body` force, or a `force` on a block."""
+
+    __pydantic_config__: ClassVar = _FORBID
+
+    body: Annotated[list[Number], Field(min_length=2, max_length=3)] | None = None
+    blocks: Annotated[list[Id], Field(min_length=1, max_length=MOST_BLOCKS)] | None = None
+    block: Id | None = None
+    point: Point | None = None
+    force: Point | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveEntry:
+    """Entry of `move`: how a fixed block moves, in m times the parameter."""
+
+    __pydantic_config__: ClassVar = _FORBID
+
+    block: Id
+    direction: Point
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureFile:
+    """A structure file as written.
+
+    `load` (the factor on `live`), `size` and a block's `inertia` and `depth` are what
+    records need to be read back; files may have them, too.
+    """
+
+    __pydantic_config__: ClassVar = _FORBID
+
+    friction: Friction
+    blocks: Annotated[list[BlockEntry], Field(min_length=2, max_length=MOST_BLOCKS)]
+    title: Annotated[str, Field(max_length=200, strict=True)] = ""
+    source: Annotated[str, Field(max_length=500, strict=True)] = ""
+    density: Positive = 1.0
+    joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None
+    dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
+    live: Annotated[tuple[LoadEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
+    move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
+    load: Number = 0.0
+    size: Positive | None = None
+
+
+_TABLES = (StructureFile, BlockEntry, JointEntry, LoadEntry, MoveEntry)
+_KEYS = {field.name for table in _TABLES for field in fields(table)}
+_ALLOWED = {
+    "friction": '0 or more, or "inf"',
+    "a": "the id of a block",
+    "b": "the id of a block",
+    "block": "the id of a block",
+    "id": "a whole number or a name of up to 100 characters",
+}
+"""What is said of keys that may have several types."""
+
+
+def entries_of(table: dict[str, Any]) -> StructureFile:
+    """Check the keys, types and ranges of a structure file.
+
+    Raises
+    ------
+    InputError
+        In one line: the first entry that is wrong.
+    """
+    try:
+        return _schema().validate_python(table)
+    except ValidationError as error:
+        raise _first_of(error) from None
+
+
+@cache
+def _schema() -> TypeAdapter[StructureFile]:
+    return TypeAdapter(StructureFile)
+
+
+def _first_of(error: ValidationError) -> InputError:
+    """Turn the first of pydantic's complaints into one line."""
+    errors = error.errors(include_url=False, include_context=False)
+    # A misspelt key shows twice, as unknown and as missing: the first says more.
+    same = [each for each in errors if each["loc"][:-1] == errors[0]["loc"][:-1]]
+    first = min(same, key=lambda each: each["type"] != "unexpected_keyword_argument")
+    unknown = first["type"] == "unexpected_keyword_argument"
+    path = first["loc"]
+    field = ""
+    for at, part in enumerate(path):
+        if isinstance(part, int):
+            field += f"[{part}]"
+        elif part in _KEYS or (unknown and at == len(path) - 1):
+            field += f".{part}" if field else part
+    if unknown:
+        return InputError(field, first["input"], "left out: there is no such key")
+    if first["type"] in {"missing", "missing_argument"}:
+        return InputError(field, MISSING, "given")
+    said = first["msg"].removeprefix("Input should be ")
+    last = field.rpartition(".")[2]
+    return InputError(field, first["input"], _ALLOWED.get(last, said))

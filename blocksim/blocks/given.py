@@ -1,0 +1,184 @@
+"""Joints that are given, not found: which faces they lie on, and in which sense."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.outlines import following
+from blocksim.blocks.touching import Touch
+from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
+
+OFF = 0.01
+"""How far a joint may lie off both of its faces, in units of the size: drawn in mortar."""
+
+SQUARE = 0.999
+"""Least cosine between a given normal and the one across the ends, to be the same."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GivenJoint:
+    """A joint as it is written down.
+
+    Parameters
+    ----------
+    a, b : int
+        Bodies on its two sides.
+    ends : (1 or 2, 2) float
+        Its ends in either order [m]; one for a corner on a face.
+    normal : (2,) float or None
+        From `a` into `b`; needed for a corner.
+    friction : float or None
+        Its own, where it is not that of all others.
+    faces : (2, 2, 2) float or None
+        Those of `a` and `b` that meet in it, where they are known [m].
+    """
+
+    a: int
+    b: int
+    ends: Array
+    normal: Array | None = None
+    friction: float | None = None
+    faces: Array | None = None
+
+
+def as_given(
+    joints: Sequence[GivenJoint],
+    outlines: Sequence[Sequence[Array]],
+    names: Sequence[str],
+    size: float,
+    tolerance: float,
+    notes: list[str],
+) -> list[tuple[Touch, float | None]]:
+    """Lay given joints on the faces of their bodies.
+
+    Parameters
+    ----------
+    joints : sequence of GivenJoint
+    outlines : sequence of sequences of (k, 2) float
+        Of each body, counter-clockwise [m].
+    names : sequence of str
+    size, tolerance : float
+        [m]
+    notes : list of str
+        To which it adds what was mended.
+
+    Returns
+    -------
+    list of (Touch, float or None)
+        With its own friction.
+
+    Raises
+    ------
+    InputError
+        If a joint lies off the faces of both bodies, has no length, or a corner no normal.
+    """
+    found: list[tuple[Touch, float | None]] = []
+    off: list[str] = []
+    for index, joint in enumerate(joints):
+        field, ends, normal = f"joints[{index}]", joint.ends, joint.normal
+        between = f"blocks {names[joint.a]} and {names[joint.b]}"
+        one, other = _face(outlines[joint.a], ends), _face(outlines[joint.b], ends)
+        nearest = min(one[0], other[0])
+        require(
+            nearest <= OFF * size,
+            f"{field}.ends",
+            ends.tolist(),
+            f"on a face of {between}: it is {nearest:.3g} m off both",
+        )
+        if nearest > tolerance:
+            off.append(between)
+        if normal is not None:
+            way = float(np.hypot(*normal))
+            require(way > 0, f"{field}.normal", normal.tolist(), "a direction, not 0, 0")
+            normal = normal / way
+        if len(ends) == 1:
+            if normal is None:
+                raise InputError(f"{field}.normal", MISSING, "given for a corner on a face")
+            found.append(
+                (_corner(joint, ends[0], one, other, normal, tolerance), joint.friction)
+            )
+            continue
+        along = ends[1] - ends[0]
+        length = float(np.hypot(*along))
+        require(length > tolerance, f"{field}.ends", ends.tolist(), "two points that differ")
+        across = np.array([along[1], -along[0]]) / length
+        # From a to b: as the faces say on which it lies, or else as the normal says.
+        out = _outward(one[1]) if one[0] <= other[0] else -_outward(other[1])
+        if normal is not None and abs(float(across @ normal)) < SQUARE:
+            notes.append(
+                f"joint of {between}: its normal is not square, so each end is a corner"
+            )
+            for end in ends:
+                on, beside = (_face(outlines[body], end[None]) for body in (joint.a, joint.b))
+                touch = _corner(joint, end, on, beside, normal, tolerance)
+                found.append((touch, joint.friction))
+            continue
+        if normal is not None and float(normal @ out) < 0:
+            if nearest <= tolerance:
+                notes.append(f"joint of {between}: normal turned, it pointed from b to a")
+            else:
+                out = normal
+        if float(across @ out) < 0:
+            ends = ends[::-1]
+        faces = [
+            ends if face[0] > tolerance else _in_sense(face[1], ends) for face in (one, other)
+        ]
+        known = np.stack(faces) if joint.faces is None else joint.faces
+        found.append((Touch(joint.a, joint.b, ends, known), joint.friction))
+    if off:
+        notes.append(
+            f"{len(off)} joints given lie off their faces by more than {tolerance:.3g} m, "
+            f"the first between {off[0]}"
+        )
+    return found
+
+
+def _face(outlines: Sequence[Array], ends: Array) -> tuple[float, Array]:
+    """Return the face nearest to a joint, and how far the joint's farther end is off it."""
+    start = np.concatenate(outlines)
+    finish = np.concatenate([following(outline) for outline in outlines])
+    way = finish - start
+    square = (way * way).sum(axis=1)
+    off = np.zeros(len(start))
+    for end in ends:
+        arm = end - start
+        share = np.clip((arm * way).sum(axis=1) / square, 0, 1)
+        off = np.maximum(off, np.hypot(*(arm - share[:, None] * way).T))
+    best = int(off.argmin())
+    return float(off[best]), np.stack([start[best], finish[best]])
+
+
+def _outward(face: Array) -> Array:
+    way = face[1] - face[0]
+    return np.array([way[1], -way[0]]) / np.hypot(*way)
+
+
+def _in_sense(face: Array, ends: Array) -> Array:
+    """Return a face's ends in the order of the joint's."""
+    return face if float((face[1] - face[0]) @ (ends[1] - ends[0])) > 0 else face[::-1]
+
+
+def _corner(
+    joint: GivenJoint,
+    at: Array,
+    one: tuple[float, Array],
+    other: tuple[float, Array],
+    normal: Array,
+    tolerance: float,
+) -> Touch:
+    """Lay a corner on the face that the normal stands on."""
+    ends = np.stack([at, at])
+    along = np.stack([np.zeros(2), np.array([-normal[1], normal[0]])])
+    faces = [
+        _in_sense(face, along)
+        if off <= tolerance and abs(float(_outward(face) @ normal)) > 0.999
+        else ends
+        for off, face in (one, other)
+    ]
+    known = np.stack(faces) if joint.faces is None else joint.faces
+    return Touch(joint.a, joint.b, ends, known, normal)

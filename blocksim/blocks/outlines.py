@@ -1,0 +1,154 @@
+"""Polygons of blocks: mended, measured, and put together to convex parts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+
+STRAIGHT = 1e-3
+"""A corner is straight if it is off its neighbours' line by this share of the tolerance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Area and its moments.
+
+    Parameters
+    ----------
+    area : float
+        [m^2]; negative for clockwise corners.
+    centroid : (2,) float
+        [m]
+    polar : float
+        Second moment of area about the centroid [m^4].
+    """
+
+    area: float
+    centroid: Array
+    polar: float
+
+
+def following(corners: Array) -> Array:
+    """Return for each corner the next one around."""
+    return np.concatenate([corners[1:], corners[:1]])
+
+
+def before(corners: Array) -> Array:
+    """Return for each corner the one before it."""
+    return np.concatenate([corners[-1:], corners[:-1]])
+
+
+def signed_area(vertices: Array) -> float:
+    """Return the area of a polygon, negative where its corners are clockwise."""
+    x, y = (vertices - vertices[0]).T
+    return 0.5 * float(np.dot(x, following(y)) - np.dot(following(x), y))
+
+
+def moments(polygons: Sequence[Array]) -> Moments:
+    """Measure polygons that move as one (Green's theorem, exact).
+
+    Parameters
+    ----------
+    polygons : sequence of (k, 2) float
+        Corners, counter-clockwise; they do not overlap.
+    """
+    about = polygons[0].mean(axis=0)
+    area, first, second = 0.0, np.zeros(2), 0.0
+    for polygon in polygons:
+        near = polygon - about
+        after = following(near)
+        cross = near[:, 0] * after[:, 1] - after[:, 0] * near[:, 1]
+        area += float(cross.sum()) / 2
+        first += (cross[:, None] * (near + after)).sum(axis=0) / 6
+        squares = (near * near + near * after + after * after).sum(axis=1)
+        second += float((cross * squares).sum()) / 12
+    shift = first / area
+    return Moments(area, about + shift, second - area * float(shift @ shift))
+
+
+def mended(vertices: Array, tolerance: float) -> tuple[Array, list[str]]:
+    """Leave out doubled and straight corners, and turn clockwise ones.
+
+    Parameters
+    ----------
+    vertices : (k, 2) float
+    tolerance : float
+        [m]
+
+    Returns
+    -------
+    (k, 2) float
+        May have fewer than three corners, where there were no more.
+    list of str
+        What was mended.
+    """
+    done: list[str] = []
+    apart = np.hypot(*(vertices - before(vertices)).T) > tolerance
+    if not apart.all():
+        done.append("a doubled corner left out")
+        vertices = vertices[apart]
+    if len(vertices) < 3:
+        return vertices, done
+    back, on = vertices - before(vertices), following(vertices) - vertices
+    chord = back + on
+    cross = np.abs(back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0])
+    forward = (back * on).sum(axis=1) > 0
+    straight = forward & (cross <= STRAIGHT * tolerance * np.hypot(*chord.T))
+    if straight.any():
+        done.append("a corner on a straight face left out")
+        vertices = vertices[~straight]
+    if len(vertices) >= 3 and signed_area(vertices) < 0:
+        done.append("clockwise corners turned")
+        vertices = vertices[::-1]
+    return vertices, done
+
+
+def is_convex(vertices: Array, tolerance: float) -> bool:
+    """Tell whether every corner of a counter-clockwise polygon turns left, or is straight."""
+    back, on = vertices - before(vertices), following(vertices) - vertices
+    cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
+    return bool((cross >= -tolerance * np.hypot(*(back + on).T)).all())
+
+
+def joined(pieces: Sequence[Array], tolerance: float) -> tuple[Array, ...]:
+    """Join convex pieces that share a side as long as they stay convex.
+
+    Greedy, after Hertel and Mehlhorn (1983): at most four times as many parts as needed.
+
+    Parameters
+    ----------
+    pieces : sequence of (k, 2) float
+        Convex, counter-clockwise, sides shared whole: a triangulation.
+    tolerance : float
+        How far a part may be from convex [m].
+    """
+    parts = [[(float(x), float(y)) for x, y in piece] for piece in pieces]
+    tried = 0
+    while tried < len(parts):
+        for other in range(tried + 1, len(parts)):
+            one = _across_side(parts[tried], parts[other])
+            if one is not None and is_convex(np.array(one), tolerance):
+                parts[tried] = one
+                del parts[other]
+                break
+        else:
+            tried += 1
+    return tuple(np.array(part) for part in parts)
+
+
+def _across_side(
+    one: list[tuple[float, float]], other: list[tuple[float, float]]
+) -> list[tuple[float, float]] | None:
+    """Join two polygons across the side they share; None where they share none."""
+    sides = {(other[k - 1], other[k]): k for k in range(len(other))}
+    for k in range(len(one)):
+        at = sides.get((one[k], one[k - 1]))
+        if at is not None:
+            # The other's corners from the end of the shared side around to its start.
+            around = other[at:] + other[:at]
+            return one[k:] + one[:k] + around[1:-1]
+    return None

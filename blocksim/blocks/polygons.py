@@ -1,0 +1,396 @@
+"""Assemblies from polygons alone: joints are found where blocks touch.
+
+The one file that imports shapely: what is near what, whether polygons cross themselves,
+how deep they overlap, and triangles of those that are not convex.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
+from blocksim.blocks.given import GivenJoint, as_given
+from blocksim.blocks.outlines import is_convex, joined, mended, moments
+from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.touching import (
+    NEARLY,
+    Faces,
+    Touch,
+    faces_of_polygons,
+    merged,
+    touches,
+)
+from blocksim.common.checks import require
+from blocksim.common.errors import InputError
+
+TOLERANCE = 1e-6
+"""Distance within which blocks touch, in units of the size of the assembly."""
+MOST_BLOCKS = 100_000
+MOST_CORNERS = 1_000
+"""Of one block."""
+_ROUNDING = 64 * np.finfo(float).eps
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Body:
+    """A block as it is written down.
+
+    Parameters
+    ----------
+    polygons : tuple of (k, 2) array-like
+        Corners [m] in either direction; several polygons move as one. None has to be convex.
+    name : str
+    fixed : bool
+        Whether it stays where it is.
+    weight : float or None
+        [N]; None for `density` times area and depth.
+    centre : (2,) array-like or None
+        Where the weight acts [m]; None for the centroid.
+    inertia : float or None
+        Moment of inertia [kg m^2]; None for that of the polygons about their centroid, of
+        uniform density: where the weight acts says nothing of how a block turns.
+    depth : float
+        Out of the plane [m].
+    """
+
+    polygons: tuple[ArrayLike, ...]
+    name: str = ""
+    fixed: bool = False
+    weight: float | None = None
+    centre: ArrayLike | None = None
+    inertia: float | None = None
+    depth: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Shape:
+    """A body mended: faces of its outlines, and convex parts."""
+
+    outlines: tuple[Array, ...]
+    parts: tuple[Array, ...]
+
+
+def assembly_of_polygons(
+    polygons: Sequence[ArrayLike],
+    *,
+    fixed: Collection[int],
+    weights: Sequence[float] | None = None,
+    centres: Sequence[ArrayLike] | None = None,
+    density: float = 1.0,
+) -> Assembly:
+    """Build an assembly of polygons; its joints are where they touch.
+
+    Parameters
+    ----------
+    polygons : sequence of (k, 2) array-like
+        Corners of each body [m].
+    fixed : collection of int
+        Which of them stay where they are.
+    weights : sequence of float, optional
+        Of each body [N]; by default `density` times area times 1 m.
+    centres : sequence of (2,) array-like, optional
+        Where the weights act [m]; by default at the centroids.
+    density : float
+        Weight per volume [N/m^3].
+
+    Raises
+    ------
+    InputError
+        As `assembly_of_bodies`.
+    """
+    bodies = [
+        Body(
+            polygons=(corners,),
+            name=str(index),
+            fixed=index in fixed,
+            weight=None if weights is None else weights[index],
+            centre=None if centres is None else centres[index],
+        )
+        for index, corners in enumerate(polygons)
+    ]
+    return assembly_of_bodies(bodies, density=density)[0]
+
+
+def assembly_of_bodies(
+    bodies: Sequence[Body],
+    *,
+    joints: Sequence[GivenJoint] | None = None,
+    density: float = 1.0,
+    size: float | None = None,
+) -> tuple[Assembly, tuple[str, ...]]:
+    """Build an assembly, and say what was mended.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+    joints : sequence of GivenJoint, optional
+        Taken as they are; by default found: faces that lie on each other within
+        `TOLERANCE`, and corners that rest on a face (see `touching.touches`).
+    density : float
+        Weight per volume [N/m^3] of bodies without a weight.
+    size : float, optional
+        Characteristic length [m]; by default half the larger extent of what can move.
+
+    Returns
+    -------
+    Assembly
+        Blocks that move in the order of the bodies. Found joints are ordered by `before`
+        and `after`, those with supports first, `before` them.
+    tuple of str
+        What was mended, taken or nearly found.
+
+    Raises
+    ------
+    InputError
+        In one line, naming the blocks: fewer than three corners, a polygon that crosses
+        itself, a weight not above zero, an overlap, a block that nothing holds.
+    """
+    require(0 < len(bodies) <= MOST_BLOCKS, "blocks", len(bodies), f"1 to {MOST_BLOCKS}")
+    raw = [_finite(body, index) for index, body in enumerate(bodies)]
+    moving = [index for index, body in enumerate(bodies) if not body.fixed]
+    require(bool(moving), "blocks", "all fixed", "at least one that is not fixed")
+    require(len(moving) < len(bodies), "blocks", "none fixed", "at least one with fixed = true")
+    points = np.concatenate([polygon for index in moving for polygon in raw[index]])
+    size = float(np.ptp(points, axis=0).max()) / 2 if size is None else size
+    require(size > 0, "blocks", "no extent", "polygons with an area")
+    tolerance = TOLERANCE * size
+    farthest = max(float(np.abs(polygon).max()) for polygons in raw for polygon in polygons)
+    require(
+        farthest * _ROUNDING <= tolerance,
+        "blocks",
+        f"coordinates up to {farthest:g} m",
+        f"below {tolerance / _ROUNDING:.3g} m for this size: move the drawing to its origin",
+    )
+    notes: list[str] = []
+    shapes = [_shape(raw[index], bodies, index, tolerance, notes) for index in range(len(raw))]
+    overlaps = _overlaps(shapes, bodies, tolerance)
+    if joints is None:
+        if overlaps:
+            one, other, depth = overlaps[0]
+            raise InputError(
+                f"overlap of blocks {_name(bodies, one)} and {_name(bodies, other)}",
+                f"{depth:.3g} m",
+                f"at most {tolerance:.3g} m: move one of them, or give the joints",
+            )
+        found = [(touch, None) for touch in _found(shapes, bodies, tolerance, notes)]
+    else:
+        if overlaps:
+            pairs = [(one, other) for one, other, _ in overlaps]
+            notes.append(f"overlaps taken, as joints are given: {_pairs(bodies, pairs)}")
+        outlines = [shape.outlines for shape in shapes]
+        names = [_name(bodies, index) for index in range(len(bodies))]
+        found = as_given(joints, outlines, names, size, tolerance, notes)
+        notes.append(f"{len(found)} joints as given")
+    _require_held([touch for touch, _ in found], bodies)
+    blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
+    place = {index: at for at, index in enumerate(moving)}
+    fixed = [index for index, body in enumerate(bodies) if body.fixed]
+    bed = {index: at for at, index in enumerate(fixed)}
+    supports = tuple(Support(shapes[index].parts, bodies[index].name) for index in fixed)
+    made = [_joint(touch, own, place, bed) for touch, own in found]
+    if joints is None:
+        made.sort(
+            key=lambda joint: (
+                joint.before,
+                joint.after,
+                -1 if joint.support is None else joint.support,
+            )
+        )
+    return Assembly(blocks, tuple(made), size, supports), tuple(notes)
+
+
+def _name(bodies: Sequence[Body], index: int) -> str:
+    return bodies[index].name or str(index)
+
+
+def _finite(body: Body, index: int) -> tuple[Array, ...]:
+    """Check the numbers of a body."""
+    field = f"blocks[{index}].vertices"
+    polygons: list[Array] = []
+    for corners in body.polygons:
+        try:
+            polygon = np.array(corners, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(field, corners, "pairs of numbers") from None
+        require(polygon.ndim == 2 and polygon.shape[1] == 2, field, corners, "pairs of numbers")
+        require(len(polygon) >= 3, field, corners, "at least three corners")
+        require(bool(np.isfinite(polygon).all()), field, corners, "finite numbers")
+        polygons.append(polygon)
+    require(bool(polygons), field, "no polygon", "at least three corners")
+    corners = sum(len(polygon) for polygon in polygons)
+    require(corners <= MOST_CORNERS, field, f"{corners} corners", f"at most {MOST_CORNERS}")
+    return tuple(polygons)
+
+
+def _shape(
+    polygons: tuple[Array, ...],
+    bodies: Sequence[Body],
+    index: int,
+    tolerance: float,
+    notes: list[str],
+) -> _Shape:
+    """Mend the polygons of a body and cut them into convex parts."""
+    field = f"blocks[{index}].vertices"
+    outlines: list[Array] = []
+    parts: list[Array] = []
+    for polygon in polygons:
+        outline, done = mended(polygon, tolerance)
+        notes += [f"block {_name(bodies, index)}: {what}" for what in done]
+        require(
+            len(outline) >= 3, field, polygon.tolist(), "at least three corners that differ"
+        )
+        region = shapely.Polygon(outline)
+        require(
+            region.is_valid, field, polygon.tolist(), "a polygon that does not cross itself"
+        )
+        outlines.append(outline)
+        if is_convex(outline, 0.0) or is_convex(outline, tolerance):
+            parts.append(outline)
+        else:
+            triangles = shapely.constrained_delaunay_triangles(region)
+            pieces = [_corners(piece) for piece in shapely.get_parts(triangles)]
+            parts += joined(pieces, 0.0)
+    if len(polygons) > 1:
+        regions = [shapely.Polygon(part) for part in parts]
+        twice = sum(region.area for region in regions) - shapely.union_all(regions).area
+        around = sum(region.length for region in regions)
+        require(
+            twice <= tolerance * around,
+            field,
+            polygons,
+            "polygons that do not overlap each other",
+        )
+    return _Shape(tuple(outlines), tuple(parts))
+
+
+def _corners(region: Any) -> Array:
+    """Return the corners of shapely's polygon, counter-clockwise."""
+    turned: Any = shapely.orient_polygons(region)
+    return shapely.get_coordinates(turned.exterior)[:-1]
+
+
+def _overlaps(
+    shapes: Sequence[_Shape], bodies: Sequence[Body], tolerance: float
+) -> list[tuple[int, int, float]]:
+    """Find bodies that overlap, and how deep: twice the area over the perimeter."""
+    owner = np.repeat(np.arange(len(shapes)), [len(shape.parts) for shape in shapes])
+    parts = np.array([shapely.Polygon(part) for shape in shapes for part in shape.parts])
+    fixed = np.array([body.fixed for body in bodies])[owner]
+    one, other = shapely.STRtree(parts).query(parts, predicate="intersects")
+    real = (owner[one] < owner[other]) & ~(fixed[one] & fixed[other])
+    one, other = one[real], other[real]
+    common = shapely.intersection(parts[one], parts[other])
+    area, around = cast(Any, shapely).area(common), cast(Any, shapely).length(common)
+    depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
+    deep = np.flatnonzero(depth > tolerance)
+    found = [(int(owner[one[k]]), int(owner[other[k]]), float(depth[k])) for k in deep]
+    return sorted(found)
+
+
+def _found(
+    shapes: Sequence[_Shape], bodies: Sequence[Body], tolerance: float, notes: list[str]
+) -> list[Touch]:
+    """Find where bodies touch, in a fixed order and sense."""
+    outlines = [outline for shape in shapes for outline in shape.outlines]
+    owner = [index for index, shape in enumerate(shapes) for _ in shape.outlines]
+    faces = faces_of_polygons(outlines, owner)
+    found, near = touches(faces, _near(faces, bodies, NEARLY * tolerance), tolerance)
+    if any(len(shape.outlines) > 1 for shape in shapes):
+        found = merged(found, tolerance)
+
+    def sense(touch: Touch) -> Touch:
+        before = (not bodies[touch.one].fixed, touch.one)
+        after = (not bodies[touch.other].fixed, touch.other)
+        return touch if before < after else touch.turned()
+
+    found = [sense(touch) for touch in found]
+    found.sort(key=lambda touch: (touch.one, touch.other, *touch.ends[0], *touch.ends[1]))
+    notes.append(
+        f"{len(found)} joints found, within {tolerance:.3g} m ({TOLERANCE:g} of the size)"
+    )
+    if near:
+        notes.append(
+            f"nearly touching, more than {tolerance:.3g} m apart or along less than "
+            f"{NEARLY * tolerance:.3g} m, so no joint there: {_pairs(bodies, near)}"
+        )
+    return found
+
+
+def _near(faces: Faces, bodies: Sequence[Body], distance: float) -> Any:
+    """Pairs of faces of different bodies, not both fixed, within a distance."""
+    lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
+    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=distance)
+    fixed = np.array([body.fixed for body in bodies])
+    a, b = faces.body[one], faces.body[other]
+    real = (one < other) & (a != b) & ~(fixed[a] & fixed[b])
+    return np.stack([one[real], other[real]], axis=1).astype(np.int64)
+
+
+def _pairs(bodies: Sequence[Body], pairs: Sequence[tuple[int, int]]) -> str:
+    """Name pairs of blocks, not more than a line holds."""
+    shown = [f"{_name(bodies, a)} and {_name(bodies, b)}" for a, b in sorted(set(pairs))]
+    more = f" and {len(shown) - 5} pairs more" if len(shown) > 5 else ""
+    return "blocks " + ", ".join(shown[:5]) + more
+
+
+def _require_held(found: Sequence[Touch], bodies: Sequence[Body]) -> None:
+    """Check that joints lead from every block to a fixed one."""
+    count = len(bodies)
+    one = np.array([touch.one for touch in found], dtype=np.int64)
+    other = np.array([touch.other for touch in found], dtype=np.int64)
+    graph = coo_array((np.ones(len(found)), (one, other)), shape=(count, count))
+    _, group = cast(tuple[int, Any], connected_components(graph, directed=False))
+    fixed = np.array([body.fixed for body in bodies])
+    loose = np.flatnonzero(~np.isin(group, group[fixed]))
+    if len(loose):
+        raise InputError(
+            f"block {_name(bodies, int(loose[0]))}",
+            "held by nothing",
+            "joined to a fixed block, directly or by others: close the gap or give its joints",
+        )
+
+
+def _block(body: Body, shape: _Shape, index: int, density: float) -> Block:
+    measured = moments(shape.parts)
+    weight = density * measured.area * body.depth if body.weight is None else body.weight
+    field = f"blocks[{index}]"
+    require(0 < weight < np.inf, f"{field}.weight", weight, "above 0")
+    require(0 < body.depth < np.inf, f"{field}.depth", body.depth, "above 0")
+    mass = weight / STANDARD_GRAVITY
+    inertia = mass * measured.polar / measured.area if body.inertia is None else body.inertia
+    require(0 < inertia < np.inf, f"{field}.inertia", inertia, "above 0")
+    centre = measured.centroid if body.centre is None else np.array(body.centre, dtype=float)
+    require(
+        centre.shape == (2,) and bool(np.isfinite(centre).all()),
+        f"{field}.centre",
+        body.centre,
+        "two finite numbers",
+    )
+    if len(shape.parts) == 1:
+        return Block(shape.parts[0], centre, mass, inertia, body.depth, body.name)
+    hull = _corners(shapely.MultiPoint(np.concatenate(shape.parts)).convex_hull)
+    return Block(hull, centre, mass, inertia, body.depth, body.name, shape.parts)
+
+
+def _joint(
+    touch: Touch, friction: float | None, place: dict[int, int], bed: dict[int, int]
+) -> Joint:
+    whole = all(np.array_equal(face, touch.ends) for face in touch.faces)
+    return Joint(
+        place.get(touch.one, SUPPORT),
+        place.get(touch.other, SUPPORT),
+        touch.ends[0],
+        touch.ends[1],
+        friction,
+        touch.normal,
+        None if whole else touch.faces,
+        bed.get(touch.one, bed.get(touch.other)),
+    )

@@ -1,0 +1,313 @@
+"""The structure file: blocks, joints, friction and loads, in JSON or TOML.
+
+Lengths in m, forces in N, y upwards. Its keys are those of `entries.StructureFile`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from blocksim.blocks.assembly import SUPPORT
+from blocksim.blocks.entries import Id, LoadEntry, StructureFile, entries_of
+from blocksim.blocks.given import GivenJoint
+from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.polygons import Body, assembly_of_bodies
+from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
+from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
+from blocksim.common.files import require_file
+
+LARGEST_FILE = 50_000_000
+"""Bytes; a larger file is not read."""
+
+
+def load_structure(path: Path | str) -> Problem:
+    """Read a structure file.
+
+    Parameters
+    ----------
+    path : Path or str
+        Ends in .json or .toml.
+
+    Raises
+    ------
+    InputError
+        In one line: file, entry, value, and what would be accepted.
+    """
+    path = Path(path)
+    allowed = "an existing structure file, .json or .toml"
+    require(path.suffix in {".json", ".toml"}, "structure", str(path), allowed)
+    require_file(path, "structure", allowed, LARGEST_FILE)
+    kind = "JSON" if path.suffix == ".json" else "TOML"
+    try:
+        text = path.read_text(encoding="utf-8")
+        data: object = (
+            json.loads(text, object_pairs_hook=_once) if kind == "JSON" else tomllib.loads(text)
+        )
+        return structure_of(data)
+    except InputError as error:
+        raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
+    except (ValueError, RecursionError) as error:
+        # Not JSON or TOML, no UTF-8, numbers beyond all bounds, or nested too deeply.
+        said = " ".join(str(error).split())
+        raise InputError("file", said, f"valid {kind}", where=str(path)) from None
+
+
+def structure_of(data: object) -> Problem:
+    """Make a problem of what a structure file says.
+
+    Parameters
+    ----------
+    data : object
+        A dict with the keys of `StructureFile`.
+
+    Raises
+    ------
+    InputError
+        In one line: the first entry that is wrong, its value, and what would be accepted.
+    """
+    require(isinstance(data, dict), "structure", type(data).__name__, "a table of keys")
+    table = cast(dict[str, Any], data)
+    if "kind" in table:
+        raise InputError("kind", table["kind"], "left out: give blocks; there are no kinds yet")
+    return _problem(entries_of(table))
+
+
+def _problem(written: StructureFile) -> Problem:
+    index: dict[str, int] = {}
+    bodies: list[Body] = []
+    for at, block in enumerate(written.blocks):
+        name, field = str(block.id), f"blocks[{at}]"
+        require(name not in index, f"{field}.id", block.id, "an id that no other block has")
+        index[name] = at
+        if block.vertices is None and block.polygons is None:
+            raise InputError(f"{field}.vertices", MISSING, "given")
+        require(
+            block.vertices is None or block.polygons is None,
+            f"{field}.polygons",
+            f"{len(block.polygons or [])} beside vertices",
+            "left out, or vertices",
+        )
+        bodies.append(
+            Body(
+                polygons=tuple(block.polygons or [block.vertices or []]),
+                name=name,
+                fixed=block.fixed,
+                weight=block.weight,
+                centre=block.centre,
+                inertia=block.inertia,
+                depth=block.depth,
+            )
+        )
+    fixed = [body.fixed for body in bodies]
+
+    def body_of(name: Id, field: str) -> int:
+        require(str(name) in index, field, name, "the id of a block")
+        return index[str(name)]
+
+    joints: list[GivenJoint] | None = None
+    if written.joints is not None:
+        joints = []
+        for at, joint in enumerate(written.joints):
+            a = body_of(joint.a, f"joints[{at}].a")
+            b = body_of(joint.b, f"joints[{at}].b")
+            require(a != b, f"joints[{at}].b", joint.b, "another block than a")
+            require(
+                not (fixed[a] and fixed[b]), f"joints[{at}]", "two fixed blocks", "left out"
+            )
+            joints.append(
+                GivenJoint(
+                    a=a,
+                    b=b,
+                    ends=np.array(joint.ends, dtype=float),
+                    normal=None
+                    if joint.normal is None
+                    else np.array(joint.normal, dtype=float),
+                    friction=_friction(joint.friction),
+                    faces=None if joint.faces is None else np.array(joint.faces, dtype=float),
+                )
+            )
+    # Blocks that move are numbered without the fixed ones, and these without those.
+    moving = np.cumsum([not each for each in fixed]) - 1
+    bed = np.cumsum(fixed) - 1
+
+    def load_of(load: LoadEntry, field: str) -> Load:
+        one = load.block is not None and load.force is not None
+        body = load.body is not None
+        require(one != body, field, _keys(load), "either body, or block and force")
+        if body:
+            mixed = any(each is not None for each in (load.block, load.force, load.point))
+            require(not mixed, field, _keys(load), "body and blocks alone")
+        else:
+            require(
+                load.blocks is None, f"{field}.blocks", load.blocks, "left out: body has it"
+            )
+        chosen: Sequence[Id] = load.blocks or ([] if load.block is None else [load.block])
+        key = f"{field}.block" if load.blocks is None else f"{field}.blocks"
+        on: list[int] = []
+        for name in chosen:
+            place = body_of(name, key)
+            require(not fixed[place], key, name, "a block that is not fixed")
+            on.append(int(moving[place]))
+        require(len(set(on)) == len(on), key, load.blocks, "each block once")
+        force = load.body or load.force or [0.0, 0.0]
+        require(
+            len(force) == 2 or not force[2], f"{field}.body", force, "x and y, on these blocks"
+        )
+        return Load(
+            force=np.array(force[:2], dtype=float),
+            blocks=tuple(on) if on else tuple(range(fixed.count(False))),
+            point=None if load.point is None else np.array(load.point, dtype=float),
+            per_weight=body,
+        )
+
+    gravity, dead = DOWN, list[Load]()
+    notes: list[str] = []
+    if written.dead is not None:
+        gravity = np.zeros(3)
+        for at, load in enumerate(written.dead):
+            if load.body is not None and load.blocks is None:
+                load_of(_flat(load), f"dead[{at}]")
+                gravity[: len(load.body)] += load.body
+            else:
+                dead.append(load_of(load, f"dead[{at}]"))
+        if not gravity.any():
+            notes.append("no gravity: dead has no body force on all blocks")
+    live = [load_of(load, f"live[{at}]") for at, load in enumerate(written.live)]
+    moves: list[Move] = []
+    for at, move in enumerate(written.move):
+        place = body_of(move.block, f"move[{at}].block")
+        require(fixed[place], f"move[{at}].block", move.block, "a fixed block")
+        moves.append(Move(support=int(bed[place]), direction=np.array(move.direction)))
+    assembly, found = assembly_of_bodies(
+        bodies, joints=joints, density=written.density, size=written.size
+    )
+    mu = _friction(written.friction)
+    return Problem(
+        assembly=assembly,
+        mu=0.0 if mu is None else mu,
+        gravity=gravity,
+        dead=tuple(dead),
+        live=tuple(live),
+        load=float(written.load),
+        moves=tuple(moves),
+        title=written.title,
+        source=written.source,
+        notes=(*notes, *found),
+    )
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse a key that stands twice in a table of JSON."""
+    table: dict[str, Any] = {}
+    for key, value in pairs:
+        require(key not in table, key, "given twice", "given once in a table")
+        table[key] = value
+    return table
+
+
+def _friction(value: float | str | None) -> float | None:
+    return math.inf if value == "inf" else None if value is None else float(value)
+
+
+def _friction_text(value: float) -> float | str:
+    """Return a number that JSON can write."""
+    return "inf" if math.isinf(value) else value
+
+
+def _keys(load: LoadEntry) -> list[str]:
+    names = ("body", "blocks", "block", "point", "force")
+    return [name for name in names if getattr(load, name) is not None]
+
+
+def _flat(load: LoadEntry) -> LoadEntry:
+    """Return a body force without its part out of the plane."""
+    return replace(load, body=None if load.body is None else load.body[:2])
+
+
+def _load_record(load: Load, names: Sequence[str]) -> list[dict[str, Any]]:
+    blocks = [names[index] for index in load.blocks]
+    if load.per_weight:
+        return [{"body": load.force.tolist(), "blocks": blocks}]
+    at = {} if load.point is None else {"point": load.point.tolist()}
+    return [{"block": name, "force": load.force.tolist(), **at} for name in blocks]
+
+
+def structure_record(problem: Problem) -> dict[str, Any]:
+    """Write a problem as a structure file does; `structure_of` reads it back.
+
+    A support that is not known as a body gets one: a flat triangle behind its joint.
+    """
+    assembly = problem.assembly
+    names = [f"b{index}" for index in range(len(assembly.blocks))]
+    beds = [f"s{index}" for index in range(len(assembly.supports))]
+    given = [block.name for block in assembly.blocks] + [
+        each.name for each in assembly.supports
+    ]
+    if all(given) and len(set(given)) == len(given):
+        names, beds = given[: len(names)], given[len(names) :]
+    fixed: list[dict[str, Any]] = [
+        {"id": name, "polygons": [part.tolist() for part in support.polygons], "fixed": True}
+        for name, support in zip(beds, assembly.supports, strict=True)
+    ]
+    joints: list[dict[str, Any]] = []
+    for index, joint in enumerate(assembly.joints):
+        ground = "" if joint.support is None else beds[joint.support]
+        if joint.support is None and SUPPORT in (joint.before, joint.after):
+            ground = f"ground {index}"
+            out = joint.normal * (-1 if joint.before == SUPPORT else 1) * joint.length / 10
+            far = (joint.inner + joint.outer) / 2 + out
+            corners = np.stack([joint.inner, joint.outer, far])
+            if signed_area(corners) < 0:
+                corners = corners[::-1]
+            corners = corners.tolist()
+            fixed.append({"id": ground, "vertices": corners, "fixed": True})
+        entry: dict[str, Any] = {
+            "a": ground if joint.before == SUPPORT else names[joint.before],
+            "b": ground if joint.after == SUPPORT else names[joint.after],
+            "ends": [joint.inner.tolist(), joint.outer.tolist()],
+        }
+        if joint.across is not None:
+            entry |= {"ends": [joint.inner.tolist()], "normal": joint.across.tolist()}
+        if joint.faces is not None:
+            entry["faces"] = joint.faces.tolist()
+        if joint.friction is not None:
+            entry["friction"] = _friction_text(joint.friction)
+        joints.append(entry)
+    return {
+        "title": problem.title,
+        "source": problem.source,
+        "friction": _friction_text(problem.mu),
+        "size": assembly.size,
+        "load": problem.load,
+        "blocks": fixed
+        + [
+            {
+                "id": name,
+                "weight": block.mass * STANDARD_GRAVITY,
+                "centre": block.centre.tolist(),
+                "inertia": block.inertia,
+                "depth": block.depth,
+                "polygons": [part.tolist() for part in block.polygons],
+            }
+            for name, block in zip(names, assembly.blocks, strict=True)
+        ],
+        "joints": joints,
+        "dead": [
+            {"body": problem.gravity.tolist()},
+            *(each for load in problem.dead for each in _load_record(load, names)),
+        ],
+        "live": [each for load in problem.live for each in _load_record(load, names)],
+        "move": [
+            {"block": beds[move.support], "direction": move.direction.tolist()}
+            for move in problem.moves
+        ],
+    }

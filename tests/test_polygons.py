@@ -1,0 +1,302 @@
+"""Joints found from polygons: counted by hand, given by the cases' authors, and invariant."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from structure_cases import names, scenes
+
+from blocksim.blocks.assembly import SUPPORT, Assembly
+from blocksim.blocks.polygons import Body, assembly_of_bodies
+from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.structure import structure_of
+from blocksim.common.errors import InputError
+
+GROUND = [(-1, -1), (9, -1), (9, 0), (-1, 0)]
+
+
+def box(
+    x: float, y: float, width: float = 1.0, height: float = 1.0
+) -> list[tuple[float, float]]:
+    return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+
+
+def pairs(assembly: Assembly) -> list[tuple[int, int]]:
+    return [(joint.before, joint.after) for joint in assembly.joints]
+
+
+def wall(courses: int, bricks: int) -> list[list[tuple[float, float]]]:
+    """Running bond: odd courses half a brick to the right."""
+    ground = [(-1, -1), (2 * bricks + 2, -1), (2 * bricks + 2, 0), (-1, 0)]
+    rows = [box(2 * k + row % 2, row, 2, 1) for row in range(courses) for k in range(bricks)]
+    return [ground, *rows]
+
+
+@pytest.mark.parametrize(("courses", "bricks"), [(1, 1), (2, 3), (5, 4)])
+def test_running_bond_has_the_joints_one_counts(courses: int, bricks: int):
+    assembly = Assembly.of_polygons(wall(courses, bricks), fixed=[0])
+    heads = courses * (bricks - 1)
+    beds = (courses - 1) * (2 * bricks - 1)
+    assert len(assembly.joints) == bricks + heads + beds
+    lengths = sorted(joint.length for joint in assembly.joints)
+    assert lengths == [1.0] * (heads + beds) + [2.0] * bricks
+    assert not any(joint.is_corner for joint in assembly.joints)
+
+
+def test_the_sense_and_the_faces_of_a_joint():
+    """On its support a brick's bed: upwards, inner to the right, on the whole top face."""
+    assembly = Assembly.of_polygons([box(0, 0, 2), GROUND, box(0.5, 1, 3)], fixed=[1])
+    bed, upper = assembly.joints
+    assert (bed.before, bed.after, bed.support) == (SUPPORT, 0, 0)
+    assert (upper.before, upper.after, upper.support) == (0, 1, None)
+    assert bed.normal.tolist() == upper.normal.tolist() == [0, 1]
+    assert (bed.inner.tolist(), bed.outer.tolist()) == ([2, 0], [0, 0])
+    assert bed.faces is not None
+    assert bed.faces.tolist() == [[[9, 0], [-1, 0]], [[2, 0], [0, 0]]]
+    assert (upper.inner.tolist(), upper.outer.tolist()) == ([2, 1], [0.5, 1])
+    assert upper.faces is not None
+    assert upper.faces.tolist() == [[[2, 1], [0, 1]], [[3.5, 1], [0.5, 1]]]
+
+
+def test_a_joint_of_equal_faces_needs_none():
+    assembly = Assembly.of_polygons([GROUND, box(0, 0), box(1, 0)], fixed=[0])
+    head = assembly.joints[-1]
+    assert (head.faces, head.normal.tolist()) == (None, [1, 0])
+
+
+def test_a_face_meets_several_blocks_and_two_blocks_meet_twice():
+    """A beam on two posts, and a bridge-like block that stands on one base with two feet."""
+    assembly = Assembly.of_polygons([GROUND, box(0, 0), box(3, 0), box(0, 1, 4)], fixed=[0])
+    assert pairs(assembly) == [(SUPPORT, 0), (SUPPORT, 1), (0, 2), (1, 2)]
+    feet = [(0, 0), (1, 0), (1, 1), (3, 1), (3, 0), (4, 0), (4, 2), (0, 2)]
+    twice = Assembly.of_polygons([GROUND, feet], fixed=[0])
+    assert pairs(twice) == [(SUPPORT, 0)] * 2
+    assert [joint.length for joint in twice.joints] == [1, 1]
+
+
+def test_a_corner_on_a_face():
+    """A diamond: half a unit of its diagonal to each side of where it stands."""
+    diamond = [(1, 0), (2, 1), (1, 2), (0, 1)]
+    (joint,) = Assembly.of_polygons([GROUND, diamond], fixed=[0]).joints
+    assert joint.is_corner
+    assert joint.inner.tolist() == joint.outer.tolist() == [1, 0]
+    assert joint.normal.tolist() == [0, 1]
+    assert (joint.before, joint.after, joint.length) == (SUPPORT, 0, 0)
+    # The corner is the support's: the normal still points from before into after.
+    (turned,) = Assembly.of_polygons(
+        [[(1, 0), (0, -1), (2, -1)], box(0, 0, 2)], fixed=[0]
+    ).joints
+    assert turned.is_corner
+    assert turned.normal.tolist() == [0, 1]
+
+
+def test_corner_on_corner_is_no_joint():
+    """Four bricks in a stack bond meet in one point: no joints across it."""
+    four = [GROUND, box(0, 0), box(1, 0), box(0, 1), box(1, 1)]
+    assembly = Assembly.of_polygons(four, fixed=[0])
+    assert pairs(assembly) == [(-1, 0), (-1, 1), (0, 1), (0, 2), (1, 3), (2, 3)]
+
+
+def test_box2d_arch_has_the_corners_under_its_plank():
+    """17 voussoirs and four planks; without two corner contacts it would not stand."""
+    assembly = structure_of(scenes("box2d_arch")[0]).assembly
+    corners = [joint for joint in assembly.joints if joint.is_corner]
+    assert (len(assembly.joints), len(corners)) == (24, 2)
+    where = sorted(joint.inner.tolist() for joint in corners)
+    assert where[0][0] == pytest.approx(-where[1][0], abs=1e-9)
+    assert {joint.before for joint in corners} <= {*range(17)}
+    assert {joint.after for joint in corners} == {17}
+
+
+def test_polygons_that_are_not_convex_move_as_one():
+    """An L of three unit squares: area, centroid and inertia by hand, two convex parts."""
+    angle = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
+    whole = Assembly.of_polygons([GROUND, angle], fixed=[0]).blocks[0]
+    assert len(whole.parts) == 2
+    assert whole.centre == pytest.approx([5 / 6, 5 / 6], abs=1e-14)
+    assert whole.mass == pytest.approx(3 / STANDARD_GRAVITY, rel=1e-14)
+    # Each square 1/6 about itself; distances squared 2/9, 5/9 and 5/9 of the centroids.
+    assert whole.inertia * STANDARD_GRAVITY == pytest.approx(3 / 6 + 2 / 9 + 10 / 9, rel=1e-13)
+    ground = Body(polygons=(GROUND,), fixed=True)
+    given_parts = Body(polygons=(box(0, 0, 2), box(0, 1)))
+    parted, _ = assembly_of_bodies([ground, given_parts])
+    assert parted.blocks[0].inertia == pytest.approx(whole.inertia, rel=1e-13)
+    assert len(parted.blocks[0].vertices) == len(whole.vertices) == 5
+
+
+def test_a_face_put_together_from_parts_is_one_face():
+    ground = Body(polygons=(GROUND,), fixed=True)
+    seat = Body(polygons=(box(0, 0), box(1, 0)))
+    assembly, _ = assembly_of_bodies([ground, seat, Body(polygons=(box(0.5, 1),))])
+    bed, upper = assembly.joints
+    assert bed.length == 2
+    assert upper.length == 1
+    assert upper.faces is not None
+    assert upper.faces[0].tolist() == [[2, 1], [0, 1]]
+
+
+@pytest.mark.parametrize(
+    ("corners", "said"),
+    [
+        ([(0, 0), (0, 1), (1, 1), (1, 0)], "clockwise"),
+        ([(0, 0), (1, 0), (1, 0), (1, 1), (0, 1)], "doubled"),
+        ([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)], "doubled"),
+        ([(0, 0), (0.5, 0), (1, 0), (1, 1), (0, 1)], "straight"),
+    ],
+)
+def test_mended_and_said(corners: list[tuple[float, float]], said: str):
+    bodies = [Body(polygons=(GROUND,), fixed=True), Body(polygons=(corners,), name="A")]
+    assembly, notes = assembly_of_bodies(bodies)
+    assert any(said in note and "block A" in note for note in notes)
+    assert len(assembly.blocks[0].vertices) == 4
+    assert len(assembly.joints) == 1
+    assert assembly.blocks[0].centre == pytest.approx([0.5, 0.5])
+
+
+def test_a_centre_of_weight_leaves_the_inertia():
+    plain, moved = (
+        Assembly.of_polygons([GROUND, box(0, 0)], fixed=[0], centres=centres)
+        for centres in (None, [(0, 0), (0.3, 0.6)])
+    )
+    assert moved.blocks[0].centre.tolist() == [0.3, 0.6]
+    assert moved.blocks[0].inertia == plain.blocks[0].inertia
+    assert plain.blocks[0].inertia == pytest.approx(1 / 6 / STANDARD_GRAVITY, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "fixed", "said"),
+    [
+        ([GROUND, box(0, 0), box(0.99, 0)], [0], "overlap of blocks 1 and 2"),
+        ([GROUND, box(0, -0.001)], [0], "overlap of blocks 0 and 1"),
+        ([GROUND, box(0, 0), box(5, 3)], [0], "block 2 = 'held by nothing'"),
+        ([GROUND, box(0, 0.01)], [0], "block 1 = 'held by nothing'"),
+        ([GROUND, [(0, 0), (1, 1), (1, 0), (0, 1)]], [0], "cross"),
+        ([GROUND, [(0, 0), (1, 0)]], [0], "three corners"),
+        ([GROUND, [(0, 0), (1, 0), (2, 0)]], [0], "three corners"),
+        ([GROUND, [(0, 0), (1, 0), (math.nan, 1)]], [0], "finite"),
+        ([GROUND, box(0, 0)], [], "fixed"),
+        ([GROUND, box(0, 0)], [0, 1], "not fixed"),
+    ],
+)
+def test_refused_in_one_line(
+    bodies: list[list[tuple[float, float]]], fixed: list[int], said: str
+):
+    with pytest.raises(InputError) as raised:
+        Assembly.of_polygons(bodies, fixed=fixed)
+    assert said in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_gap_that_is_nearly_a_joint_is_said_and_not_guessed():
+    bodies = [GROUND, box(0, 0), box(1 + 2e-5, 0)]
+    _, notes = assembly_of_bodies(
+        [
+            Body(polygons=(body,), fixed=body is GROUND, name=f"n{at}")
+            for at, body in enumerate(bodies)
+        ]
+    )
+    assert any("nearly touching" in note and "n1 and n2" in note for note in notes)
+    assembly = Assembly.of_polygons(bodies, fixed=[0])
+    assert pairs(assembly) == [(-1, 0), (-1, 1)]
+    closed = Assembly.of_polygons([GROUND, box(0, 0), box(1 + 5e-7, 0)], fixed=[0])
+    assert pairs(closed) == [(-1, 0), (-1, 1), (0, 1)]
+
+
+def _stretches(assembly: Assembly, numbers: list[int], supports: list[int]) -> np.ndarray:
+    """Joints as rows: bodies by their first numbers, then ends, in a fixed order."""
+    rows: list[list[float]] = []
+    for joint in assembly.joints:
+        a = supports[joint.support or 0] if joint.before == SUPPORT else numbers[joint.before]
+        b = supports[joint.support or 0] if joint.after == SUPPORT else numbers[joint.after]
+        ends = [joint.inner.tolist(), joint.outer.tolist()]
+        across = joint.normal
+        if a > b:
+            a, b, ends, across = b, a, ends[::-1], -across
+        rows.append([a, b, *ends[0], *ends[1], *across])
+    return np.array(sorted(rows, key=lambda row: (row[0], row[1], *np.round(row[2:], 6))))
+
+
+SCENES = ["box2d_arch", "ferris_tinloi_1", "diamond_4", "piers_h1_c1", "two_spans_load_b9"]
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    name=st.sampled_from(SCENES),
+    angle=st.floats(-math.pi, math.pi),
+    power=st.floats(-3, 3),
+    mirrored=st.booleans(),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_found_joints_do_not_depend_on_how_it_is_drawn(
+    name: str, angle: float, power: float, mirrored: bool, seed: int
+):
+    """Turned, scaled, mirrored, renumbered, corners from another one on: the same joints."""
+    blocks = scenes(name)[0]["blocks"]
+    polygons = [np.array(block["vertices"]) for block in blocks]
+    fixed = [at for at, block in enumerate(blocks) if block.get("fixed")]
+    first = Assembly.of_polygons(list(polygons), fixed=fixed)
+    turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    if mirrored:
+        turn = np.diag([-1.0, 1.0]) @ turn
+    scale = 10**power
+    rng = np.random.default_rng(seed)
+    order = rng.permutation(len(polygons)).tolist()
+    drawn = [
+        np.roll(polygons[at], rng.integers(9), axis=0)[:: rng.choice([-1, 1])] @ turn * scale
+        for at in order
+    ]
+    again = Assembly.of_polygons(drawn, fixed=[order.index(at) for at in fixed])
+    moving = [at for at in range(len(polygons)) if at not in fixed]
+    back = [at for at in order if at not in fixed]
+    found = _stretches(again, back, [at for at in order if at in fixed])
+    found[:, 2:6] /= scale
+    for columns in (slice(2, 4), slice(4, 6), slice(6, 8)):
+        found[:, columns] = found[:, columns] @ turn.T
+    if mirrored:
+        found[:, 2:6] = found[:, [4, 5, 2, 3]]
+    want = _stretches(first, moving, fixed)
+    order_of = np.lexsort(np.round(found.T[::-1], 6))
+    want_of = np.lexsort(np.round(want.T[::-1], 6))
+    assert len(found) == len(want)
+    assert np.abs(found[order_of] - want[want_of]).max() < 1e-5
+
+
+HULLS = {
+    "compas_cra_bridge",
+    "compas_cra_shelf",
+    "compas_cra_shelf_s2",
+    "compas_cra_shelf_stable",
+}
+"""Blocks are hulls that overlap; joints are given."""
+DRAWN_APART = {"rigid_ipc_arch_25", "rigid_ipc_arch_101"}
+"""Blocks have gaps; joints are given in their middle."""
+BOTH = [name for name in names() if "joints" in scenes(name)[0]]
+
+
+@pytest.mark.parametrize("name", [name for name in BOTH if name not in HULLS | DRAWN_APART])
+def test_found_joints_are_those_given(name: str):
+    """The same pairs of blocks and the same ends, for every scene of every such case."""
+    for scene in scenes(name):
+        given_joints = structure_of(scene).assembly
+        found = structure_of({key: scene[key] for key in scene if key != "joints"}).assembly
+        numbers = list(range(len(found.blocks)))
+        beds = [len(numbers) + at for at in range(len(found.supports))]
+        want, have = (_stretches(each, numbers, beds) for each in (given_joints, found))
+        assert want.shape == have.shape
+        assert np.abs(want - have).max() < 1e-5 * found.size
+
+
+@pytest.mark.parametrize("name", sorted(HULLS | DRAWN_APART))
+def test_where_joints_cannot_be_found_it_is_said(name: str):
+    scene = scenes(name)[0]
+    said = "overlap of blocks" if name in HULLS else "held by nothing"
+    with pytest.raises(InputError, match=said):
+        structure_of({key: scene[key] for key in scene if key != "joints"})
+    notes = structure_of(scene).notes
+    assert any(
+        ("overlaps taken" if name in HULLS else "lie off their faces") in n for n in notes
+    )

@@ -1,0 +1,291 @@
+"""Structure files: the corpus reads, records read back, broken files get one line."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from structure_cases import BESIDES, case, names, scenes
+
+from blocksim.arch.circular import Arch
+from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
+from blocksim.blocks.structure import load_structure, structure_of, structure_record
+from blocksim.common.errors import InputError
+
+STACK: dict[str, Any] = {
+    "friction": 0.6,
+    "blocks": [
+        {"id": "ground", "vertices": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True},
+        {"id": 1, "vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]},
+        {"id": 2, "vertices": [[0, 1], [1, 1], [1, 2], [0, 2]], "weight": 3.0},
+    ],
+    "live": [{"body": [1, 0]}],
+}
+TOML = """
+title = "A stack"
+friction = "inf"
+density = 2.0
+blocks = [
+  { id = "ground", vertices = [[-1, -1], [3, -1], [3, 0], [-1, 0]], fixed = true },
+  { id = 1, vertices = [[0, 0], [1, 0], [1, 1], [0, 1]] },
+]
+dead = [{ body = [0, -1] }, { block = 1, point = [0.25, 1], force = [0, -10] }]
+move = [{ block = "ground", direction = [1, 0] }]
+"""
+
+
+def same(one: Problem, other: Problem) -> None:
+    """Blocks, joints and loads to the last digits."""
+    assert (one.mu, one.load, one.title, one.source) == (
+        other.mu,
+        other.load,
+        other.title,
+        other.source,
+    )
+    assert one.assembly.size == other.assembly.size
+    for a, b in zip(one.assembly.blocks, other.assembly.blocks, strict=True):
+        assert (a.inertia, a.depth) == (b.inertia, b.depth)
+        assert a.mass == pytest.approx(b.mass, rel=1e-15)
+        assert a.centre.tolist() == b.centre.tolist()
+        assert len(a.polygons) == len(b.polygons)
+        assert all(map(np.array_equal, a.polygons, b.polygons))
+    for a, b in zip(one.assembly.joints, other.assembly.joints, strict=True):
+        assert (a.before, a.after, a.friction) == (b.before, b.after, b.friction)
+        assert (a.inner.tolist(), a.outer.tolist()) == (b.inner.tolist(), b.outer.tolist())
+        assert a.is_corner == b.is_corner
+        assert a.normal == pytest.approx(b.normal, abs=1e-15)
+    faces = [each.assembly.joint_arrays.faces for each in (one, other)]
+    assert np.array_equal(*faces)
+    assert np.array_equal(one.gravity, other.gravity)
+    for load in (0.0, 0.7):
+        pulls = [each.with_load(load).pull() for each in (one, other)]
+        assert np.allclose(*pulls, rtol=1e-13, atol=1e-15)
+    moves = [[(m.support, *m.direction) for m in each.moves] for each in (one, other)]
+    assert moves[0] == moves[1]
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_case_reads_and_its_record_reads_back(name: str):
+    for scene in scenes(name):
+        problem = structure_of(scene)
+        free = [block for block in scene["blocks"] if not block.get("fixed")]
+        assert [block.name for block in problem.assembly.blocks] == [str(b["id"]) for b in free]
+        weights = [b["weight"] for b in free if "weight" in b]
+        read = [
+            block.mass * STANDARD_GRAVITY
+            for block, written in zip(problem.assembly.blocks, free, strict=True)
+            if "weight" in written
+        ]
+        assert read == pytest.approx(weights, rel=1e-12)
+        same(problem, structure_of(json.loads(json.dumps(structure_record(problem)))))
+
+
+def test_there_are_cases():
+    assert len(names()) == 114
+    assert {"expected", "label"} <= BESIDES
+    assert case("trilithon")["expected"]["value"] == 0.25
+
+
+def test_an_arch_can_be_recorded():
+    """It has no bodies for its supports: they are made up, all else stays."""
+    arch = Arch(half_angle=math.pi / 2, eta=0.12, voussoirs=9)
+    problem = Problem(assembly=arch.assembly(), mu=0.7).leaning(0.1)
+    back = structure_of(json.loads(json.dumps(structure_record(problem))))
+    same(problem, back)
+    assert len(back.assembly.supports) == 2
+
+
+def test_loads_and_gravity():
+    """Body forces on all blocks are gravity; others are loads on the blocks they name."""
+    table = copy.deepcopy(STACK)
+    table["dead"] = [
+        {"body": [0, -1]},
+        {"body": [0.1, 0]},
+        {"block": 2, "force": [0, -6], "point": [0.25, 2]},
+        {"body": [0, -2], "blocks": [1]},
+    ]
+    problem = structure_of(table).with_load(0.5)
+    assert problem.gravity.tolist() == [0.1, -1, 0]
+    assert (problem.assembly.size, problem.unit_force) == (1.0, pytest.approx(2.0))
+    # Weights 1 and 3, mean 2; the force of -6 acts 0.25 to the left of the centre.
+    want = [[0.05 + 0.25, -0.5 - 1.0, 0.0], [0.15 + 0.75, -1.5 - 3.0, 0.75]]
+    assert problem.pull() == pytest.approx(np.array(want))
+    table["dead"] = [{"block": 2, "force": [0, -6]}]
+    weightless = structure_of(table)
+    assert not weightless.gravity.any()
+    assert any("no gravity" in note for note in weightless.notes)
+
+
+def test_the_same_keys_in_toml(tmp_path: Path):
+    path = tmp_path / "stack.toml"
+    path.write_text(TOML)
+    problem = load_structure(path)
+    assert problem.mu == math.inf
+    assert problem.title == "A stack"
+    assert problem.assembly.blocks[0].mass * STANDARD_GRAVITY == pytest.approx(2.0)
+    assert problem.moves[0].support == 0
+    (load,) = problem.dead
+    assert isinstance(load, Load)
+    assert (load.blocks, load.force.tolist()) == ((0,), [0, -10])
+    assert any("1 joints found" in note and "1e-06" in note for note in problem.notes)
+
+
+def test_given_joints_are_taken():
+    table = copy.deepcopy(STACK)
+    table["joints"] = [
+        {"a": "ground", "b": 1, "ends": [[0, 0], [1, 0]], "friction": 0},
+        {"a": 2, "b": 1, "ends": [[0.2, 1], [0.7, 1]], "normal": [0, 1], "friction": "inf"},
+        {"a": 1, "b": 2, "ends": [[0.9, 1]], "normal": [0, 2]},
+    ]
+    problem = structure_of(table)
+    bed, middle, corner = problem.assembly.joints
+    assert problem.friction.tolist() == [0, math.inf, 0.6]
+    # Ends in either order, and a normal that points the wrong way, are put right.
+    assert (bed.inner.tolist(), bed.outer.tolist()) == ([1, 0], [0, 0])
+    assert (middle.before, middle.after, middle.normal.tolist()) == (1, 0, [0, -1])
+    assert any("normal turned" in note for note in problem.notes)
+    assert corner.is_corner
+    assert corner.normal.tolist() == [0, 1]
+
+
+def broken(*path: Any, to: Any = None) -> dict[str, Any]:
+    """The stack with one value changed, or left out where it is None."""
+    table = copy.deepcopy(STACK)
+    place: Any = table
+    for key in path[:-1]:
+        place = place[key]
+    if to is None:
+        del place[path[-1]]
+    elif isinstance(place, list) and path[-1] == len(place):
+        place.append(to)
+    else:
+        place[path[-1]] = to
+    return table
+
+
+UNIT = [[0, 0], [1, 0], [1, 1], [0, 1]]
+BROKEN: list[tuple[dict[str, Any], str]] = [
+    (broken("friction"), "friction is missing: must be given"),
+    (broken("friction", to=-0.1), "friction = -0.1"),
+    (broken("friction", to="rough"), "friction = 'rough'"),
+    (broken("friction", to=math.nan), "friction = nan"),
+    (broken("frcition", to=0.5), "frcition = 0.5: must be left out"),
+    (broken("blocks"), "blocks is missing"),
+    (broken("blocks", to=[]), "blocks = []"),
+    (broken("blocks", 1, "id"), "blocks[1].id is missing"),
+    (broken("blocks", 1, "id", to=2), "blocks[2].id = 2: must be an id that no other"),
+    (broken("blocks", 1, "id", to=1.5), "blocks[1].id = 1.5: must be a whole number or"),
+    (broken("blocks", 1, "id", to="x" * 101), "blocks[1].id"),
+    (broken("blocks", 1, "vertices"), "blocks[1].vertices is missing"),
+    (broken("blocks", 1, "vertices", to=[[0, 0], [1, 0]]), "blocks[1].vertices"),
+    (broken("blocks", 1, "vertices", 2, 1, to="1"), "blocks[1].vertices[2][1] = '1'"),
+    (broken("blocks", 1, "vertices", 2, 1, to=math.nan), "blocks[1].vertices[2][1] = nan"),
+    (broken("blocks", 1, "vertices", 2, to=[1, 1, 1]), "blocks[1].vertices[2]"),
+    (broken("blocks", 1, "vertices", 2, 1, to=10**400), "blocks[1].vertices[2][1]"),
+    (broken("blocks", 1, "vertices", to=[UNIT[k] for k in (0, 2, 1, 3)]), "blocks[1].vertices"),
+    (broken("blocks", 1, "vertices", to=[[0, 0], [1, 0], [2, 0]]), "three corners that differ"),
+    (broken("blocks", 1, "polygons", to=[UNIT]), "blocks[1].polygons = '1 beside vertices'"),
+    (broken("blocks", 1, "weight", to=-1), "blocks[1].weight = -1"),
+    (broken("blocks", 1, "weight", to=0), "blocks[1].weight = 0"),
+    (broken("blocks", 1, "weight", to=True), "blocks[1].weight = True"),
+    (broken("blocks", 1, "centre", to=[0, math.inf]), "blocks[1].centre[1] = inf"),
+    (broken("blocks", 1, "fixed", to="yes"), "blocks[1].fixed = 'yes'"),
+    (broken("blocks", 1, "mass", to=1), "blocks[1].mass = 1: must be left out"),
+    (broken("blocks", 0, "fixed"), "none fixed"),
+    (broken("blocks", 2, "vertices", 0, to=[0, 0.9]), "overlap of blocks 1 and 2"),
+    (broken("blocks", 1, "vertices", to=[[0, 5], [1, 5], [1, 6], [0, 6]]), "held by nothing"),
+    (
+        broken("blocks", 3, to={"id": 3, "vertices": [[5, 5], [6, 5], [5, 6]]}),
+        "block 3 = 'held",
+    ),
+    (broken("joints", to=[{"a": 1, "b": 7, "ends": [[0, 1], [1, 1]]}]), "joints[0].b = 7"),
+    (broken("joints", to=[{"a": 1, "b": 1, "ends": [[0, 1], [1, 1]]}]), "joints[0].b = 1"),
+    (broken("joints", to=[{"a": 1, "b": 2, "ends": [[0, 1.5], [1, 1.5]]}]), "joints[0].ends"),
+    (broken("joints", to=[{"a": 1, "b": 2, "ends": [[0, 1]]}]), "joints[0].normal is missing"),
+    (
+        broken("joints", to=[{"a": 1, "b": 2, "ends": [[0, 1], [0, 1]]}]),
+        "two points that differ",
+    ),
+    (broken("joints", to=[{"a": 1, "b": 2, "ends": []}]), "joints[0].ends"),
+    (broken("joints", to=[{"a": 1, "b": 2, "ends": [[0, 1], [1, 1]]}]), "block 1 = 'held by"),
+    (broken("live", 0, to={"body": [1, 0], "blocks": [9]}), "live[0].blocks = 9"),
+    (broken("live", 0, to={"body": [1, 0], "blocks": []}), "live[0].blocks = []"),
+    (broken("live", 0, to={"block": 9, "force": [1, 0]}), "live[0].block = 9"),
+    (broken("live", 0, to={"block": "ground", "force": [1, 0]}), "live[0].block = 'ground'"),
+    (broken("live", 0, to={"force": [1, 0]}), "live[0] = ['force']: must be either body"),
+    (broken("live", 0, to={"block": 1, "force": [1, 0], "body": [1, 0]}), "live[0]"),
+    (broken("live", 0, to={"body": [1, 0, 1]}), "live[0].body = [1.0, 0.0, 1.0]"),
+    (broken("move", to=[{"block": 1, "direction": [1, 0]}]), "move[0].block = 1"),
+    (broken("move", to=[{"block": "ground"}]), "move[0].direction is missing"),
+    (broken("kind", to="pointed-arch"), "kind = 'pointed-arch': must be left out"),
+    (broken("title", to="x" * 201), "title = 'xxx"),
+    (broken("density", to=0), "density = 0"),
+]
+
+
+@pytest.mark.parametrize(("table", "said"), BROKEN, ids=[said for _, said in BROKEN])
+def test_a_broken_structure_is_refused_in_one_line(
+    table: dict[str, Any], said: str, tmp_path: Path
+):
+    path = tmp_path / "broken.json"
+    path.write_text(json.dumps(table))
+    with pytest.raises(InputError) as raised:
+        load_structure(path)
+    line = str(raised.value)
+    assert line.startswith(f"{path}: ")
+    assert said in line
+    assert "\n" not in line
+    assert len(line) < 600 + len(str(path))
+
+
+def test_the_first_of_several_wrong_entries_is_named():
+    table = broken("blocks", 1, "weight", to=-1)
+    table["blocks"][2]["mass"] = 5
+    with pytest.raises(InputError, match=r"blocks\[1\]\.weight = -1"):
+        structure_of(table)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("a.json", "{", "valid JSON"),
+        ("a.json", "[" * 100_000, "valid JSON"),
+        ("a.json", '{"friction": ' + "9" * 5000 + "}", "valid JSON"),
+        ("a.json", "[1, 2]", "a table of keys"),
+        ("a.json", '{"friction": 1, "friction": 2}', "given once"),
+        ("a.json", "\udcff", "valid JSON"),
+        ("a.toml", "friction = ", "valid TOML"),
+        ("a.toml", "x = " + "[" * 100_000, "valid TOML"),
+        ("a.txt", "{}", ".json or .toml"),
+    ],
+)
+def test_a_file_that_is_no_structure(name: str, text: str, said: str, tmp_path: Path):
+    path = tmp_path / name
+    path.write_bytes(text.encode("utf-8", "surrogateescape"))
+    with pytest.raises(InputError) as raised:
+        load_structure(path)
+    assert said in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_no_file_and_too_much_of_it(tmp_path: Path):
+    for path in (tmp_path / "none.json", tmp_path):
+        with pytest.raises(InputError, match="must be an existing structure file"):
+            load_structure(path)
+    large = tmp_path / "large.json"
+    with large.open("wb") as file:
+        file.truncate(50_000_001)
+    with pytest.raises(InputError, match="at most 50000000 bytes"):
+        load_structure(large)
+
+
+def test_more_blocks_than_allowed():
+    block = {"id": 0, "vertices": UNIT}
+    with pytest.raises(InputError, match="blocks") as raised:
+        structure_of({"friction": 1, "blocks": [block] * 100_001})
+    assert "100000" in str(raised.value)
