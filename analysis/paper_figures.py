@@ -22,7 +22,8 @@ from scipy.optimize import brentq
 from analysis.command import run
 from blocksim import Mode
 from blocksim.theory import landmarks, least_thickness, least_thicknesses, regions
-from blocksim.theory.critical import Critical, hinge_slope, inner_sliding, rotational_thrust
+from blocksim.theory.critical import Critical, inner_sliding, rotational_thrust
+from blocksim.theory.equations import hinge_slope
 from blocksim.theory.map import divide_friction, special_angles
 from blocksim.view.archfigure import arch_figure, picture_of_theory
 from blocksim.view.linemap import line_map_figure

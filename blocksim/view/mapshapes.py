@@ -12,8 +12,8 @@ from blocksim.arch import Weight
 from blocksim.assembly import Array
 from blocksim.modes import Mode
 from blocksim.theory import Curve, Landmark, regions
-from blocksim.theory.critical import ETA_MAX, rotational_thrust
-from blocksim.theory.equations import inner_friction
+from blocksim.theory.critical import rotational_thrust
+from blocksim.theory.equations import ETA_MAX, inner_friction
 from blocksim.theory.map import divide_friction, iso_half_angle, special_angles
 
 SMALLEST_MU, LARGEST_MU = 0.002, 4.0
