@@ -175,6 +175,24 @@ def first_sliding(half_angle: float, weight: str) -> mpf:
     return max(shoulder_friction(mpf(half_angle), h), inner_friction(h))
 
 
+def divide_eta(mu: float, alpha: mpf, eta: float, beta: float) -> mpf:
+    """Thickness at the divide, centreline; the shoulder asks for more above point T."""
+    h = inner_thrust(mpf(mu))
+    above = mu > theory.landmarks()["T"].mu
+    if beta == 0:
+        eta = mp.findroot(lambda e: shoulder(h, alpha, mpf(0), e, "centreline"), mpf(eta))
+        assert tangency(h, mpf(0), eta, "centreline") <= 0
+        return eta
+
+    def both(e: mpf, b: mpf) -> tuple[mpf, mpf]:
+        balance = (
+            shoulder(h, alpha, b, e, "centreline") if above else crown(h, b, e, "centreline")
+        )
+        return balance / alpha**2, tangency(h, b, e, "centreline")
+
+    return _solve(both, eta, beta, alpha)[0]
+
+
 def _rows(half_angle: float, mu: float, voussoirs: int) -> list[tuple[str, int, object]]:
     """Conditions g(eta, h, m) <= 0 at each joint of one half, by kind and joint."""
     first, count = voussoirs % 2, voussoirs // 2 + 1

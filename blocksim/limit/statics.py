@@ -246,6 +246,9 @@ def least_thickness(
     extrados = _places(angles, lower.extrados, upper.extrados)
     intrados = _places(angles, lower.intrados, upper.intrados)
     slides = _places(angles, lower.slides, upper.slides)
+    if eta == 0:
+        # Both ends of the joints are touched at once, and nothing is about to move.
+        extrados, intrados, slides = (), (), ()
     active = [
         *(ActiveJoint(angle, slides=False) for angle in extrados),
         *(ActiveJoint(angle, slides=False, intrados=True) for angle in intrados),
