@@ -19,8 +19,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from analysis.command import run
-from blocksim.arch.circular import WEIGHTS, Weight, centroid_factor
-from blocksim.arch.limit.statics import Bound, thrust_bounds
+from blocksim.arch.circular import WEIGHTS, Weight
+from blocksim.arch.limit.statics import Bound, admissible, spread_of, thrust_bounds
 from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses, regions
 from blocksim.arch.theory.map import special_angles
 from blocksim.blocks.assembly import Array
@@ -40,15 +40,14 @@ def limit_eta(half_angle: float, mu: float, weight: Weight, zooms: int) -> float
     spacing, eta = half_angle / 40, math.nan
     for _ in range(zooms):
         low, high = 0.0, 2.0
-        found = _bounds(joints, high, mu, weight)
-        if found[0].thrust > found[1].thrust:
+        if not admissible(_bounds(joints, high, mu, weight)):
             return math.nan
         while (eta := (low + high) / 2) not in (low, high):
-            lower, upper = _bounds(joints, eta, mu, weight)
-            low, high = (low, eta) if lower.thrust <= upper.thrust else (eta, high)
+            stands = admissible(_bounds(joints, eta, mu, weight))
+            low, high = (low, eta) if stands else (eta, high)
         eta = high
         found = _bounds(joints, eta, mu, weight)
-        active = {i for bound in found for i in bound[1:] if i >= 0}
+        active = {i for bound in found for i in bound[2:] if i >= 0}
         spacing /= 4
         near = [joints[i] + spacing * np.arange(-4, 5) for i in active]
         joints = np.unique(np.clip(np.concatenate([joints, *near]), 0, half_angle))
@@ -56,7 +55,7 @@ def limit_eta(half_angle: float, mu: float, weight: Weight, zooms: int) -> float
 
 
 def _bounds(joints: Array, eta: float, mu: float, weight: Weight) -> tuple[Bound, Bound]:
-    return thrust_bounds(joints, eta, mu, centroid_factor(eta, weight))
+    return thrust_bounds(joints, eta, mu, spread_of(eta, weight))
 
 
 def main(out: Path, quick: bool = False) -> dict[str, float]:

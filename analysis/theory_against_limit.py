@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 from analysis.command import run
 from blocksim.arch.circular import Weight
 from blocksim.arch.limit.bulk import (
-    factors,
     joints_of,
     least_thickness_of_joints,
-    thrust_intervals,
+    short_intervals,
+    spreads,
 )
 from blocksim.arch.theory import CriticalArrays, least_thicknesses
 from blocksim.blocks.assembly import Array
@@ -50,10 +50,11 @@ def limit_of_many(half_angle: Array, mu: Array, weight: Weight) -> tuple[Array, 
     for _ in range(ROUNDS):
         eta = least_thickness_of_joints(joints, mu, weight)
         known = np.nan_to_num(eta, nan=2.0)
-        lower, upper = thrust_intervals(joints, known, mu, factors(known, weight))
-        ends = np.clip((lower + upper) / 2, -1e3, 1e3)
+        spread = spreads(known, weight)
+        most, least = short_intervals(joints, known, mu, spread)
+        ends = np.clip(1 - (most + least) / 2, -1e3, 1e3)
         thrust = np.where(np.isnan(eta), np.nan, ends)
-        h, factor, depth = ends[:, None], factors(known, weight)[:, None], known[:, None] / 2
+        h, factor, depth = ends[:, None], 1 + spread[:, None], known[:, None] / 2
         force = h * cosine + weightless
         unforced = factor * lift - force
         few = h * np.cos(joints) + joints * np.sin(joints)

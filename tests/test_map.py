@@ -40,7 +40,8 @@ def test_special_angles_of_the_sector() -> None:
     assert hinges[1] > max(hinges[0], hinges[2])
     beside = found.zero_thrust + np.array([-1e-9, 0, 1e-9])
     modes = [least_thicknesses(angle, math.inf, "sector").mode for angle in beside]
-    assert modes == ["rrr", "rrr", "r"]
+    # The end itself is r, as the paper has it (Fig. 25).
+    assert modes == ["rrr", "r", "r"]
     assert bool(least_thicknesses(beside[1], math.inf, "sector").tied)
 
 

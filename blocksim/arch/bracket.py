@@ -20,6 +20,8 @@ from blocksim.evidence.setup import BY_RULE, Overrides, given_words
 from blocksim.evidence.trial import Held, conclude, hold, reduced_words
 from blocksim.evidence.verdict import Verdict
 
+ANY_THICKNESS = "two joints on each half, and a line of thrust through the middle of both"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Bracket:
@@ -36,9 +38,10 @@ class Bracket:
     eta_low : float or None
         Largest ratio that collapsed; None where none did.
     eta_high : float or None
-        Smallest ratio that stood; None where none up to 2 did.
+        Smallest ratio that stood, 0 where any stands; None where none up to 2 did.
     eta_limit, eta_theory : float or None
-        Exact values for the voussoirs as built and the continuous arch.
+        Exact values for the voussoirs as built and the continuous arch; `eta_limit` is 0
+        where any thickness stands (some arches of three voussoirs).
     mode, mode_limit, mode_theory : Mode or None
         As observed at `eta_low`, and exact.
     thrust, beta_r, beta_s : float or None
@@ -173,13 +176,15 @@ def bracket(
     elif rung.name == "limit":
         answer = replace(
             answer,
-            eta_low=ETA_MAX if built.eta is None else built.eta,
+            # Where any thickness stands none collapses.
+            eta_low=ETA_MAX if built.eta is None else built.eta or None,
             eta_high=built.eta,
             mode=built.mode,
             thrust=built.thrust,
             beta_r=_inner(built.hinges_intrados),
             beta_s=_inner(tuple(x for x in built.slides if x < half_angle)),
-            reason="static limit analysis of the voussoirs as built",
+            reason="static limit analysis of the voussoirs as built"
+            + (f": {ANY_THICKNESS}" if built.eta == 0 else ""),
         )
     else:
         held = partial(hold, engine=rung.name, settings=settings)

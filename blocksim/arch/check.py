@@ -32,8 +32,8 @@ class Check:
     arch : Arch
     mu : float
     eta_limit, eta_theory : float or None
-        Least thickness of the voussoirs as built and of the continuous arch; None where
-        no thickness up to 2 stands.
+        Least thickness of the voussoirs as built and of the continuous arch; 0 where any
+        thickness stands (some arches of three voussoirs), None where none up to 2 does.
     mode : Mode or None
         How it starts to collapse; None where it stands or the joints form none of the modes.
     mode_in_motion : Mode or None
@@ -160,6 +160,8 @@ def check(
 def _compare(eta: float, least: float | None, whose: str) -> tuple[Verdict, str]:
     if least is None:
         return Verdict.COLLAPSES, f"no thickness up to eta = 2 {whose} stands at this friction"
+    if least == 0:
+        return Verdict.STANDS, f"any thickness {whose} stands at this friction"
     share = eta / least - 1
     verdict = Verdict.STANDS if share >= 0 else Verdict.COLLAPSES
     side = "above" if share >= 0 else "below"

@@ -70,6 +70,8 @@ def _least_as_built(
             continue
         if least is None:
             row["error"] = "no thickness up to eta = 2 stands, of which a ratio could be taken"
+        elif least == 0:
+            row["error"] = "any thickness stands: there is none of which to take a ratio"
         elif ratio * least > ETA_MAX:
             row["error"] = f"eta = {ratio * least:.6g}: must be above 0 and at most 2"
         else:
@@ -115,7 +117,7 @@ def _bracketed(case: Case, row: Row) -> bool:
     if case.method not in {*STATIC, "auto"}:
         return False
     least = row["eta_theory" if case.method == "theory" else "eta_limit"]
-    row.update(eta_low=ETA_MAX if least is None else least, eta_high=least)
+    row.update(eta_low=ETA_MAX if least is None else least or None, eta_high=least)
     if case.method == "theory":
         row["mode"] = row["mode_theory"]
     return True

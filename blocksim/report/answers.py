@@ -104,6 +104,8 @@ def bracket_lines(answer: Bracket) -> list[str]:
     """Return a bracket in words."""
     if answer.eta_high is None:
         head = "NOTHING STANDS up to eta = 2"
+    elif answer.eta_high == 0:
+        head = "ANY THICKNESS STANDS"
     elif answer.eta_low == answer.eta_high:
         head = f"LEAST ETA {answer.eta_high:.12g}"
     else:
@@ -130,5 +132,7 @@ def bracket_lines(answer: Bracket) -> list[str]:
 
 
 def ratio(eta: float | None) -> str:
-    """Return a ratio in six digits, or a dash."""
+    """Return a ratio in six digits, "any" where every one stands, or a dash."""
+    if eta == 0:
+        return "any"
     return "-" if eta is None else f"{eta:.6g}"

@@ -178,7 +178,7 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
     middle = found.centre or found.eta_low
-    if middle is not None and found.eta_limit is not None:
+    if middle is not None and found.eta_limit:
         error = middle / found.eta_limit - 1
     miss = "; ".join(_misses(found, error, mode, below, above))
     return replace(

@@ -11,8 +11,8 @@ from blocksim.arch import theory
 from blocksim.arch.circular import Weight
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import Curve, Landmark, regions
-from blocksim.arch.theory.critical import ETA_MAX, rotational_thrust
-from blocksim.arch.theory.equations import inner_friction
+from blocksim.arch.theory.critical import rotational_thrust
+from blocksim.arch.theory.equations import ETA_MAX, inner_friction
 from blocksim.arch.theory.map import divide_friction, iso_half_angle, special_angles
 from blocksim.blocks.assembly import Array
 

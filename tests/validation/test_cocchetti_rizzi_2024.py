@@ -25,6 +25,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from analysis.paper_figures import TABLE_1
 from blocksim.arch import theory
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import equations
@@ -100,6 +101,20 @@ def test_misprint_of_figure_15() -> None:
     digits = f"{caption['eta']:.16f}"
     dropped = [digits[:i] + digits[i + 1 :] for i in range(len(digits))]
     assert str(caption["eta_as_printed"]) in dropped
+
+
+def test_misprint_of_figure_22() -> None:
+    caption = next(each for each in CAPTIONS if each["place"] == "Fig. 22 (top)")
+    phi = math.degrees(math.atan(caption["mu"]))
+    assert phi == pytest.approx(73.546, abs=5e-4)
+    assert round(phi, 1) != caption["phi_deg_as_printed"]
+
+
+def test_paper_figures_compares_with_what_is_printed() -> None:
+    for name, values in TABLE_1.items():
+        printed = TABLE[name]
+        symbols = ("eta", "mu", "alpha", "h", "beta_r", "beta_s")
+        assert values == tuple(printed[symbol] for symbol in symbols), name
 
 
 @pytest.mark.parametrize(

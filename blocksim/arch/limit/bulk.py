@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from blocksim.arch.circular import WEIGHTS, Weight
+from blocksim.arch.limit.halfplanes import sliding, turning
 from blocksim.arch.limit.statics import ETA_MAX
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require
@@ -19,16 +20,16 @@ HALVINGS = 52
 
 
 class Intervals(NamedTuple):
-    """Admissible thrusts of many arches; empty where lower > upper.
+    """Admissible thrusts of many arches; empty where most < least.
 
     Parameters
     ----------
-    lower, upper : (k,) float
-        Scaled thrusts h.
+    most, least : (k,) float
+        1 - h, of the lowest thrust and of the highest.
     """
 
-    lower: Array
-    upper: Array
+    most: Array
+    least: Array
 
 
 def which_stand(
@@ -68,8 +69,8 @@ def which_stand(
     for start in range(0, alpha.size, size):
         part = slice(start, start + size)
         a, e, m = (values[part] for values in flat)
-        lower, upper = thrust_intervals(joints_of(a, voussoirs), e, m, factors(e, weight))
-        found[part] = lower <= upper
+        most, least = short_intervals(joints_of(a, voussoirs), e, m, spreads(e, weight))
+        found[part] = most >= least
     return found.reshape(alpha.shape)
 
 
@@ -84,48 +85,36 @@ def joints_of(half_angle: Array, voussoirs: int) -> Array:
     return half_angle[:, None] * steps / voussoirs
 
 
-def factors(eta: Array, weight: Weight) -> Array:
-    """Radius of the distributed weight over the mean radius, as `centroid_factor`."""
-    return np.ones_like(eta) if weight == "centreline" else 1.0 + eta**2 / 12
+def spreads(eta: Array, weight: Weight) -> Array:
+    """Radius of the distributed weight over the mean radius, less 1, as `spread_of`."""
+    return np.zeros_like(eta) if weight == "centreline" else eta**2 / 12
 
 
-def thrust_intervals(angles: Array, depth: Array, mu: Array, factor: Array) -> Intervals:
+def short_intervals(angles: Array, depth: Array, mu: Array, spread: Array) -> Intervals:
     """Intervals of thrusts in equilibrium with strength at every joint.
 
     Parameters
     ----------
     angles : (k, j) float
         Joints of one half of each arch [rad].
-    depth, mu, factor : (k,) float
+    depth, mu, spread : (k,) float
         As in `thrust_bounds`.
 
     Returns
     -------
     Intervals
     """
-    sine, cosine = np.sin(angles), np.cos(angles)
-    vertical, lever = angles * sine, factor[:, None] * (1.0 - cosine)
-    outer, inner = (1.0 + depth / 2)[:, None], (1.0 - depth / 2)[:, None]
-    slope = (outer * cosine)[:, :, None] - (inner * cosine)[:, None, :]
-    offset = (outer * vertical - lever)[:, :, None] - (inner * vertical - lever)[:, None, :]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = -offset / slope
-    lower = np.max(np.where(slope > 0, crossing, -np.inf), axis=(1, 2))
-    upper = np.min(np.where(slope < 0, crossing, np.inf), axis=(1, 2))
+    turns = turning(angles, depth, spread)
+    most = turns.most().min(axis=(1, 2))
+    least = turns.least().max(axis=(1, 2))
     # Parallel half-planes leave nothing where the upper one is below the lower one.
-    lower[np.any((slope == 0) & (offset < 0), axis=(1, 2))] = np.inf
+    most[turns.broken().any(axis=(1, 2))] = -np.inf
     held = np.flatnonzero(np.isfinite(mu))
-    sine, cosine, angles, friction = sine[held], cosine[held], angles[held], mu[held, None]
     for sign in (1.0, -1.0):
-        rate = sign * sine - friction * cosine
-        level = angles * (sign * cosine + friction * sine)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            limit = level / rate
-        caps = np.min(np.where(rate > 0, limit, np.inf), axis=1)
-        floors = np.max(np.where(rate < 0, limit, -np.inf), axis=1)
-        upper[held] = np.minimum(upper[held], caps)
-        lower[held] = np.maximum(lower[held], floors)
-    return Intervals(lower, upper)
+        slides = sliding(angles[held], mu[held], sign)
+        most[held] = np.minimum(most[held], slides.most().min(axis=1))
+        least[held] = np.maximum(least[held], slides.least().max(axis=1))
+    return Intervals(most, least)
 
 
 def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array:
@@ -142,7 +131,7 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
     Returns
     -------
     (k,) float
-        nan where none up to 2 stands.
+        0 where any thickness stands, nan where none up to 2 does.
     """
     found = np.empty(mu.size)
     size = chunk_size(angles.shape[1])
@@ -155,13 +144,14 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
             middle = (low + high) / 2
             falls = _empty(joints, middle, friction, weight)
             low, high = np.where(falls, middle, low), np.where(falls, high, middle)
-        found[part] = np.where(never, np.nan, high)
+        always = ~_empty(joints, np.zeros_like(high), friction, weight)
+        found[part] = np.where(never, np.nan, np.where(always, 0.0, high))
     return found
 
 
 def _empty(angles: Array, eta: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
-    lower, upper = thrust_intervals(angles, eta, mu, factors(eta, weight))
-    return lower > upper
+    most, least = short_intervals(angles, eta, mu, spreads(eta, weight))
+    return most < least
 
 
 def _checked(

@@ -1,16 +1,10 @@
 """Static limit analysis of the n voussoirs, exactly as built.
 
 By symmetry two unknowns remain at the crown: the thrust ``h`` and its moment ``m``
-about the centre of the arch, both scaled (``h = H/(gamma t d r)``). At a joint at
-angle x the resultant of the thrust and of the weight between crown and joint is
-
-    N = h cos x + x sin x,    T = h sin x - x cos x,
-    M = m - h cos x - x sin x + k (1 - cos x)      (positive towards the extrados),
-
-with k = 1 for weight on the centreline, 1 + eta^2/12 for the annular sector. No tension
-asks |M| <= (eta/2) N and Coulomb friction |T| <= mu N: half-planes in (h, m).
-Eliminating m pairwise leaves an interval of h, and the arch stands by the static
-theorem where that interval is not empty.
+about the centre of the arch, both scaled (``h = H/(gamma t d r)``). No tension and Coulomb
+friction at every joint are half-planes in (h, m). Eliminating m pairwise leaves an interval
+of h (`halfplanes`), and the arch stands by the static theorem where that interval is not
+empty.
 """
 
 from __future__ import annotations
@@ -22,7 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blocksim.arch.circular import Arch, Weight, centroid_factor, crown_width
+from blocksim.arch.circular import Arch, Weight, crown_width
+from blocksim.arch.limit.halfplanes import Bounds, sliding, turning
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require_friction
@@ -37,10 +32,12 @@ HOPELESS = 1e6
 class Bound(NamedTuple):
     """One end of the interval of admissible thrusts, and what sets it.
 
-    `extrados` and `intrados` index the joints where the line of thrust touches, or
-    `slides` the joint where the line of friction does; -1 where it is not so.
+    `short` is 1 - h to its last digits, by which ends are compared. `extrados` and
+    `intrados` index the joints where the line of thrust touches, or `slides` the joint
+    where the line of friction does; -1 where it is not so.
     """
 
+    short: float
     thrust: float
     extrados: int = -1
     intrados: int = -1
@@ -54,7 +51,8 @@ class LimitState:
     Parameters
     ----------
     eta : float or None
-        Least thickness-to-radius ratio; None where none up to 2 stands.
+        Least thickness-to-radius ratio; 0 where any thickness stands (three voussoirs), None
+        where none up to 2 does.
     mode : Mode or None
         Collapse mode at that thickness (at eta = 2 where `eta` is None); None where
         the active joints form none of the seven modes.
@@ -82,7 +80,12 @@ def half_joints(half_angle: float, voussoirs: int) -> Array:
     return half_angle * (2.0 * np.arange(count) + first) / voussoirs
 
 
-def thrust_bounds(angles: Array, depth: float, mu: float, factor: float) -> tuple[Bound, Bound]:
+def spread_of(eta: float, weight: Weight) -> float:
+    """Radius of the distributed weight over the mean radius, less 1."""
+    return 0.0 if weight == "centreline" else eta**2 / 12
+
+
+def thrust_bounds(angles: Array, depth: float, mu: float, spread: float) -> tuple[Bound, Bound]:
     """Interval of thrusts in equilibrium with strength at every joint.
 
     Parameters
@@ -93,54 +96,52 @@ def thrust_bounds(angles: Array, depth: float, mu: float, factor: float) -> tupl
         Thickness over radius that the line of thrust may use.
     mu : float
         Friction coefficient, inf allowed.
-    factor : float
-        Radius of the distributed weight over the mean radius.
+    spread : float
+        Radius of the distributed weight over the mean radius, less 1.
 
     Returns
     -------
     lower, upper : Bound
-        Empty where ``lower.thrust > upper.thrust``.
+        Empty where ``lower.short < upper.short``.
     """
-    sine, cosine = np.sin(angles), np.cos(angles)
-    vertical, lever = angles * sine, factor * (1.0 - cosine)
-    # Upper half-planes m <= slope h + offset, lower ones m >= the same with 1 - depth/2.
-    outer, inner = 1.0 + depth / 2, 1.0 - depth / 2
-    slope = outer * cosine[:, None] - inner * cosine[None, :]
-    offset = (outer * vertical - lever)[:, None] - (inner * vertical - lever)[None, :]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = -offset / slope
-    lower_pairs = np.where(slope > 0, crossing, -np.inf)
-    upper_pairs = np.where(slope < 0, crossing, np.inf)
-    if np.any((slope == 0) & (offset < 0)):
-        return Bound(math.inf), Bound(-math.inf)
-    low = np.unravel_index(int(np.argmax(lower_pairs)), slope.shape)
-    high = np.unravel_index(int(np.argmin(upper_pairs)), slope.shape)
-    lower = Bound(float(lower_pairs[low]), int(low[0]), int(low[1]))
-    upper = Bound(float(upper_pairs[high]), int(high[0]), int(high[1]))
-    if math.isinf(mu):
-        return lower, upper
-    for sign in (1.0, -1.0):
-        # sign * T <= mu N
-        rate = sign * sine - mu * cosine
-        level = angles * (sign * cosine + mu * sine)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            limit = level / rate
-        caps = np.where(rate > 0, limit, np.inf)
-        floors = np.where(rate < 0, limit, -np.inf)
-        cap, floor = int(np.argmin(caps)), int(np.argmax(floors))
-        if caps[cap] < upper.thrust:
-            upper = Bound(float(caps[cap]), slides=cap)
-        if floors[floor] > lower.thrust:
-            lower = Bound(float(floors[floor]), slides=floor)
+    joints = angles[None]
+    turns = turning(joints, np.array([depth]), np.array([spread]))
+    if turns.broken().any():
+        return Bound(-math.inf, math.inf), Bound(math.inf, -math.inf)
+    lower, upper = Bound(math.inf, -math.inf), Bound(-math.inf, math.inf)
+    conditions = [turns]
+    if math.isfinite(mu):
+        conditions += [sliding(joints, np.array([mu]), sign) for sign in (1.0, -1.0)]
+    for bounds in conditions:
+        most, least = bounds.most(), bounds.least()
+        low = np.unravel_index(int(np.argmin(most)), most.shape)
+        high = np.unravel_index(int(np.argmax(least)), least.shape)
+        if most[low] < lower.short:
+            lower = _bound(bounds, float(most[low]), low)
+        if least[high] > upper.short:
+            upper = _bound(bounds, float(least[high]), high)
     return lower, upper
+
+
+def _bound(bounds: Bounds, short: float, place: tuple[np.intp, ...]) -> Bound:
+    where = tuple(int(index) for index in place)
+    thrust = 1 - short if short < 0.5 else bounds.thrust(where)
+    if len(where) == 3:
+        return Bound(short, thrust, extrados=where[1], intrados=where[2])
+    return Bound(short, thrust, slides=where[1])
+
+
+def admissible(bounds: tuple[Bound, Bound]) -> bool:
+    """Whether any thrust is between two bounds."""
+    lower, upper = bounds
+    return lower.short >= upper.short
 
 
 def stands(arch: Arch, mu: float) -> bool:
     """Tell whether the arch has an equilibrium within strength (static theorem)."""
-    lower, upper = thrust_bounds(
-        half_joints(arch.half_angle, arch.voussoirs), arch.eta, mu, arch.centroid_factor
-    )
-    return lower.thrust <= upper.thrust
+    angles = half_joints(arch.half_angle, arch.voussoirs)
+    spread = spread_of(arch.eta, arch.weight)
+    return admissible(thrust_bounds(angles, arch.eta, mu, spread))
 
 
 def slack(arch: Arch, mu: float) -> float:
@@ -181,20 +182,20 @@ def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
     share, bounds = _least_share(arch, mu, ROUGHLY)
     if math.isinf(share):
         return ()
-    places = {place for bound in bounds for place in bound[1:]}
+    places = {place for bound in bounds for place in bound[2:]}
     return tuple(sorted(places - {-1}))
 
 
 def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[Bound, Bound]]:
     """Return the least share of thickness and friction with which an arch stands."""
     angles = half_joints(arch.half_angle, arch.voussoirs)
+    spread = spread_of(arch.eta, arch.weight)
 
     def bounds(share: float) -> tuple[Bound, Bound]:
-        return thrust_bounds(angles, share * arch.eta, share * mu, arch.centroid_factor)
+        return thrust_bounds(angles, share * arch.eta, share * mu, spread)
 
     def feasible(share: float) -> bool:
-        lower, upper = bounds(share)
-        return lower.thrust <= upper.thrust
+        return admissible(bounds(share))
 
     low, high = 0.0, 1.0
     while not feasible(high):
@@ -233,17 +234,22 @@ def least_thickness(
     angles = half_joints(half_angle, voussoirs)
 
     def bounds(eta: float) -> tuple[Bound, Bound]:
-        return thrust_bounds(angles, eta, mu, centroid_factor(eta, weight))
+        return thrust_bounds(angles, eta, mu, spread_of(eta, weight))
 
     def feasible(eta: float) -> bool:
-        lower, upper = bounds(eta)
-        return lower.thrust <= upper.thrust
+        return admissible(bounds(eta))
 
-    eta = _bisect(feasible, 0.0, ETA_MAX) if feasible(ETA_MAX) else None
+    if feasible(0.0):
+        eta = 0.0
+    else:
+        eta = _bisect(feasible, 0.0, ETA_MAX) if feasible(ETA_MAX) else None
     lower, upper = bounds(ETA_MAX if eta is None else eta)
     extrados = _places(angles, lower.extrados, upper.extrados)
     intrados = _places(angles, lower.intrados, upper.intrados)
     slides = _places(angles, lower.slides, upper.slides)
+    if eta == 0:
+        # Both ends of the joints are touched at once, and nothing is about to move.
+        extrados, intrados, slides = (), (), ()
     active = [
         *(ActiveJoint(angle, slides=False) for angle in extrados),
         *(ActiveJoint(angle, slides=False, intrados=True) for angle in intrados),

@@ -1,7 +1,8 @@
 """Least thickness of the continuous arch over arrays of half-angle and friction.
 
-The same reasoning as in `critical`, arranged for many arches at once; inner hinges and
-the rotational mode are in `rotation`.
+Without friction the thrust would be that of the purely rotational mode (`rotation`).
+Friction confines it to an interval (`sliding`); the least thickness is found at the thrust
+of that interval nearest to the rotational one, and where it lies names the mode.
 """
 
 from __future__ import annotations
@@ -14,16 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from blocksim.arch.circular import WEIGHTS, Weight
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory.critical import CROWN_TIE, ETA_MAX, TIE
-from blocksim.arch.theory.rotation import (
-    inner_hinges,
-    rotational_mode,
-    sine_series,
-    widest_rotational,
-)
+from blocksim.arch.theory.equations import ETA_MAX
+from blocksim.arch.theory.rotation import inner_hinges, rotational_mode, widest_rotational
+from blocksim.arch.theory.sliding import Thrusts, excess, thrust_intervals
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require
 
+TIE = 1e-12
+"""Angles closer than this coincide, and thrusts whose h and 1 - h differ relatively by less."""
+CROWN_TIE = 1e-6
+"""Inner hinges closer to the crown are at it: the angle goes as the root of a thrust."""
 CHUNK = 8192
 """Points worked on at once; their temporaries stay in the cache."""
 
@@ -122,106 +123,78 @@ def least_thicknesses(
         part = slice(start, start + CHUNK)
         numbers[:, part], modes[part] = _solve(alpha[part], friction[part], weight)
     eta, thrust, beta_r, beta_s = numbers.reshape(4, *shape)
+    # The border is reached where round-off goes beyond it.
+    eta = np.where(eta <= ETA_MAX * (1 + TIE), np.minimum(eta, ETA_MAX), np.nan)
     return CriticalArrays(
         eta=eta, modes=modes.reshape(shape), thrust=thrust, beta_r=beta_r, beta_s=beta_s
     )
 
 
-def _solve(alpha: Array, mu: Array, weight: Weight) -> tuple[Array, NDArray[np.uint8]]:
-    """Solve one chunk: rows eta, thrust, beta_r, beta_s, and the modes as bits."""
-    lower, upper, beta_s = thrust_intervals(alpha, mu)
-    short, eta, square = rotational_mode(alpha, weight)
-    free = 1.0 - short
-    stands = lower <= upper + TIE
-    thrust = np.where(stands, np.minimum(np.maximum(free, lower), upper), np.nan)
-    # Below the rotational thrust the crown asks for more thickness, above it the shoulder.
-    for moved, at_crown in ((thrust < free, True), (thrust > free, False)):
-        where = np.flatnonzero(moved)
-        if where.size:
-            extrados = np.zeros(where.size) if at_crown else alpha[where]
-            eta[where], square[where] = inner_hinges(
-                1.0 - thrust[where], extrados, alpha[where], weight
-            )
-    beta_r = np.where(stands, np.sqrt(square), np.nan)
-    left = widest_rotational(weight) - alpha
-    modes = _modes(free, left, thrust, lower, upper, beta_r, beta_s)
-    eta = np.where(stands & (eta <= ETA_MAX * (1 + TIE)), np.minimum(eta, ETA_MAX), np.nan)
-    inner = BIT[Mode.RS] | BIT[Mode.RRS] | BIT[Mode.RSR] | BIT[Mode.SS]
-    beta_s = np.where(modes & inner, beta_s, np.nan)
-    return np.stack([eta, thrust, beta_r, beta_s]), modes
-
-
-def _modes(
-    free: Array,
-    short_of_overturning: Array,
-    thrust: Array,
-    lower: Array,
-    upper: Array,
-    beta_r: Array,
-    beta_s: Array,
-) -> NDArray[np.uint8]:
-    """Name the modes by where the thrust lies; comparisons with nan are False."""
-    turns = np.abs(thrust - free) <= TIE
-    inner = (lower >= free - TIE) & (thrust > TIE)
-    at_crown = beta_r <= CROWN_TIE
-    below = beta_r >= beta_s - TIE
-    above = (beta_r <= beta_s + TIE) & (beta_r > 0)
-    conditions = {
-        # The thrust falls to nothing like a square: it is told from 0 by the angle.
-        Mode.RRR: turns & (short_of_overturning >= -TIE),
-        Mode.R: turns & (short_of_overturning <= TIE),
-        Mode.SRR: (upper <= free + TIE) & ~np.isnan(thrust),
-        Mode.RS: inner & at_crown,
-        Mode.RRS: inner & ~at_crown & below,
-        Mode.RSR: inner & above,
-        Mode.SS: upper - lower <= TIE,
-    }
-    modes = np.zeros(free.shape, dtype=np.uint8)
-    for mode, holds in conditions.items():
-        modes |= np.where(holds, BIT[mode], np.uint8(0))
-    return modes
-
-
-def inner_slidings(mu: Array) -> tuple[Array, Array]:
-    """Thrust and angle at which an inner joint slides, of many frictions.
-
-    Kepler's equation of `inner_sliding`, in E below mu = 1 and in pi - E above.
+def stand_at(eta: Array, alpha: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
+    """Tell which arches stand at given ratios, with nothing allowed for round-off.
 
     Parameters
     ----------
-    mu : (k,) float
-        Friction coefficients, above 0, inf allowed.
+    eta, alpha, mu : (k,) float
+        As in `least_thicknesses`, unchecked.
+    weight : {"centreline", "sector"}
 
     Returns
     -------
-    thrust, beta_s : (k,) float
+    (k,) bool
     """
-    rough = mu < 1.0
-    target = 2 * np.arctan(np.where(rough, mu, 1 / mu))
-    # E - sin E = E^3/6 (1 - E^2/20 ...) and d + sin d = 2 d - d^3/6 ...
-    root = np.cbrt(6 * target)
-    half = target / 2
-    angle = np.where(rough, root * (1 + root**2 / 60), half + half**3 / 12)
-    sign = np.where(rough, -1.0, 1.0)
-    for _ in range(4):
-        sine, cosine = np.sin(angle), np.cos(angle)
-        square = angle * angle
-        value = np.where(rough, angle * square * sine_series(square), angle + sine) - target
-        slope = np.where(rough, 2 * np.sin(angle / 2) ** 2, 1 + cosine)
-        # Halley's step; the second derivative is -sign sin.
-        angle = angle - value / (slope + sign * sine * value / (2 * slope))
-    thrust = np.where(rough, np.cos(angle / 2), np.sin(angle / 2)) ** 2
-    return thrust, np.sin(angle) / 2
+    found = np.empty(alpha.size, dtype=bool)
+    for start in range(0, alpha.size, CHUNK):
+        part = slice(start, start + CHUNK)
+        lower, upper, _ = thrust_intervals(alpha[part], mu[part])
+        enough = _solve(alpha[part], mu[part], weight)[0][0] <= eta[part]  # False for nan
+        found[part] = enough & (excess(upper, lower) >= 0)
+    return found
 
 
-def thrust_intervals(alpha: Array, mu: Array) -> tuple[Array, Array, Array]:
-    """Give the thrusts that friction allows, as `thrust_interval`, and the sliding angle."""
-    friction_angle = np.arctan(mu)
-    lower, beta_s = inner_slidings(mu)
-    flat = np.flatnonzero(beta_s > alpha)
-    lower[flat] = alpha[flat] / np.tan(alpha[flat] + friction_angle[flat])
-    excess = alpha - friction_angle
-    upper = np.full(alpha.shape, np.inf)
-    held = excess > 0
-    upper[held] = alpha[held] / np.tan(excess[held])
-    return lower, upper, beta_s
+def _solve(alpha: Array, mu: Array, weight: Weight) -> tuple[Array, NDArray[np.uint8]]:
+    """Solve one chunk: rows eta (beyond 2, too), thrust, beta_r, beta_s; modes as bits."""
+    lower, upper, beta_s = thrust_intervals(alpha, mu)
+    free, eta, square = rotational_mode(alpha, weight)
+    over, under, room = excess(lower, free), excess(upper, free), excess(upper, lower)
+    stands = room >= -_tie(lower)
+    # Below the rotational thrust the crown asks for more thickness, above it the shoulder.
+    at_crown = under < 0
+    at_shoulder = (over > 0) & ~at_crown
+    thrust, short = (
+        np.where(at_crown, most, np.where(at_shoulder, least, unforced))
+        for least, most, unforced in zip(lower, upper, free, strict=True)
+    )
+    for moved, extrados in ((at_crown, 0 * alpha), (at_shoulder, alpha)):
+        where = np.flatnonzero(moved & stands)
+        if where.size:
+            eta[where], square[where] = inner_hinges(
+                short[where], extrados[where], alpha[where], weight
+            )
+    eta, thrust, beta_r = (
+        np.where(stands, value, np.nan) for value in (eta, thrust, np.sqrt(square))
+    )
+    left = widest_rotational(weight) - alpha
+    tie = _tie(free)
+    inner = (over >= -tie) & (thrust > 0)
+    turns = (over <= tie) & (under >= -tie) & stands
+    conditions = {
+        # The thrust falls to nothing like a square: it is told from 0 by the angle.
+        Mode.RRR: turns & (left > TIE),
+        Mode.R: turns & (left <= TIE),
+        Mode.SRR: (under <= tie) & stands,
+        Mode.RS: inner & (beta_r <= CROWN_TIE),
+        Mode.RRS: inner & (beta_r > CROWN_TIE) & (beta_r >= beta_s - TIE),
+        Mode.RSR: inner & (beta_r > 0) & (beta_r <= beta_s + TIE),
+        Mode.SS: room <= _tie(lower),
+    }
+    modes = np.zeros(alpha.shape, dtype=np.uint8)
+    for mode, holds in conditions.items():
+        modes |= np.where(holds, BIT[mode], np.uint8(0))
+    slides = BIT[Mode.RS] | BIT[Mode.RRS] | BIT[Mode.RSR] | BIT[Mode.SS]
+    beta_s = np.where(modes & slides, beta_s, np.nan)
+    return np.stack([eta, thrust, beta_r, beta_s]), modes
+
+
+def _tie(thrusts: Thrusts) -> Array:
+    return TIE * np.minimum(np.abs(thrusts.thrust), thrusts.short)

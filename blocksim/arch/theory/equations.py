@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from blocksim.arch.circular import Weight
+from blocksim.arch.circular import Weight, centroid_factor
 from blocksim.blocks.assembly import Array
 
 Value = float | Array
 
+ETA_MAX = 2.0
+"""Largest thickness ratio: the intrados has shrunk to the centre."""
 BEYOND = 4.0
 """Stands for a thickness ratio that does not exist; ratios end at 2."""
 
@@ -102,3 +104,24 @@ def touching_eta(
     root = force**2 - 4 / 3 * drop * gap
     eta = 4 * gap / (force + np.sqrt(np.maximum(root, 0.0)))
     return np.where((root < 0) & (gap > 0), np.maximum(eta, BEYOND), eta)[()]
+
+
+def hinge_slope(thrust: float, extrados: float, beta: float, weight: Weight) -> float:
+    """Tell on which side of beta the intrados asks for more thickness.
+
+    It is h_e - h of (4), times 2 - eta, with the weight at its own radius.
+
+    Parameters
+    ----------
+    thrust, extrados, beta : float
+        h; angles of the extrados hinge and of the place asked about [rad].
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    float
+        Positive where `touching_eta` grows with beta, 0 at the inner hinge.
+    """
+    eta = float(touching_eta(thrust, extrados, beta, weight))
+    turn = 1.0 + (beta / float(np.tan(beta)) if beta > 0 else 1.0) - thrust
+    return turn * (2.0 - eta) - 2.0 * centroid_factor(eta, weight)

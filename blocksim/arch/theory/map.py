@@ -11,20 +11,19 @@ against arctan mu, it is in sight.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from blocksim.arch.circular import WEIGHTS, Weight, centroid_factor
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory.arrays import BIT, least_thicknesses, names_of, thrust_intervals
-from blocksim.arch.theory.critical import ETA_MAX, TINY
-from blocksim.arch.theory.equations import shape
+from blocksim.arch.theory.arrays import BIT, least_thicknesses, names_of, stand_at
+from blocksim.arch.theory.equations import ETA_MAX, shape
 from blocksim.arch.theory.regions import Curve, divide_half_angle
+from blocksim.arch.theory.roots import root
 from blocksim.arch.theory.rotation import rotational_mode
+from blocksim.arch.theory.sliding import excess, thrust_intervals
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require
 
@@ -112,15 +111,12 @@ def at_points(eta: ArrayLike, mu: ArrayLike, weight: Weight = "centreline") -> M
     low, high = np.zeros(ratio.shape), np.full(ratio.shape, math.pi)
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        lower, upper, _ = thrust_intervals(middle, friction)
-        enough = least_thicknesses(middle, friction, weight).eta <= ratio  # False for nan
-        # The slack that counts as a tie would lead beyond the divide.
-        enough &= lower <= upper
+        enough = stand_at(ratio, middle, friction, weight)
         low, high = np.where(enough, middle, low), np.where(enough, high, middle)
     critical = least_thicknesses(low, friction, weight)
     # On the left of the divide it is friction that stops wider arches, whatever their eta.
     lower, upper, _ = thrust_intervals(high, friction)
-    slides = lower > upper
+    slides = excess(upper, lower) < 0
     spare = slides & (critical.eta < ratio - ON_DIVIDE)
     modes = np.where(spare, BIT[Mode.SS], critical.modes)
     return MapPoints(half_angle=low.reshape(shape_asked), modes=modes.reshape(shape_asked))
@@ -141,7 +137,7 @@ def divide_friction(half_angle: float) -> float:
     require(0.01 <= half_angle <= 3.0, "half_angle", half_angle, "from 0.01 to 3")
 
     # Friction goes like the cube of a small half-angle: look for its logarithm.
-    angle = _root(
+    angle = root(
         lambda log: divide_half_angle(math.tan(math.exp(log))) - half_angle,
         math.log(1e-9),
         math.log(math.pi / 2 - 1e-4),
@@ -188,7 +184,7 @@ def special_angles(weight: Weight = "centreline") -> SpecialAngles:
 def _overturning(eta: float, weight: Weight) -> float:
     """Half-angle that overturns without thrust: A = 2 kappa/(2 + eta), (3)."""
     level = 2 * centroid_factor(eta, weight) / (2 + eta)
-    return _root(lambda angle: float(shape(angle)) - level, 1.0, 3.1)
+    return root(lambda angle: float(shape(angle)) - level, 1.0, 3.1)
 
 
 def _widest_hinge(weight: Weight) -> tuple[float, float]:
@@ -200,11 +196,11 @@ def _widest_hinge(weight: Weight) -> tuple[float, float]:
             f, g = sine + beta * cosine, beta + sine * cosine
             return f * f - 2 * g * sine + sine * sine
 
-        beta = _root(discriminant, 0.5, 1.5)
+        beta = root(discriminant, 0.5, 1.5)
         sine, cosine = math.sin(beta), math.cos(beta)
         f, g = sine + beta * cosine, beta + sine * cosine
         level = g * f / (sine * (2 * g - sine))
-        return _root(lambda angle: float(shape(angle)) - level, 1.0, 3.1), beta
+        return root(lambda angle: float(shape(angle)) - level, 1.0, 3.1), beta
 
     def slope(angle: float) -> float:
         step = 1e-3
@@ -215,9 +211,5 @@ def _widest_hinge(weight: Weight) -> tuple[float, float]:
         ahead, behind = np.split(rotational_mode(near, weight)[2], 2)
         return float(np.dot(weights, ahead - behind))
 
-    angle = _root(slope, 1.8, 2.5)
+    angle = root(slope, 1.8, 2.5)
     return angle, math.sqrt(float(rotational_mode(np.array([angle]), weight)[2][0]))
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    return float(brentq(function, low, high, xtol=1e-300, rtol=TINY, maxiter=500))

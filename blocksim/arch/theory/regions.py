@@ -10,21 +10,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
-from scipy.optimize import brentq
+from numpy.typing import ArrayLike
 
 from blocksim.arch.circular import Weight
-from blocksim.arch.theory.critical import (
-    ETA_MAX,
-    TINY,
-    hinge_slope,
-    inner_hinge,
-    inner_sliding,
-    rotational_thrust,
+from blocksim.arch.theory.critical import inner_sliding, rotational_thrust
+from blocksim.arch.theory.equations import ETA_MAX, hinge_slope
+from blocksim.arch.theory.roots import root
+from blocksim.arch.theory.rotation import inner_hinges, rotational_mode, widest_rotational
+from blocksim.arch.theory.sliding import (
+    Thrusts,
+    inner_frictions,
+    inner_slidings,
+    shoulder_frictions,
+    shoulder_slip,
 )
-from blocksim.arch.theory.equations import inner_friction, shoulder_friction
 from blocksim.blocks.assembly import Array
+from blocksim.common.checks import require
 
 WIDE_ARCH = 2.3
 """Half-angle below which no hinge comes near the crown [rad]."""
@@ -64,14 +68,32 @@ class Curve:
 
 
 def divide_half_angle(mu: float) -> float:
-    """Half-angle at which shoulder and inner joint slide together, (8) and (9) [rad]."""
-    thrust, friction_angle = inner_sliding(mu)[0], math.atan(mu)
+    """Half-angle at which shoulder and inner joint slide together, (8) and (9) [rad].
 
-    def shoulder(half_angle: float) -> float:
-        excess = half_angle - friction_angle
-        return thrust * math.sin(excess) - half_angle * math.cos(excess)
+    Parameters
+    ----------
+    mu : float
+        Friction coefficient, above 0 and finite.
 
-    return _root(shoulder, friction_angle, friction_angle + math.pi / 2)
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    require(0 < mu < math.inf, "mu", mu, "above 0 and finite")
+    thrusts, friction_angle = _inner_thrusts(mu), math.atan(mu)
+    short = float(thrusts.short[0])
+    if short > 0.5:
+        # Here it is h that is small.
+        thrust = float(thrusts.thrust[0])
+        return root(
+            lambda a: thrust * math.sin(a - friction_angle) - a * math.cos(a - friction_angle),
+            friction_angle,
+            friction_angle + math.pi / 2,
+        )
+    return root(
+        lambda a: shoulder_slip(a, mu, short), friction_angle, friction_angle + math.pi / 2
+    )
 
 
 def at_inner_sliding(mu: float, half_angle: float, weight: Weight) -> tuple[float, float]:
@@ -80,9 +102,22 @@ def at_inner_sliding(mu: float, half_angle: float, weight: Weight) -> tuple[floa
     Returns
     -------
     eta, beta_r : float
+        The thickness may exceed 2, and then no arch has it.
     """
-    thrust, _ = inner_sliding(mu)
-    return max(inner_hinge(thrust, end, half_angle, weight) for end in (0.0, half_angle))
+    return _thickest(_inner_thrusts(mu).short, np.array([half_angle]), weight)
+
+
+def _thickest(short: Array, half_angle: Array, weight: Weight) -> tuple[float, float]:
+    """Larger of the thicknesses that crown and shoulder ask for, with its inner hinge."""
+    found: list[tuple[float, float]] = []
+    for extrados in (0 * half_angle, half_angle):
+        eta, square = inner_hinges(short, extrados, half_angle, weight)
+        found.append((float(eta[0]), math.sqrt(float(square[0]))))
+    return max(found)
+
+
+def _inner_thrusts(mu: float) -> Thrusts:
+    return inner_slidings(np.array([mu]))[0]
 
 
 def landmarks(weight: Weight = "centreline") -> dict[str, Landmark]:
@@ -99,7 +134,11 @@ def landmarks(weight: Weight = "centreline") -> dict[str, Landmark]:
     -------
     dict of str to Landmark
     """
+    return dict(_landmarks(weight))
 
+
+@cache
+def _landmarks(weight: Weight) -> dict[str, Landmark]:
     def triple(mu: float) -> float:
         return rotational_thrust(divide_half_angle(mu), weight) - inner_sliding(mu)[0]
 
@@ -112,13 +151,13 @@ def landmarks(weight: Weight = "centreline") -> dict[str, Landmark]:
     def border(mu: float) -> float:
         return at_inner_sliding(mu, divide_half_angle(mu), weight)[0] - ETA_MAX
 
-    mu_t = _root(triple, 1.0, 1.8)
-    mu_j = _root(junction, mu_t, 2.5)
+    mu_t = root(triple, 1.0, 1.8)
+    mu_j = root(junction, mu_t, 2.5)
     found = {
         "T": mu_t,
-        "S": _root(shift, mu_t, mu_j),
+        "S": root(shift, mu_t, mu_j),
         "J": mu_j,
-        "B": _root(border, mu_j, 4.0),
+        "B": root(border, mu_j, 4.0),
     }
     return {name: _landmark(name, mu, weight) for name, mu in found.items()}
 
@@ -139,43 +178,126 @@ def _landmark(name: str, mu: float, weight: Weight) -> Landmark:
     )
 
 
-def divide(mu: Array, weight: Weight = "centreline") -> Curve:
-    """Line on the left of which no thickness stands (modes ss | others)."""
-    eta = [at_inner_sliding(m, divide_half_angle(m), weight)[0] for m in mu.tolist()]
-    return Curve(mu=mu, eta=np.array(eta))
+def divide(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
+    """Line on the left of which no thickness stands (modes ss | others).
+
+    Parameters
+    ----------
+    mu : (k,) float
+        Friction coefficients, above 0 and at most that of point B.
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    InputError
+        If a friction coefficient is out of range.
+    """
+    end = landmarks(weight)["B"].mu
+    friction = _within(mu, 0.0, end, f"above 0 and at most {end:.10g}, where eta is 2")
+    eta = [at_inner_sliding(m, divide_half_angle(m), weight)[0] for m in friction.tolist()]
+    return Curve(mu=friction, eta=np.minimum(eta, ETA_MAX))
 
 
-def first_sliding(half_angle: Array, weight: Weight = "centreline") -> Curve:
-    """Line on the right of which no joint slides (rrr | srr below T, rrs above)."""
-    mu: list[float] = []
-    eta: list[float] = []
-    for alpha in half_angle.tolist():
-        thrust = rotational_thrust(alpha, weight)
-        mu.append(max(float(shoulder_friction(alpha, thrust)), float(inner_friction(thrust))))
-        eta.append(max(inner_hinge(thrust, end, alpha, weight)[0] for end in (0.0, alpha)))
-    return Curve(mu=np.array(mu), eta=np.array(eta))
+def first_sliding(half_angle: ArrayLike, weight: Weight = "centreline") -> Curve:
+    """Line on the right of which no joint slides (rrr | srr below T, rrs above).
+
+    Parameters
+    ----------
+    half_angle : (k,) float
+        Half-angles above 0 and below alpha_l, where the purely rotational mode ends [rad].
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    InputError
+        If a half-angle is out of range.
+    """
+    alpha, end = np.asarray(half_angle, dtype=float), widest_rotational(weight)
+    for angle in alpha.flat:
+        allowed = f"above 0 and below {end:.10g}, where the arch overturns without thrust"
+        require(0 < angle < end, "half_angle", float(angle), allowed)
+    thrusts, eta, _ = rotational_mode(alpha, weight)
+    shoulder, inner = shoulder_frictions(alpha, thrusts.short), inner_frictions(thrusts)
+    return Curve(mu=np.maximum(shoulder, inner), eta=eta)
 
 
-def equal_angles(mu: Array, weight: Weight = "centreline") -> Curve:
-    """Line beta_r = beta_s, from S to the right (rrs | rsr)."""
-    return _inner_line(_equal_angles, mu, weight)
+def equal_angles(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
+    """Line beta_r = beta_s, from S to the right (rrs | rsr).
+
+    Parameters
+    ----------
+    mu : (k,) float
+        Friction coefficients, that of point S or more, finite.
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    InputError
+        If a friction coefficient is out of range.
+    """
+    return _inner_line("S", _equal_angles, mu, weight)
 
 
-def crown_hinge(mu: Array, weight: Weight = "centreline") -> Curve:
-    """Line beta_r = 0, from J to the right (rsr | rs)."""
-    return _inner_line(_crown_hinge, mu, weight)
+def crown_hinge(mu: ArrayLike, weight: Weight = "centreline") -> Curve:
+    """Line beta_r = 0, from J to the right (rsr | rs).
+
+    Parameters
+    ----------
+    mu : (k,) float
+        Friction coefficients, that of point J or more, finite.
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    InputError
+        If a friction coefficient is out of range.
+    """
+    return _inner_line("J", _crown_hinge, mu, weight)
 
 
 def _inner_line(
-    condition: Callable[[float, float, Weight], float], mu: Array, weight: Weight
+    start: str,
+    condition: Callable[[float, float, Weight], float],
+    mu: ArrayLike,
+    weight: Weight,
 ) -> Curve:
+    point = landmarks(weight)[start]
+    allowed = f"at least {point.mu:.10g}, where the line starts at {start}, and finite"
+    friction = _within(mu, math.nextafter(point.mu, 0), math.nextafter(math.inf, 0), allowed)
     eta: list[float] = []
-    for m in mu.tolist():
-        alpha = _root(
-            lambda angle, m=m: condition(m, angle, weight), WIDE_ARCH, divide_half_angle(m)
-        )
+    for m in friction.tolist():
+        end = divide_half_angle(m)
+        if condition(m, end, weight) * condition(m, WIDE_ARCH, weight) >= 0:
+            # At its start, to round-off, the line is on the divide.
+            alpha = end
+        else:
+            alpha = root(lambda angle, m=m: condition(m, angle, weight), WIDE_ARCH, end)
         eta.append(at_inner_sliding(m, alpha, weight)[0])
-    return Curve(mu=mu, eta=np.array(eta))
+    return Curve(mu=friction, eta=np.array(eta))
+
+
+def _within(mu: ArrayLike, above: float, upto: float, allowed: str) -> Array:
+    """Friction coefficients as an array, all within a range."""
+    friction = np.asarray(mu, dtype=float)
+    for m in friction.flat:
+        require(above < m <= upto, "mu", float(m), allowed)
+    return friction
 
 
 def _equal_angles(mu: float, half_angle: float, weight: Weight) -> float:
@@ -187,7 +309,3 @@ def _equal_angles(mu: float, half_angle: float, weight: Weight) -> float:
 def _crown_hinge(mu: float, half_angle: float, weight: Weight) -> float:
     """Slope of the thickness at the crown; 0 where the hinge just reaches it."""
     return hinge_slope(inner_sliding(mu)[0], half_angle, 0.0, weight)
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    return float(brentq(function, low, high, xtol=1e-300, rtol=TINY, maxiter=500))

@@ -1,33 +1,32 @@
 """Inner hinges and the purely rotational mode, over arrays.
 
+At a given thrust h the arch needs the larger of two thicknesses: one, which falls with h,
+keeps the line of thrust between crown extrados and an intrados hinge; the other, which
+grows with h, between shoulder extrados and an intrados hinge. They meet at the thrust of
+the purely rotational mode.
+
 The thrust enters as its shortfall v = 1 - h and the inner hinge as y = beta^2, so that
-nothing cancels in flat arches: with
-
-    1 - cos beta = y C(y),    beta sin beta = y S(y),    C = 1/2 - y R(y),
-    beta sin beta - 2 (1 - cos beta) = -y^2 P(y),
-
-P and R are entire functions whose power series reach the last bit up to beta = pi. The
+nothing cancels in flat arches; C, S, P and R are the functions of `series`. The
 rotational mode depends on the half-angle alone and is interpolated between Chebyshev
 nodes; its hinge goes to the crown like a square root, y does not.
 """
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.optimize import brentq
 
 from blocksim.arch.circular import Weight
-from blocksim.arch.theory.critical import ETA_MAX
-from blocksim.arch.theory.equations import BEYOND
+from blocksim.arch.theory.equations import BEYOND, ETA_MAX
+from blocksim.arch.theory.roots import root
+from blocksim.arch.theory.sliding import Thrusts
 from blocksim.blocks.assembly import Array
+from blocksim.common.series import p_series, r_series
 
-TERMS = 14
 EDGES = (0.0, 0.75, 0.94, 0.985, 0.996, 1.0)
 """Pieces of the interpolation in (alpha/alpha_l)^2: a branch point lies just beyond."""
 NODES = 36
@@ -36,10 +35,6 @@ ROUNDS = 100
 """Newton steps allowed; halving alone would need about as many."""
 SETTLED = 1e-9
 """Relative step after which Newton's method, being quadratic, has reached round-off."""
-ROUND_OFF = 4 * np.finfo(float).eps
-
-_R = [(-1) ** k / math.factorial(2 * k) for k in range(2, TERMS)]
-_P = [(-1) ** k * (2 * k - 2) / math.factorial(2 * k) for k in range(2, TERMS)]
 
 
 class _Rotational(NamedTuple):
@@ -51,11 +46,6 @@ class _Rotational(NamedTuple):
 
     widest: float
     pieces: list[Array]
-
-
-def sine_series(y: Array) -> Array:
-    """Evaluate (x - sin x)/x^3 at y = x^2 without cancellation."""
-    return 2 * _series(_R, y) + _series(_P, y)
 
 
 def inner_hinges(
@@ -107,23 +97,15 @@ def inner_hinges(
     return _touching(np.where(at_crown, start, square), short, far, weight)[0], square
 
 
-def _series(coefficients: list[float], y: Array) -> Array:
-    value = np.full_like(y, coefficients[-1])
-    for coefficient in reversed(coefficients[:-1]):
-        value *= y
-        value += coefficient
-    return value
-
-
 def _touching(
     y: Array, short: Array, far: Array, weight: Weight
 ) -> tuple[Array, Array, Array, tuple[Array, Array, Array, Array]]:
     """Give `touching_eta` in y, with its force, its drop, and R, P, C, S at y."""
-    r, p = _series(_R, y), _series(_P, y)
+    r, p = r_series(y), p_series(y)
     c = 0.5 - y * r
     s = 1.0 - y * (2 * r + p)
     if far.any():
-        far_r, far_p = _series(_R, far), _series(_P, far)
+        far_r, far_p = r_series(far), p_series(far)
         far_fall, far_side = far * (0.5 - far * far_r), far * (1 - far * (2 * far_r + far_p))
         far_gap = far * far * far_p
     else:
@@ -157,22 +139,49 @@ def _hinge_slope(
     return eta, slope, turn_rate * (2 - eta) - eta_rate * (1 + turn + eta / 3)
 
 
-def rotational_mode(alpha: Array, weight: Weight) -> tuple[Array, Array, Array]:
-    """1 - h, eta and beta_r^2 of the purely rotational mode, or of overturning."""
+def rotational_mode(alpha: Array, weight: Weight) -> tuple[Thrusts, Array, Array]:
+    """Solve eqs (1), (3) and (4), or overturning where they have no solution.
+
+    Parameters
+    ----------
+    alpha : (k,) float
+        Half-angles [rad].
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    thrusts : Thrusts
+        0 where each half overturns by itself.
+    eta, square : (k,) float
+        Thickness and beta_r^2 [rad^2].
+    """
     widest, pieces = _rotational(weight)
     square = alpha * alpha
     share = square / widest**2
     short, eta, hinge = np.ones((3, alpha.size))
     for (left, right), coefficients in zip(pairwise(EDGES), pieces, strict=True):
         where = np.flatnonzero((share >= left) & (share < right))
-        place = (2 * share[where] - left - right) / (right - left)
-        short[where], eta[where], hinge[where] = chebyshev.chebval(place, coefficients)
+        if where.size:
+            place = (2 * share[where] - left - right) / (right - left)
+            short[where], eta[where], hinge[where] = chebyshev.chebval(place, coefficients)
     hinge = np.maximum(hinge, 0.0) * square
     short, eta = np.minimum(short * square, 1.0), eta * square**2
     wide = np.flatnonzero(share >= 1.0)
-    short[wide] = 1.0
-    eta[wide], hinge[wide] = inner_hinges(short[wide], alpha[wide], alpha[wide], weight)
-    return short, eta, hinge
+    if wide.size:
+        short[wide] = 1.0
+        eta[wide], hinge[wide] = inner_hinges(short[wide], alpha[wide], alpha[wide], weight)
+    thrust = np.where(short < 0.5, 1 - short, _thrust(hinge, eta, weight))
+    thrust[wide] = 0.0
+    return Thrusts(thrust, short), eta, hinge
+
+
+def _thrust(y: Array, eta: Array, weight: Weight) -> Array:
+    """Thrust of (1): towards overturning it vanishes like y^2, and 1 - h has lost it."""
+    r, p = r_series(y), p_series(y)
+    c, s = 0.5 - y * r, 1.0 - y * (2 * r + p)
+    lever = 1.0 if weight == "centreline" else 1.0 + eta * eta / 12
+    rise = (2 - eta) * s - 2 * lever * c
+    return np.maximum(y * rise / (2 * eta + (2 - eta) * y * c), 0.0)
 
 
 def widest_rotational(weight: Weight) -> float:
@@ -192,7 +201,7 @@ def _rotational(weight: Weight) -> _Rotational:
     def at_zero_thrust(angle: float) -> float:
         return float(excess(np.ones(1), np.array([angle]))[0])
 
-    widest = float(brentq(at_zero_thrust, 2.3, 2.9, xtol=1e-300, rtol=ROUND_OFF))
+    widest = root(at_zero_thrust, 2.3, 2.9)
     points = chebyshev.chebpts1(NODES)
     places = [(left + right + (right - left) * points) / 2 for left, right in pairwise(EDGES)]
     square = np.concatenate(places) * widest**2

@@ -135,9 +135,10 @@ const theory = (() => {
     const missing = thrust === free ? short : 1 - thrust;
     const { eta, betaR } = innerHinge(missing, extrados, halfAngle, weight);
     const modes = [];
-    if (Math.abs(thrust - free) <= TIE) modes.push(overturns ? "r" : "rrr");
+    // At finite friction an arch that overturns slides, too, at however small a thrust.
+    if (overturns ? thrust === 0 : Math.abs(thrust - free) <= TIE) modes.push(overturns ? "r" : "rrr");
     if (upper <= free + TIE) modes.push("srr");
-    if (lower >= free - TIE && thrust > TIE) modes.push(...innerModes(betaR, betaS));
+    if (lower >= free - TIE && thrust > 0) modes.push(...innerModes(betaR, betaS));
     if (upper - lower <= TIE) modes.push("ss");
     return {
       eta: eta <= ETA_MAX * (1 + TIE) ? Math.min(eta, ETA_MAX) : null,

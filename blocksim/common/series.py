@@ -1,0 +1,51 @@
+"""Entire functions of y = x^2 in which nothing cancels at small angles.
+
+With
+
+    1 - cos x = y C(y),    x sin x = y S(y),    C = 1/2 - y R(y),    S = 1 - y (2 R + P),
+    x sin x - 2 (1 - cos x) = -y^2 P(y),
+
+P and R are entire functions whose power series reach the last bit up to x = pi.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeVar
+
+from blocksim.blocks.assembly import Array
+
+Value = TypeVar("Value", float, Array)
+
+TERMS = 14
+
+_R = [(-1) ** k / math.factorial(2 * k) for k in range(2, TERMS)]
+_P = [(-1) ** k * (2 * k - 2) / math.factorial(2 * k) for k in range(2, TERMS)]
+
+
+def r_series(y: Value) -> Value:
+    """R(y)."""
+    return _series(_R, y)
+
+
+def p_series(y: Value) -> Value:
+    """P(y)."""
+    return _series(_P, y)
+
+
+def sine_series(y: Value) -> Value:
+    """(x - sin x)/x^3."""
+    return 2 * _series(_R, y) + _series(_P, y)
+
+
+def lag_series(y: Value) -> Value:
+    """(sin x - x cos x)/x^3."""
+    return 0.5 - (2 + y) * _series(_R, y) - _series(_P, y)
+
+
+def _series(coefficients: list[float], y: Value) -> Value:
+    value = y * coefficients[-1] + coefficients[-2]
+    for coefficient in reversed(coefficients[:-2]):
+        value *= y
+        value += coefficient
+    return value
