@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from blocksim.contact.banded import Bands
-from blocksim.contact.law import cut
+from blocksim.contact.law import Friction, cut
 from blocksim.contact.path import Balance, come_together
 from blocksim.contact.solver import ContactProblem
 
@@ -140,11 +140,13 @@ def test_the_path_from_apart_always_arrives(seed, blocks, mu):
         rows=scaled,
         bare=-stiffness * rates,
         free=(free * np.sqrt(mass)).ravel(),
-        mu=mu,
+        friction=Friction.of(mu, len(before)),
         stiffness=stiffness,
     )
-    x, pieces = come_together(balance)
-    assert x is not None
-    forces, _ = cut(balance.glued(x), mu)
-    assert np.abs(balance.imbalance(x, forces)).max() < 1e-5 * max(1.0, np.abs(forces).max())
+    end, pieces = come_together(balance)
+    assert end is not None
+    forces, _ = cut(balance.glued(end.x), mu)
+    assert np.abs(balance.imbalance(end.x, forces)).max() < 1e-5 * max(
+        1.0, np.abs(forces).max()
+    )
     assert pieces < 40 * len(rows)
