@@ -33,6 +33,8 @@ LEAN = np.array([0.0, 0.0, 1.0, -1.0])
 """Friction over its largest, on each piece where that is known."""
 STEEP = 10.0
 """Friction above which that of a sliding contact is an unknown of its own."""
+FLATTEST = 1e-6
+"""Least pressure per friction along a way to the solution, though not in it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +73,15 @@ class Friction:
     def flat(self) -> Array:
         """Pressure per friction of steep contacts that slide."""
         return np.where(self.steep, 1 / np.maximum(self.mu, STEEP), 0.0)
+
+    @cached_property
+    def flattest(self) -> Array:
+        """The same along a way to the solution, where there is no less than `FLATTEST`.
+
+        With mu = inf two contacts of a joint that both slide without pressure would leave it
+        without a direction.
+        """
+        return np.where(self.steep, np.maximum(self.flat, FLATTEST), 0.0)
 
     @cached_property
     def room(self) -> tuple[Array, Array]:
@@ -121,10 +132,17 @@ class Friction:
         """Tell which contacts slide with friction that is an unknown of its own."""
         return self.steep & (contacts >= SLIDES_UP)
 
-    def as_said(self, glued: Array, contacts: Contacts) -> Array:
-        """Return forces of contacts that do as said, but 0 where friction is an unknown."""
-        pressure = np.where((contacts != OPEN) & ~self.own(contacts), glued[:, :2], 0.0)
+    def as_said(self, glued: Array, contacts: Contacts, held: Array) -> Array:
+        """Return forces of contacts that do as said, with what friction is known by itself.
+
+        Parameters are those of `unfold`.
+        """
+        pressure = np.where(contacts != OPEN, glued[:, :2], 0.0)
         slides = self.lean * LEAN[contacts] * pressure
+        if self.some_steep:
+            own = self.own(contacts)
+            pressure = np.where(own, self.flat * held, pressure)
+            slides = np.where(own, LEAN[contacts] * held, slides)
         friction = np.where(contacts == STICKS, glued[:, 2:], slides)
         return np.concatenate([pressure, friction], axis=1)
 

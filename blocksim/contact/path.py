@@ -13,9 +13,8 @@ left goes on falling or rises for a while: whichever carries that contact across
   apart: the path cannot go back there, nor end anywhere but at 0 (Lemke's method for linear
   complementarity problems; Katzenelson's for piecewise linear systems).
 
-Along a path friction is at most `STEEPEST`: with mu = inf two contacts of a joint that both
-slide without pressure would leave it without a direction. Newton's method, which ends it,
-takes friction as it is.
+Along a path friction is at most 1 / `FLATTEST`; Newton's method, which ends it, takes friction
+as it is.
 """
 
 from __future__ import annotations
@@ -29,6 +28,7 @@ from numpy.typing import NDArray
 from blocksim.assembly import Array
 from blocksim.contact.banded import Bands, System
 from blocksim.contact.law import (
+    FLATTEST,
     OPEN,
     SLIDES_UP,
     STICKS,
@@ -41,9 +41,9 @@ from blocksim.contact.law import (
 )
 from blocksim.contact.slides import Slides
 
-STEEPEST = 1e8
-"""Most friction along a path."""
 MOST_PIECES = 20_000
+STEEP_PIECES = 40
+"""The same for each joint with steep friction: longer ways are round-off going in circles."""
 SHORT = 60
 """Pieces after which a way from a guess is no short one; no fewer than there are joints."""
 ASIDE = 1e-6
@@ -106,7 +106,7 @@ def shrink(balance: Balance, x: Array) -> tuple[End | None, int]:
     random = np.random.default_rng(0).standard_normal(len(x))
     x = x + ASIDE * float(np.abs(x).max()) * random
     glued = balance.glued(x)
-    steepest = np.minimum(balance.friction.mu, STEEPEST)
+    steepest = np.minimum(balance.friction.mu, 1 / FLATTEST)
     forces, contacts = cut(glued, steepest)
     load = -balance.imbalance(x, forces)
     push = np.zeros((len(forces), 2))
@@ -124,9 +124,8 @@ def come_together(balance: Balance) -> tuple[End | None, int]:
     glued[:, :2] -= apart * push
     contacts = np.full(push.shape, OPEN, dtype=np.int8)
     load = np.zeros_like(balance.free)
-    return _follow(
-        balance, balance.free, glued, contacts, push, load, apart, math.inf, MOST_PIECES
-    )
+    most = STEEP_PIECES * len(glued) if balance.friction.some_steep else MOST_PIECES
+    return _follow(balance, balance.free, glued, contacts, push, load, apart, math.inf, most)
 
 
 def _follow(
@@ -181,8 +180,7 @@ def _follow(
         turn[:, :2] = np.where(own, held, turn[:, :2] + push)
         return way, turn
 
-    mu = np.minimum(friction.mu, STEEPEST)
-    flat = np.where(friction.steep, 1 / np.maximum(mu, 1.0), 0.0)
+    mu, flat = np.minimum(friction.mu, 1 / FLATTEST), friction.flattest
     factors = [
         edges(float(m), bool(s)) for m, s in zip(mu[:, 0], friction.steep[:, 0], strict=True)
     ]

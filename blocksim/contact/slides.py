@@ -77,8 +77,7 @@ class Slides:
         small = seen[:, 1:] + np.diag(self._flat / stiffness)
         held = np.zeros(self._own.shape)
         if np.isfinite(small).all() and np.isfinite(seen[:, 0]).all():
-            # Two contacts of a joint that slide without pressure share their friction.
-            held[self._own] = np.linalg.lstsq(small, target[self._own] - seen[:, 0])[0]
+            held[self._own] = np.linalg.solve(small, target[self._own] - seen[:, 0])
         else:
             held[self._own] = np.nan
         return found[:, 0] + found[:, 1:] @ held[self._own], held

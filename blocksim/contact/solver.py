@@ -43,6 +43,8 @@ EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
 MOST_NEWTON = 10
 """Newton steps before the path is followed."""
+STEEP_NEWTON = 30
+"""The same with steep friction, where they find their way out of more."""
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
 
@@ -166,8 +168,9 @@ class _Step:
             # The contacts do what they did, above all where accelerations have changed:
             # after an impact those of the last step say nothing.
             contacts, stiffness = start.contacts, springs.stiffness(x)
-            way, held = self._way(contacts, x, self._glued(x, forces, stiffness), stiffness)
-            x = x + way
+            glued, held = self._glued(x, forces, stiffness), np.abs(forces[:, 2:])
+            way, more = self._way(contacts, x, glued, held, stiffness)
+            x, held = x + way, held + more
         preload = forces
         for _ in range(MOST_ROUNDS):
             stiffness = springs.stiffness(x)
@@ -238,10 +241,10 @@ class _Step:
         self, x: Array, contacts: Contacts, held: Array, balance: Balance, springs: Springs
     ) -> tuple[bool, Array, Array]:
         """Newton's method; whether it ended, and where."""
-        size, seen = math.inf, set[bytes]()
+        size, seen, state = math.inf, set[bytes](), b""
         glued = balance.glued(x)
         place = self._friction.unfold(glued, contacts, held)
-        for _ in range(MOST_NEWTON):
+        for _ in range(STEEP_NEWTON if self._friction.some_steep else MOST_NEWTON):
             forces, contacts = self._friction.cut(place)
             imbalance = balance.imbalance(x, forces)
             size, last = float(np.abs(imbalance).max()), size
@@ -249,10 +252,13 @@ class _Step:
                 size = max(size, self._unlike(forces, contacts, glued))
             if springs.balanced(size, last, x, balance.stiffness):
                 return True, x, place
-            way, held = self._way(contacts, x, glued, balance.stiffness)
-            state = contacts.tobytes()
-            # In a circle: half way leads out of many.
-            x = x + way * (0.5 if state in seen else 1.0)
+            way, more = self._way(contacts, x, glued, place[:, :2], balance.stiffness)
+            held = place[:, :2] + more
+            state, before = contacts.tobytes(), state
+            # In a circle: half way leads out of many. Friction that is an unknown of its
+            # own may take a second step where contacts do what they did.
+            again = self._friction.some_steep and state == before
+            x = x + way * (0.5 if state in seen and not again else 1.0)
             seen.add(state)
             glued = balance.glued(x)
             place = self._friction.unfold(glued, contacts, held)
@@ -271,14 +277,15 @@ class _Step:
         return x - self._free - self._bands.pull(self._rows, forces)
 
     def _way(
-        self, contacts: Contacts, x: Array, glued: Array, stiffness: float
+        self, contacts: Contacts, x: Array, glued: Array, held: Array, stiffness: float
     ) -> tuple[Array, Array]:
         """Return the change of x that balances the springs if each contact does as said.
 
-        And the friction of contacts that slide with steep friction, shape (joints, 2).
+        And that of `held`, the friction of contacts that slide with steep friction.
         """
         friction = self._friction
-        right = -self._imbalance(x, friction.as_said(glued, contacts))
+        forces = friction.as_said(glued, contacts, held)
+        right = -self._imbalance(x, forces)
         own = friction.own(contacts)
         closed = (contacts != OPEN) & ~own
         weight = stiffness * np.concatenate([closed, contacts == STICKS], axis=-1)
@@ -286,13 +293,13 @@ class _Step:
         self._iterations += 1
         if not own.any():
             return self._bands.solve(acting, weight, self._rows, right), np.zeros(own.shape)
-        slides = Slides(self._bands, self._rows, contacts, own, friction.flat)
+        slides = Slides(self._bands, self._rows, contacts, own, friction.flattest)
 
         def solve(besides: Array) -> Array:
             both = np.column_stack([right, besides])
             return self._bands.solve(acting, weight, self._rows, both)
 
-        return slides.solve(solve, glued[:, :2] / stiffness, stiffness)
+        return slides.solve(solve, (glued[:, :2] - forces[:, :2]) / stiffness, stiffness)
 
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
