@@ -43,6 +43,8 @@ EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
 MOST_NEWTON = 10
 """Newton steps before the path is followed."""
+MOST_PATHS = 10
+"""Paths of one step with steep friction; one that needs more is not solved by them."""
 STEEP_NEWTON = 30
 """The same with steep friction, where they find their way out of more."""
 FARTHEST = 1e9
@@ -223,7 +225,7 @@ class _Step:
             stiffness=stiffness,
         )
         solved, end, place = self._newton(x, contacts, held, balance, springs)
-        if solved:
+        if solved or (self._friction.some_steep and self._paths == MOST_PATHS):
             return end, place
         self._paths += 1
         for path in (partial(shrink, balance, x), partial(come_together, balance)):
