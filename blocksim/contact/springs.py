@@ -15,8 +15,6 @@ from blocksim.contact.law import Friction
 
 SOFT, STIFF = 1e3, 1e9
 """Least and largest stiffness."""
-STIFF_STEEP = 1e8
-"""The largest with steep friction: unknowns of its own cost digits, too."""
 STIFFNESS = 1e4
 """Stiffness times accelerations, limited by round-off."""
 STEEPEST = 3.0
@@ -47,7 +45,6 @@ class Springs:
     def __init__(self, friction: Friction, precision: float) -> None:
         # That of steep friction multiplies nothing: it is an unknown of its own.
         self._steep = max(1.0, float(friction.lean.max(initial=0.0)) / STEEPEST)
-        self._most = STIFF_STEEP if friction.some_steep else STIFF
         self._precision = precision
         self._factor, self._last = 1.0, math.inf
         self.drifts = False
@@ -55,9 +52,7 @@ class Springs:
     def stiffness(self, x: Array) -> float:
         """Stiffness that round-off allows at accelerations x."""
         largest = max(float(np.abs(x).max()), 1e-9)
-        return self._factor * float(
-            np.clip(STIFFNESS / self._steep / largest, SOFT, self._most)
-        )
+        return self._factor * float(np.clip(STIFFNESS / self._steep / largest, SOFT, STIFF))
 
     def rigid(self, x: Array, change: float) -> bool:
         """Tell whether springs that have yielded by `change` are rigid; else stiffen them."""
