@@ -5,7 +5,8 @@ are drawn over half-angle, friction, number of voussoirs and weight model; two o
 mu = inf, one of five a finite friction from 5 to 10^6. Each is held at rest at one thickness,
 between half and twice its least, down to 1e-9 of it.
 
-Result: of 1,700 arches (seed 14) none is answered wrongly and none is left open.
+Result: of the first 572 arches (seed 14), 224 with mu = inf, none is answered wrongly and
+none is left open; all 1,700 are still to be asked.
 
 Run: python -m analysis.no_slip OUT [--seed N] [--processes N]
 """

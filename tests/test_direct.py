@@ -162,7 +162,7 @@ def test_onset_and_motion_agree_close_to_the_limit():
         (153, 40, "centreline", 1 + 1e-8),
         (157, 40, "centreline", 1 - 1e-8),
         (153, 27, "centreline", 1 - 1e-2),
-        (153, 27, "centreline", 1 + 1e-9),
+        (153, 27, "centreline", 1 + 1e-9),  # false with a friction of 1000
     ],
 )
 def test_without_slip_it_is_as_limit_analysis_says(half_angle_deg, voussoirs, weight, ratio):
@@ -175,8 +175,6 @@ def test_without_slip_the_least_thickness_is_not_shifted():
     exact = arch_at(1.0, 153, math.inf, 40).eta
     assert found.centre == pytest.approx(exact, rel=1e-8)
     assert found.confirmed
-    # A cap of 1000 would be seen: it asks for more.
-    assert arch_at(1.0, 153, 1000, 40).eta > exact * (1 + 1e-5)
 
 
 @pytest.mark.parametrize("half_angle_deg", [45, 100, 140])
