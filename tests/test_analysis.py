@@ -110,6 +110,12 @@ def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:
     assert (tmp_path / "direct_arches.png").stat().st_size > 0
 
 
+def test_no_arch_without_slip_is_open_or_false(tmp_path: Path) -> None:
+    result = study("no_slip").main(tmp_path, quick=True)
+    assert result.no_slip >= 5
+    assert result.false == result.undecided == 0
+
+
 def test_the_map_by_simulation_goes_on_where_it_was(tmp_path: Path) -> None:
     module = study("mode_sweep")
     (first,) = module.main(tmp_path, quick=True)

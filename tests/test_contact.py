@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from blocksim.engines.contact.banded import Bands
-from blocksim.engines.contact.law import cut
+from blocksim.engines.contact.law import Friction, cut
 from blocksim.engines.contact.path import Balance, come_together
 from blocksim.engines.contact.solver import ContactProblem
 
@@ -77,6 +77,54 @@ def test_a_solution_obeys_newton_signorini_and_coulomb(seed, blocks, mu):
     )
 
 
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32), st.integers(1, 6))
+def test_every_joint_keeps_the_law_of_its_own_friction(seed, blocks):
+    before, after, mass, rows, rates, free = chain(seed, blocks)
+    mu = np.random.default_rng(seed).choice([0.0, 0.6, 40.0, 1e7, np.inf], len(before))
+    solution = ContactProblem(before, after, mass, mu).solve(rows, rates, free, None, 1e-12)
+    x = solution.acceleration.ravel()
+    matrix = dense(before, after, blocks, rows)
+    pull = np.einsum("jk,jkx->x", solution.forces, matrix)
+    scale = max(1.0, np.abs(x).max(), np.abs(solution.forces).max())
+    assert np.abs(mass.ravel() * (x - free.ravel()) - pull).max() < 1e-7 * scale
+    ahead = rates + matrix @ x
+    pressure, friction = solution.forces[:, :2], solution.forces[:, 2:]
+    opening, slip = ahead[:, :2], ahead[:, 2:]
+    assert pressure.min() >= 0
+    assert opening.min() > -1e-7 * scale
+    assert np.minimum(pressure, opening).max() < 1e-7 * scale
+    # No friction across a gap, and none that helps the slip.
+    assert np.minimum(np.abs(friction), opening).max() < 1e-6 * scale
+    assert np.minimum(friction * np.sign(slip), np.abs(slip)).max() < 1e-6 * scale
+    free_of = mu == np.inf
+    assert np.minimum(pressure, np.abs(slip))[free_of].max(initial=0) < 1e-6 * scale
+    bound = mu[~free_of, None] * pressure[~free_of]
+    most = np.maximum(1.0, mu[~free_of, None]) * 1e-6 * scale
+    assert (np.abs(friction[~free_of]) - bound - most).max(initial=-1) < 0
+
+
+def test_without_slip_a_pushed_block_turns_over_its_corner_and_does_not_slide():
+    # A unit square on the ground, gravity leaning: it turns if the lean is beyond 45 degrees.
+    mass = np.array([[1.0, 1.0, 1 / 6]])
+    corners = np.array([[-0.5, -0.5], [0.5, -0.5]])
+    rows = np.zeros((1, 4, 6))
+    for end, (x, y) in enumerate(corners):
+        rows[0, end, 3:] = 0, 1, x
+        rows[0, 2 + end, 3:] = 1, 0, -y
+    problem = ContactProblem(np.array([-1]), np.array([0]), mass, np.inf)
+    for lean in (0.3, 0.78, 0.79, 1.2, 1.57):
+        pull = np.array([[np.sin(lean), -np.cos(lean), 0.0]])
+        found = problem.solve(rows, np.zeros((1, 4)), pull)
+        # About the corner: moment sin - cos over 2, inertia 1/6 + 1/2, clockwise.
+        turning = max(0.0, (np.sin(lean) - np.cos(lean)) / 2 / (2 / 3))
+        exact = [turning / 2, turning / 2, -turning]
+        assert np.abs(found.acceleration[0] - exact).max() < 1e-9
+    # Lifted, it takes no friction.
+    lifted = problem.solve(rows, np.zeros((1, 4)), np.array([[0.2, 0.5, 0.0]]))
+    assert np.abs(lifted.acceleration[0] - [0.2, 0.5, 0.0]).max() < 1e-9
+
+
 def enumerated(matrix, mass, rates, free, mu):
     """All solutions of one block's two contacts, by trying what each may do."""
     found = []
@@ -140,11 +188,13 @@ def test_the_path_from_apart_always_arrives(seed, blocks, mu):
         rows=scaled,
         bare=-stiffness * rates,
         free=(free * np.sqrt(mass)).ravel(),
-        mu=mu,
+        friction=Friction.of(mu, len(before)),
         stiffness=stiffness,
     )
-    x, pieces = come_together(balance)
-    assert x is not None
-    forces, _ = cut(balance.glued(x), mu)
-    assert np.abs(balance.imbalance(x, forces)).max() < 1e-5 * max(1.0, np.abs(forces).max())
+    end, pieces = come_together(balance)
+    assert end is not None
+    forces, _ = cut(balance.glued(end.x), mu)
+    assert np.abs(balance.imbalance(end.x, forces)).max() < 1e-5 * max(
+        1.0, np.abs(forces).max()
+    )
     assert pieces < 40 * len(rows)

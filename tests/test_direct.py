@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from arches import arch_at
+from arches import arch_at, bracket_at
 
 from blocksim.arch.motion import load_recording, simulate
 from blocksim.ask.search import Answer, Search
@@ -150,3 +150,37 @@ def test_onset_and_motion_agree_close_to_the_limit():
         seen = trial(arch_at(ratio, 90, 0.9, 12).problem(0.9), "direct")
         assert seen.verdict is expected
         assert seen.motion.verdict is expected
+
+
+@pytest.mark.parametrize(
+    ("half_angle_deg", "voussoirs", "weight", "ratio"),
+    [
+        (54.367, 100, "sector", 1.001),
+        (21.275, 11, "centreline", 1.005),
+        (21.275, 11, "sector", 1.005),
+        (153, 40, "centreline", 1 - 1e-8),
+        (153, 40, "centreline", 1 + 1e-8),
+        (157, 40, "centreline", 1 - 1e-8),
+        (153, 27, "centreline", 1 - 1e-2),
+        (153, 27, "centreline", 1 + 1e-9),  # false with a friction of 1000
+    ],
+)
+def test_without_slip_it_is_as_limit_analysis_says(half_angle_deg, voussoirs, weight, ratio):
+    arch = arch_at(ratio, half_angle_deg, math.inf, voussoirs, weight)
+    assert held(arch, math.inf) is (Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES)
+
+
+def test_without_slip_the_least_thickness_is_not_shifted():
+    found = bracket_at(153, math.inf, 40, method="direct", tol=1e-8)
+    exact = arch_at(1.0, 153, math.inf, 40).eta
+    assert found.centre == pytest.approx(exact, rel=1e-8)
+    assert found.confirmed
+
+
+@pytest.mark.parametrize("half_angle_deg", [45, 100, 140])
+@pytest.mark.parametrize("mu", [20.0, 1e4, 1e9])
+def test_where_nothing_slides_steep_friction_moves_it_as_none_at_all(half_angle_deg, mu):
+    arch = arch_at(0.99, half_angle_deg, math.inf, 15)
+    assert arch_at(0.99, half_angle_deg, mu, 15).eta == pytest.approx(arch.eta, rel=1e-12)
+    steep, free = (world_of(arch, each).hold(1) for each in (mu, math.inf))
+    assert np.abs(steep - free).max() < 1e-9 * np.abs(free).max()

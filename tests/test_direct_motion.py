@@ -9,6 +9,7 @@ from arches import arch_at
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.motion import simulate
+from blocksim.blocks.joints import joint_motion
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.motion import moving_run
@@ -121,3 +122,19 @@ def test_piers_carry_their_joint_and_touch_nothing_else(half_angle_deg):
         assert (edge[:, 0] * following[:, 1] - edge[:, 1] * following[:, 0]).min() > 0
         for block in assembly.blocks:
             assert clipped(block.vertices, pier) < 1e-12
+
+
+def test_without_slip_joints_turn_and_part_but_do_not_slide():
+    arch = arch_at(0.95, 90, math.inf, 15)
+    assembly = arch.assembly()
+    world = world_of(assembly, math.inf, 0.01)
+    world.hold(1)
+    for _ in range(130):
+        world.advance(1)
+    motion = joint_motion(assembly, world.poses())
+    closed = motion.gap.min(axis=1) < 1e-6
+    assert np.abs(motion.gap).max() > 0.02
+    assert closed.sum() > 10
+    # Friction of 0.35 lets the same joints slide by far more.
+    assert np.abs(motion.slip[closed]).max() < 1e-3
+    assert world.quality().residual < 1e-7

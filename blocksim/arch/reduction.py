@@ -227,7 +227,9 @@ class Reduction:
         pressure = (about[:, :2] * joints.normal[merged]).sum(axis=1)
         shear = (about[:, :2] * joints.tangent[merged]).sum(axis=1)
         tipping = 2 * np.abs(about[:, 2]) / joints.length[merged]
-        excess = np.maximum(tipping - pressure, np.abs(shear) - mu * pressure)
+        excess = tipping - pressure
+        if np.isfinite(mu):
+            excess = np.maximum(excess, np.abs(shear) - mu * pressure)
         moves = np.flatnonzero(excess > allowed)
         groups = np.split(moves, np.flatnonzero(np.diff(merged[moves]) > 1) + 1)
         return tuple(

@@ -19,7 +19,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
-from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
+from blocksim.engines.base import Quality, Settings, World
 from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
 
 STEP = 0.01
@@ -46,7 +46,7 @@ class Direct:
     """The engine that solves every step."""
 
     name = "direct"
-    most_friction = FRICTION_CAP
+    most_friction = math.inf
 
     @property
     def version(self) -> str:
@@ -84,12 +84,12 @@ class Blocks:
         size = assembly.size
         self._mass = assembly.masses
         self._step = settings.step
-        self._mu = min(problem.mu, FRICTION_CAP)
+        self._mu, self._friction = problem.mu, problem.friction
         self._reach = assembly.reach / size
         self._neighbours = Neighbours(assembly)
         self._keys = self._neighbours.keys
-        self._problem = self._new_problem()
         self._joints = len(assembly.joints)
+        self._problem = self._new_problem()
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
         self._velocities = np.zeros_like(self._poses)
         self._gravity = problem.pull() / self._mass
@@ -199,7 +199,10 @@ class Blocks:
     def _new_problem(self) -> ContactProblem:
         before, after = self._neighbours.before, self._neighbours.after
         self._pairs = np.stack([before, after], axis=1)
-        return ContactProblem(before, after, self._mass, self._mu)
+        held = self._keys < self._joints
+        friction = np.full(len(self._keys), self._mu)
+        friction[held] = self._friction[self._keys[held]]
+        return ContactProblem(before, after, self._mass, friction)
 
     def _rates(self, rows: Array) -> Array:
         padded = np.vstack([self._velocities, np.zeros(3)])

@@ -14,6 +14,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.banded import Bands
+from blocksim.engines.contact.law import Friction
 from blocksim.engines.contact.springs import MOST_ROUNDS, STEEPEST, Springs
 
 COLD = 1e8
@@ -22,7 +23,12 @@ MOST_NEWTON = 100
 
 
 def associated(
-    bands: Bands, rows: Array, rates: Array, free: Array, mu: float, precision: float
+    bands: Bands,
+    rows: Array,
+    rates: Array,
+    free: Array,
+    friction: Friction,
+    precision: float,
 ) -> tuple[Array, Array, int]:
     """Solve a step.
 
@@ -35,7 +41,8 @@ def associated(
         The same velocities without acceleration, over the step.
     free : (3 blocks,) float
         Accelerations without contact.
-    mu, precision : float
+    friction : Friction
+    precision : float
 
     Returns
     -------
@@ -45,15 +52,24 @@ def associated(
         Along `rows`.
     iterations : int
     """
-    # Steeper edges are not scaled to length 1: normals would fade.
-    norm = min(math.sqrt(1 + mu**2), STEEPEST)
-    lean = mu / norm
-    upright, along = rows[:, :2] / norm, lean * rows[:, 2:]
-    edges = np.concatenate([upright + along, upright - along], axis=1)
-    rate, slip = rates[:, :2] / norm, lean * rates[:, 2:]
-    offset = np.concatenate([rate + slip, rate - slip], axis=1)
+    # Steeper edges are not scaled to length 1: normals would fade. Steep ones take what
+    # normals they have, down to none, and have the normal itself as a third edge.
+    steep, mu = friction.steep, friction.mu
+    with np.errstate(invalid="ignore"):
+        norm = np.where(steep, mu, np.minimum(np.sqrt(1 + mu**2), STEEPEST))
+        lean = np.where(steep, 1.0, mu / norm)
+
+    def of_edges(values: Array) -> Array:
+        """Return along the edges what is given along normals and tangents."""
+        upright, along = values[:, :2] / norm[..., None], lean[..., None] * values[:, 2:]
+        found = [upright + along, upright - along]
+        if friction.some_steep:
+            found.append(steep[..., None] * values[:, :2])
+        return np.concatenate(found, axis=1)
+
+    edges, offset = of_edges(rows), of_edges(rates[..., None])[..., 0]
     x, forces = np.zeros_like(free), np.zeros_like(offset)
-    springs, stiffness, iterations = Springs(mu, precision), COLD, 0
+    springs, stiffness, iterations = Springs(friction, precision), COLD, 0
     for _ in range(MOST_ROUNDS):
         trial = forces - stiffness * (offset + bands.along(edges, x))
         size = math.inf
@@ -76,8 +92,11 @@ def associated(
         if springs.rigid(x, change):
             break
         stiffness = springs.stiffness(x)
-    plus, minus = forces[:, :2], forces[:, 2:]
-    return x, np.concatenate([(plus + minus) / norm, (plus - minus) * lean], axis=1), iterations
+    plus, minus = forces[:, :2], forces[:, 2:4]
+    pressure, rubbed = (plus + minus) / norm, (plus - minus) * lean
+    if friction.some_steep:
+        pressure = pressure + forces[:, 4:]
+    return x, np.concatenate([pressure, rubbed], axis=1), iterations
 
 
 def line_search(

@@ -87,7 +87,7 @@ class Bands:
         return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
 
     def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
-        """Solve (1 + rows^T weight seen) x = right."""
+        """Solve (1 + rows^T weight seen) x = right, for one right side or its columns."""
         return self.solve_band(self.band(rows, weight, seen), right)
 
     def band(self, rows: Array, weight: ArrayLike, seen: Array) -> Array:
@@ -142,6 +142,9 @@ class System:
         self._band[self._bands.whole[joint]] += matrix.ravel()
         self._right[self._bands.place[joint]] += right
 
-    def solve(self) -> Array:
-        """Return x."""
-        return self._bands.solve_band(self._band.copy(), self._right[:-1])
+    def solve(self, besides: Array | None = None) -> Array:
+        """Return x, or with other right sides in columns the solutions of all, x first."""
+        right = self._right[:-1]
+        if besides is not None:
+            right = np.column_stack([right, besides])
+        return self._bands.solve_band(self._band.copy(), right)

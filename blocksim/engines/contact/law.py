@@ -1,14 +1,28 @@
 """What a contact may do.
 
 Its law is piecewise linear in the forces its springs would have if it were glued, normal q
-and tangential s: it is open where q <= 0, sticks where |s| <= mu q, and
-slides either way beyond.
+and tangential s: it is open where q <= 0, sticks where |s| <= mu q, and slides either way
+beyond, with pressure q and friction mu q.
+
+Contacts without slip (mu = inf) are the limit of that: whoever is pressed sticks, whatever
+the friction; whoever is open carries nothing. In between, where q = 0, friction is anything
+from 0 to s: a contact there has no pressure and may slip against its friction. Without
+that piece the law would jump, and some steps would have no solution. Rest with friction
+but no pressure is part of the law, as it is in limit analysis (the closed cone n >= 0).
+
+So q no longer tells friction, and for all steep friction tells it badly. There y stands in
+its place: the friction of a contact that slides, q of one that is open, and
+q + (1 - 1/mu) |s| of one that sticks. In y and s the law has the edges of mu = 1, and is
+continuous for every mu up to inf.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import Array
 
@@ -17,16 +31,131 @@ Contacts = NDArray[np.int8]
 OPEN, STICKS, SLIDES_UP, SLIDES_DOWN = range(4)
 LEAN = np.array([0.0, 0.0, 1.0, -1.0])
 """Friction over its largest, on each piece where that is known."""
+STEEP = 10.0
+"""Friction above which that of a sliding contact is an unknown of its own."""
+FLATTEST = 1e-6
+"""Least pressure per friction along a way to the solution, though not in it."""
 
 
-def cut(glued: Array, mu: float) -> tuple[Array, Contacts]:
+@dataclass(frozen=True, eq=False)
+class Friction:
+    """The friction of every joint.
+
+    Parameters
+    ----------
+    mu : (joints, 1) float
+        Coefficients, 0 and inf allowed.
+    """
+
+    mu: Array
+
+    @classmethod
+    def of(cls, mu: ArrayLike, joints: int) -> Friction:
+        """Take one coefficient for all joints, or one for each."""
+        return cls(np.broadcast_to(np.asarray(mu, dtype=np.float64), (joints,))[:, None])
+
+    @cached_property
+    def steep(self) -> NDArray[np.bool_]:
+        """Which joints have steep friction, shape (joints, 1)."""
+        return self.mu > STEEP
+
+    @cached_property
+    def some_steep(self) -> bool:
+        """Whether any joint has."""
+        return bool(self.steep.any())
+
+    @cached_property
+    def lean(self) -> Array:
+        """Friction per pressure where that is known and a contact slides, else 0."""
+        return np.where(self.steep, 0.0, self.mu)
+
+    @cached_property
+    def flat(self) -> Array:
+        """Pressure per friction of steep contacts that slide."""
+        return np.where(self.steep, 1 / np.maximum(self.mu, STEEP), 0.0)
+
+    @cached_property
+    def flattest(self) -> Array:
+        """The same along a way to the solution, where there is no less than `FLATTEST`.
+
+        With mu = inf two contacts of a joint that both slide without pressure would leave it
+        without a direction.
+        """
+        return np.where(self.steep, np.maximum(self.flat, FLATTEST), 0.0)
+
+    @cached_property
+    def room(self) -> tuple[Array, Array]:
+        """Factors a, b for which |friction| is below mu p where b |friction| is below a p."""
+        return np.where(self.steep, 1.0, self.mu), np.where(self.steep, self.flat, 1.0)
+
+    def unfold(self, glued: Array, contacts: Contacts, held: Array) -> Array:
+        """Put y in the place of q, for steep friction.
+
+        Parameters
+        ----------
+        glued : (joints, 4) float
+            Normal forces of both contacts if glued, then tangential ones.
+        contacts : (joints, 2) int
+            What they do.
+        held : (joints, 2) float
+            Size of their friction; looked at where they slide.
+        """
+        if not self.some_steep:
+            return glued
+        normal, along = glued[:, :2], np.abs(glued[:, 2:])
+        place = np.where(contacts == STICKS, normal + (1 - self.flat) * along, held)
+        place = np.where(self.steep & (contacts != OPEN), place, normal)
+        return np.concatenate([place, glued[:, 2:]], axis=1)
+
+    def cut(self, place: Array) -> tuple[Array, Contacts]:
+        """Return the forces that contacts can carry, and what the contacts do.
+
+        Parameters
+        ----------
+        place : (joints, 4) float
+            As from `unfold`.
+
+        Returns
+        -------
+        forces : (joints, 4) float
+        contacts : (joints, 2) int
+        """
+        if not self.some_steep:
+            return cut(place, self.mu)
+        forces, contacts = cut(place, np.where(self.steep, 1.0, self.mu))
+        size = np.abs(forces[:, 2:])
+        pressure = np.maximum(place[:, :2] - size, 0.0) + self.flat * size
+        forces[:, :2] = np.where(self.steep, pressure, forces[:, :2])
+        return forces, contacts
+
+    def own(self, contacts: Contacts) -> NDArray[np.bool_]:
+        """Tell which contacts slide with friction that is an unknown of its own."""
+        return self.steep & (contacts >= SLIDES_UP)
+
+    def as_said(self, glued: Array, contacts: Contacts, held: Array) -> Array:
+        """Return forces of contacts that do as said, with what friction is known by itself.
+
+        Parameters are those of `unfold`.
+        """
+        pressure = np.where(contacts != OPEN, glued[:, :2], 0.0)
+        slides = self.lean * LEAN[contacts] * pressure
+        if self.some_steep:
+            own = self.own(contacts)
+            pressure = np.where(own, self.flat * held, pressure)
+            slides = np.where(own, LEAN[contacts] * held, slides)
+        friction = np.where(contacts == STICKS, glued[:, 2:], slides)
+        return np.concatenate([pressure, friction], axis=1)
+
+
+def cut(glued: Array, mu: Array | float) -> tuple[Array, Contacts]:
     """Return the forces that contacts can carry, and what the contacts do.
 
     Parameters
     ----------
     glued : (joints, 4) float
         Normal forces of both contacts if glued, then tangential ones.
-    mu : float
+    mu : float or (joints, 1) float
+        Finite.
 
     Returns
     -------
@@ -43,7 +172,7 @@ def cut(glued: Array, mu: float) -> tuple[Array, Contacts]:
     return np.concatenate([pressure, friction], axis=1), contacts.astype(np.int8)
 
 
-def leaning(rows: Array, contacts: Contacts, mu: float) -> Array:
+def leaning(rows: Array, contacts: Contacts, lean: Array) -> Array:
     """Return rows with pressure's turned to act with its friction where a contact slides.
 
     Parameters
@@ -51,18 +180,24 @@ def leaning(rows: Array, contacts: Contacts, mu: float) -> Array:
     rows : (..., 4, 6) float
         Normal velocities of the two contacts, then the tangential ones.
     contacts : (..., 2) int
-    mu : float
+    lean : (..., 1) float
+        `Friction.lean`.
     """
     acting = rows.copy()
-    acting[..., :2, :] += (mu * LEAN[contacts])[..., None] * rows[..., 2:, :]
+    acting[..., :2, :] += (lean * LEAN[contacts])[..., None] * rows[..., 2:, :]
     return acting
 
 
-def edges(mu: float) -> tuple[Array, Array]:
-    """Two functions of q and s per piece, positive inside it: their factors, (pieces, 2)."""
-    of_normal = np.array([(-1.0, 0.0), (mu, mu), (1.0, -mu), (1.0, -mu)])
-    of_tangential = np.array([(0.0, 0.0), (-1.0, 1.0), (0.0, 1.0), (0.0, -1.0)])
-    return of_normal, of_tangential
+def edges(mu: float, steep: bool) -> tuple[Array, Array]:
+    """Two functions of q and s per piece, positive inside it: their factors, (pieces, 2).
+
+    Where a contact with steep friction slides, the size of its friction stands for q.
+    """
+    flat = 1 / mu if steep else 1.0
+    of_stick, of_slide = (1.0, 1.0) if steep else (mu, mu)
+    of_normal = [(-1.0, 0.0), (of_stick, of_stick), (1.0, -of_slide), (1.0, -of_slide)]
+    of_tangential = [(0.0, 0.0), (-flat, flat), (0.0, 1.0), (0.0, -1.0)]
+    return np.array(of_normal), np.array(of_tangential)
 
 
 def beyond(old: int, edge: int, along: float) -> tuple[int, int]:

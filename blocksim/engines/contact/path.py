@@ -12,6 +12,9 @@ left goes on falling or rises for a while: whichever carries that contact across
   fast, so accelerations are bounded all along, and the solution is unique when all are far
   apart: the path cannot go back there, nor end anywhere but at 0 (Lemke's method for linear
   complementarity problems; Katzenelson's for piecewise linear systems).
+
+Along a path friction is at most 1 / `FLATTEST`; Newton's method, which ends it, takes friction
+as it is.
 """
 
 from __future__ import annotations
@@ -20,12 +23,27 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.banded import Bands, System
-from blocksim.engines.contact.law import OPEN, STICKS, Contacts, beyond, cut, edges, leaning
+from blocksim.engines.contact.law import (
+    FLATTEST,
+    OPEN,
+    SLIDES_UP,
+    STICKS,
+    Contacts,
+    Friction,
+    beyond,
+    cut,
+    edges,
+    leaning,
+)
+from blocksim.engines.contact.slides import Slides
 
 MOST_PIECES = 20_000
+STEEP_PIECES = 40
+"""The same for each joint with steep friction: longer ways are round-off going in circles."""
 SHORT = 60
 """Pieces after which a way from a guess is no short one; no fewer than there are joints."""
 ASIDE = 1e-6
@@ -46,14 +64,15 @@ class Balance:
         Forces of the springs without acceleration, were they glued.
     free : (3 blocks,) float
         Accelerations without contact.
-    mu, stiffness : float
+    friction : Friction
+    stiffness : float
     """
 
     bands: Bands
     rows: Array
     bare: Array
     free: Array
-    mu: float
+    friction: Friction
     stiffness: float
 
     def glued(self, x: Array) -> Array:
@@ -65,18 +84,38 @@ class Balance:
         return x - self.free - self.bands.pull(self.rows, forces)
 
 
-def shrink(balance: Balance, x: Array) -> tuple[Array | None, int]:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class End:
+    """Where a path ends.
+
+    Parameters
+    ----------
+    x : (3 blocks,) float
+    contacts : (joints, 2) int
+    held : (joints, 2) float
+        Friction of contacts that slide with steep friction.
+    """
+
+    x: Array
+    contacts: Contacts
+    held: Array
+
+
+def shrink(balance: Balance, x: Array) -> tuple[End | None, int]:
     """Find the balance by a short way from a guess; None if there is none."""
     random = np.random.default_rng(0).standard_normal(len(x))
     x = x + ASIDE * float(np.abs(x).max()) * random
     glued = balance.glued(x)
-    forces, contacts = cut(glued, balance.mu)
+    steepest = np.minimum(balance.friction.mu, 1 / FLATTEST)
+    forces, contacts = cut(glued, steepest)
     load = -balance.imbalance(x, forces)
     push = np.zeros((len(forces), 2))
+    own = balance.friction.own(contacts)
+    glued[:, :2] = np.where(own, np.abs(forces[:, 2:]), glued[:, :2])
     return _follow(balance, x, glued, contacts, push, load, 1.0, 1.0, max(SHORT, len(forces)))
 
 
-def come_together(balance: Balance) -> tuple[Array | None, int]:
+def come_together(balance: Balance) -> tuple[End | None, int]:
     """Find the balance from all contacts apart; None only where round-off spoils it."""
     glued = balance.glued(balance.free)
     shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(glued), 2))
@@ -85,9 +124,8 @@ def come_together(balance: Balance) -> tuple[Array | None, int]:
     glued[:, :2] -= apart * push
     contacts = np.full(push.shape, OPEN, dtype=np.int8)
     load = np.zeros_like(balance.free)
-    return _follow(
-        balance, balance.free, glued, contacts, push, load, apart, math.inf, MOST_PIECES
-    )
+    most = STEEP_PIECES * len(glued) if balance.friction.some_steep else MOST_PIECES
+    return _follow(balance, balance.free, glued, contacts, push, load, apart, math.inf, most)
 
 
 def _follow(
@@ -100,14 +138,15 @@ def _follow(
     left: float,
     turned: float,
     most: int,
-) -> tuple[Array | None, int]:
+) -> tuple[End | None, int]:
     """Follow a path until nothing is left, over so many pieces at most.
 
     Parameters
     ----------
     balance : Balance
     x, forces, contacts
-        At its beginning.
+        At its beginning; `forces` as if glued, but for steep friction that slides, whose
+        size stands for the normal force.
     push : (joints, 2) float
         Normal force that keeps a contact apart, per unit of `left`.
     load : (3 blocks,) float
@@ -118,19 +157,38 @@ def _follow(
 
     Returns
     -------
-    x : (3 blocks,) float or None
+    end : End or None
     pieces : int
     """
-    bands, rows, mu, stiffness = balance.bands, balance.rows, balance.mu, balance.stiffness
+    bands, rows, stiffness = balance.bands, balance.rows, balance.stiffness
+    friction = balance.friction
     sign = 1.0
-    weight = stiffness * np.concatenate([contacts != OPEN, contacts == STICKS], axis=1)
-    system = System(bands, leaning(rows, contacts, mu), weight, rows, load)
-    way = system.solve()
-    turn = -stiffness * bands.along(rows, way)
-    turn[:, :2] += push
-    of_normal, of_tangential = edges(mu)
-    normal = np.moveaxis(of_normal[contacts], 2, 0).copy()
-    tangential = np.moveaxis(of_tangential[contacts], 2, 0).copy()
+    own = friction.own(contacts)
+    weight = stiffness * np.concatenate([(contacts != OPEN) & ~own, contacts == STICKS], axis=1)
+    system = System(bands, leaning(rows, contacts, friction.lean), weight, rows, load)
+
+    def onward() -> tuple[Array, Array]:
+        """Return how x and the forces change."""
+        if not own.any():
+            way = system.solve()
+            turn = -stiffness * bands.along(rows, way)
+            turn[:, :2] += push
+            return way, turn
+        slides = Slides(bands, rows, contacts, own, flat)
+        way, held = slides.solve(system.solve, push / stiffness, stiffness)
+        turn = -stiffness * bands.along(rows, way)
+        turn[:, :2] = np.where(own, held, turn[:, :2] + push)
+        return way, turn
+
+    mu, flat = np.minimum(friction.mu, 1 / FLATTEST), friction.flattest
+    factors = [
+        edges(float(m), bool(s)) for m, s in zip(mu[:, 0], friction.steep[:, 0], strict=True)
+    ]
+    of_normal, of_tangential = (np.array(each) for each in zip(*factors, strict=True))
+    joints = np.arange(len(mu))[:, None]
+    normal = np.moveaxis(of_normal[joints, contacts], 2, 0).copy()
+    tangential = np.moveaxis(of_tangential[joints, contacts], 2, 0).copy()
+    way, turn = onward()
     crossed: tuple[int, int, int] | None = None
     for piece in range(1, most):
         slope = normal * turn[:, :2] + tangential * turn[:, 2:]
@@ -143,31 +201,38 @@ def _follow(
         edge, joint, end = (int(i) for i in np.unravel_index(lengths.argmin(), value.shape))
         length = float(lengths[edge, joint, end])
         if sign > 0 and length >= left:
-            return x + left * way, piece
+            held = np.where(own, forces[:, :2] + left * turn[:, :2], 0.0)
+            return End(x=x + left * way, contacts=contacts, held=held), piece
         if not left - sign * length <= turned:
             return None, piece
         x, forces = x + length * sign * way, forces + length * sign * turn
         left -= sign * length
-        gone = normal[edge, joint, end], tangential[edge, joint, end]
-        now, back = beyond(int(contacts[joint, end]), edge, float(forces[joint, 2 + end]))
-        for part, does in ((-1.0, contacts[joint, end]), (1.0, now)):
+        was = int(contacts[joint, end])
+        now, back = beyond(was, edge, float(forces[joint, 2 + end]))
+        for part, does in ((-1.0, was), (1.0, now)):
             contacts[joint, end] = does
-            matrix, pull = _part(balance, joint, push[joint], contacts[joint])
+            own[joint] = friction.steep[joint] & (contacts[joint] >= SLIDES_UP)
+            matrix, pull = _part(balance, joint, push[joint], contacts[joint], own[joint])
             system.add(joint, part * matrix, part * pull)
-        normal[:, joint, end], tangential[:, joint, end] = of_normal[now], of_tangential[now]
-        way = system.solve()
-        turn = -stiffness * bands.along(rows, way)
-        turn[:, :2] += push
-        onward = gone[0] * turn[joint, end] + gone[1] * turn[joint, 2 + end]
-        sign = 1.0 if onward < 0 else -1.0
+        if friction.steep[joint]:
+            size = abs(forces[joint, 2 + end])
+            closed = size if own[joint, end] else flat[joint, 0] * size
+            forces[joint, end] = 0.0 if OPEN in {was, now} else closed
+        normal[:, joint, end] = of_normal[joint, now]
+        tangential[:, joint, end] = of_tangential[joint, now]
+        way, turn = onward()
         crossed = back, joint, end
+        rising = normal[crossed] * turn[joint, end] + tangential[crossed] * turn[joint, 2 + end]
+        sign = 1.0 if rising > 0 else -1.0
     return None, most
 
 
-def _part(balance: Balance, joint: int, push: Array, contacts: Contacts) -> tuple[Array, Array]:
+def _part(
+    balance: Balance, joint: int, push: Array, contacts: Contacts, own: NDArray[np.bool_]
+) -> tuple[Array, Array]:
     """Return the share of one joint in the system: matrix (6, 6) and right side (6,)."""
     rows = balance.rows[joint]
-    acting = leaning(rows, contacts, balance.mu)
-    closed = contacts != OPEN
+    acting = leaning(rows, contacts, balance.friction.lean[joint])
+    closed = (contacts != OPEN) & ~own
     weight = balance.stiffness * np.concatenate([closed, contacts == STICKS])
     return np.matmul(acting.T * weight, rows), np.matmul(push * closed, acting[:2])

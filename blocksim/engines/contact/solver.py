@@ -29,19 +29,24 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.associated import associated
 from blocksim.engines.contact.banded import Bands
-from blocksim.engines.contact.law import LEAN, OPEN, STICKS, Contacts, cut, leaning
+from blocksim.engines.contact.law import OPEN, STICKS, Contacts, Friction, leaning
 from blocksim.engines.contact.path import Balance, come_together, shrink
+from blocksim.engines.contact.slides import Slides
 from blocksim.engines.contact.springs import MOST_ROUNDS, Springs
 
 EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
 MOST_NEWTON = 10
 """Newton steps before the path is followed."""
+MOST_PATHS = 10
+"""Paths of one step with steep friction; one that needs more is not solved by them."""
+STEEP_NEWTON = 30
+"""The same with steep friction, where they find their way out of more."""
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
 
@@ -90,14 +95,14 @@ class ContactProblem:
         Blocks on both sides of each joint, -1 for the ground.
     mass : (blocks, 3) float
         Mass, mass and moment of inertia, in mean masses.
-    mu : float
-        Friction coefficient, finite.
+    mu : float or (joints,) float
+        Friction coefficient of all joints, or of each; 0 and inf allowed.
     """
 
     def __init__(
-        self, before: NDArray[np.int64], after: NDArray[np.int64], mass: Array, mu: float
+        self, before: NDArray[np.int64], after: NDArray[np.int64], mass: Array, mu: ArrayLike
     ) -> None:
-        self.mu = mu
+        self.friction = Friction.of(mu, len(before))
         self.root = np.sqrt(mass)
         self.bands = Bands(before, after, len(mass))
         self.scale = self.bands.of_joints(1 / self.root.ravel())[:, None, :]
@@ -139,7 +144,8 @@ class _Step:
     def __init__(
         self, problem: ContactProblem, rows: Array, rates: Array, free: Array, precision: float
     ) -> None:
-        self._bands, self._root, self._mu = problem.bands, problem.root, problem.mu
+        self._bands, self._root = problem.bands, problem.root
+        self._friction = problem.friction
         self._rows, self._rates = rows * problem.scale, rates
         self._free = (free * self._root).ravel()
         self._precision = precision
@@ -147,22 +153,32 @@ class _Step:
 
     def solve(self, start: Solution | None) -> Solution:
         """Round after round, until contact springs no longer yield."""
-        springs = Springs(self._mu, self._precision)
+        springs = Springs(self._friction, self._precision)
         if start is None:
             x, forces, self._iterations = associated(
-                self._bands, self._rows, self._rates, self._free, self._mu, self._precision
+                self._bands,
+                self._rows,
+                self._rates,
+                self._free,
+                self._friction,
+                self._precision,
             )
+            contacts = np.full((len(forces), 2), STICKS, dtype=np.int8)
+            held = np.abs(forces[:, 2:])
         else:
             x, forces = (start.acceleration * self._root).ravel(), start.forces
             # The contacts do what they did, above all where accelerations have changed:
             # after an impact those of the last step say nothing.
-            x = x + self._way(start.contacts, x, forces, springs.stiffness(x))
-        contacts = np.zeros((len(forces), 2), dtype=np.int8)
+            contacts, stiffness = start.contacts, springs.stiffness(x)
+            glued, held = self._glued(x, forces, stiffness), np.abs(forces[:, 2:])
+            way, more = self._way(contacts, x, glued, held, stiffness)
+            x, held = x + way, held + more
         preload = forces
         for _ in range(MOST_ROUNDS):
             stiffness = springs.stiffness(x)
-            x = self._balance(x, preload, stiffness, springs)
-            forces, contacts = cut(self._glued(x, preload, stiffness), self._mu)
+            x, place = self._balance(x, contacts, held, preload, stiffness, springs)
+            forces, contacts = self._friction.cut(place)
+            held = np.abs(forces[:, 2:])
             change = forces - preload
             if springs.rigid(x, float(np.abs(change).max(initial=0.0)) / stiffness):
                 break
@@ -184,49 +200,76 @@ class _Step:
         at equal accelerations, more from round to round, until one of them slides.
         """
         pressure, growth = forces[:, :2], change[:, :2]
-        room = np.stack([pressure] + [self._mu * pressure - s * forces[:, 2:] for s in (1, -1)])
-        loss = -np.stack([growth] + [self._mu * growth - s * change[:, 2:] for s in (1, -1)])
+        a, b = self._friction.room
+        room = np.stack([pressure] + [a * pressure - s * b * forces[:, 2:] for s in (1, -1)])
+        loss = -np.stack([growth] + [a * growth - s * b * change[:, 2:] for s in (1, -1)])
         ahead = (loss > 0) & (room > loss)
         return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
 
-    def _balance(self, x: Array, preload: Array, stiffness: float, springs: Springs) -> Array:
-        """Find the accelerations whose contact springs balance."""
+    def _balance(
+        self,
+        x: Array,
+        contacts: Contacts,
+        held: Array,
+        preload: Array,
+        stiffness: float,
+        springs: Springs,
+    ) -> tuple[Array, Array]:
+        """Find the accelerations whose contact springs balance, and `Friction.unfold`."""
         balance = Balance(
             bands=self._bands,
             rows=self._rows,
             bare=preload - stiffness * self._rates,
             free=self._free,
-            mu=self._mu,
+            friction=self._friction,
             stiffness=stiffness,
         )
-        solved, end = self._newton(x, balance, springs)
-        if solved:
-            return end
+        solved, end, place = self._newton(x, contacts, held, balance, springs)
+        if solved or (self._friction.some_steep and self._paths == MOST_PATHS):
+            return end, place
         self._paths += 1
         for path in (partial(shrink, balance, x), partial(come_together, balance)):
             found, pieces = path()
             self._iterations += pieces
             if found is not None:
-                solved, end = self._newton(found, balance, springs)
+                solved, end, place = self._newton(
+                    found.x, found.contacts, found.held, balance, springs
+                )
                 if solved:
                     break
-        return end
+        return end, place
 
-    def _newton(self, x: Array, balance: Balance, springs: Springs) -> tuple[bool, Array]:
+    def _newton(
+        self, x: Array, contacts: Contacts, held: Array, balance: Balance, springs: Springs
+    ) -> tuple[bool, Array, Array]:
         """Newton's method; whether it ended, and where."""
-        size, seen = math.inf, set[bytes]()
-        for _ in range(MOST_NEWTON):
-            forces, contacts = cut(balance.glued(x), self._mu)
+        size, seen, state = math.inf, set[bytes](), b""
+        glued = balance.glued(x)
+        place = self._friction.unfold(glued, contacts, held)
+        for _ in range(STEEP_NEWTON if self._friction.some_steep else MOST_NEWTON):
+            forces, contacts = self._friction.cut(place)
             imbalance = balance.imbalance(x, forces)
             size, last = float(np.abs(imbalance).max()), size
+            if self._friction.some_steep:
+                size = max(size, self._unlike(forces, contacts, glued))
             if springs.balanced(size, last, x, balance.stiffness):
-                return True, x
-            way = self._solve(contacts, balance.stiffness, -imbalance)
-            state = contacts.tobytes()
-            # In a circle: half way leads out of many.
-            x = x + way * (0.5 if state in seen else 1.0)
+                return True, x, place
+            way, more = self._way(contacts, x, glued, place[:, :2], balance.stiffness)
+            held = place[:, :2] + more
+            state, before = contacts.tobytes(), state
+            # In a circle: half way leads out of many. Friction that is an unknown of its
+            # own may take a second step where contacts do what they did.
+            again = self._friction.some_steep and state == before
+            x = x + way * (0.5 if state in seen and not again else 1.0)
             seen.add(state)
-        return False, x
+            glued = balance.glued(x)
+            place = self._friction.unfold(glued, contacts, held)
+        return False, x, place
+
+    def _unlike(self, forces: Array, contacts: Contacts, glued: Array) -> float:
+        """How far the pressure of steep contacts is from that of their springs."""
+        off = np.abs(forces[:, :2] - np.where(contacts == OPEN, 0.0, glued[:, :2]))
+        return float(np.where(self._friction.steep, off, 0.0).max())
 
     def _glued(self, x: Array, preload: Array, stiffness: float) -> Array:
         """Return the springs' forces before opening and friction cut them."""
@@ -235,21 +278,30 @@ class _Step:
     def _imbalance(self, x: Array, forces: Array) -> Array:
         return x - self._free - self._bands.pull(self._rows, forces)
 
-    def _way(self, contacts: Contacts, x: Array, preload: Array, stiffness: float) -> Array:
-        """Return the change of x that balances the springs if each contact does as said."""
-        glued = self._glued(x, preload, stiffness)
-        pressure = np.where(contacts != OPEN, glued[:, :2], 0.0)
-        slides = self._mu * LEAN[contacts] * pressure
-        friction = np.where(contacts == STICKS, glued[:, 2:], slides)
-        imbalance = self._imbalance(x, np.concatenate([pressure, friction], axis=1))
-        return self._solve(contacts, stiffness, -imbalance)
+    def _way(
+        self, contacts: Contacts, x: Array, glued: Array, held: Array, stiffness: float
+    ) -> tuple[Array, Array]:
+        """Return the change of x that balances the springs if each contact does as said.
 
-    def _solve(self, contacts: Contacts, stiffness: float, right: Array) -> Array:
-        """Return the change of x that adds `right` to the imbalance, likewise."""
-        weight = stiffness * np.concatenate([contacts != OPEN, contacts == STICKS], axis=-1)
-        acting = leaning(self._rows, contacts, self._mu)
+        And that of `held`, the friction of contacts that slide with steep friction.
+        """
+        friction = self._friction
+        forces = friction.as_said(glued, contacts, held)
+        right = -self._imbalance(x, forces)
+        own = friction.own(contacts)
+        closed = (contacts != OPEN) & ~own
+        weight = stiffness * np.concatenate([closed, contacts == STICKS], axis=-1)
+        acting = leaning(self._rows, contacts, friction.lean)
         self._iterations += 1
-        return self._bands.solve(acting, weight, self._rows, right)
+        if not own.any():
+            return self._bands.solve(acting, weight, self._rows, right), np.zeros(own.shape)
+        slides = Slides(self._bands, self._rows, contacts, own, friction.flattest)
+
+        def solve(besides: Array) -> Array:
+            both = np.column_stack([right, besides])
+            return self._bands.solve(acting, weight, self._rows, both)
+
+        return slides.solve(solve, (glued[:, :2] - forces[:, :2]) / stiffness, stiffness)
 
     def _residual(self, x: Array, forces: Array) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
@@ -258,6 +310,14 @@ class _Step:
         pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
         unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max(initial=0.0)
         # Friction at the edge of the cone, against the slip, or no slip.
-        against = self._mu * pressure + np.sign(slip) * friction
+        a, b = self._friction.room
+        against = a * pressure + b * np.sign(slip) * friction
         coulomb = np.minimum(against, np.abs(slip)).max(initial=0.0)
+        if self._friction.some_steep:
+            # Nor does friction help the slip, or act across a gap.
+            for wrong in (
+                np.minimum(np.sign(slip) * friction, np.abs(slip)),
+                np.minimum(np.abs(friction), rates[:, :2]),
+            ):
+                coulomb = max(coulomb, float(np.where(self._friction.steep, wrong, 0.0).max()))
         return float(max(imbalance, unilateral, coulomb)) / max(1.0, float(np.abs(x).max()))

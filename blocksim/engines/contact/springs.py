@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.engines.contact.law import Friction
 
 SOFT, STIFF = 1e3, 1e9
 """Least and largest stiffness."""
@@ -36,14 +37,14 @@ class Springs:
 
     Parameters
     ----------
-    mu : float
-        Friction coefficient.
+    friction : Friction
     precision : float
         Largest yield at which the step counts as solved [g].
     """
 
-    def __init__(self, mu: float, precision: float) -> None:
-        self._steep = max(1.0, mu / STEEPEST)
+    def __init__(self, friction: Friction, precision: float) -> None:
+        # That of steep friction multiplies nothing: it is an unknown of its own.
+        self._steep = max(1.0, float(friction.lean.max(initial=0.0)) / STEEPEST)
         self._precision = precision
         self._factor, self._last = 1.0, math.inf
         self.drifts = False
