@@ -10,6 +10,7 @@ from blocksim import limit, theory
 from blocksim.arch import Arch, require_friction, require_lean
 from blocksim.joints import JointState, ObservedJoint, closed_joints
 from blocksim.ladder import choose, chosen_words
+from blocksim.limit.mechanism import Mechanism, mechanism
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
 from blocksim.setup import BY_RULE, Overrides
@@ -33,9 +34,16 @@ class Check:
         Least thickness of the voussoirs as built and of the continuous arch; None where
         no thickness up to 2 stands.
     mode : Mode or None
-        How it collapses; None where it stands or the joints form none of the modes.
+        How this arch starts to collapse: of the mechanism of the onset test by an engine,
+        of eqs (15) and (16) by `limit`. By `theory`, which tells of no other thickness, as
+        `mode_theory`. None where it stands or the joints form none of the modes.
+    mode_in_motion : Mode or None
+        As seen in the moving run after a displacement of `motion.EARLY`; see `Trial`.
+    mode_limit, mode_theory : Mode or None
+        At the least thickness of the voussoirs as built and of the continuous arch, which
+        need not be `mode`; at eta = 2 where no thickness up to that stands.
     joints : tuple of ObservedJoint
-        From the left springing to the right.
+        From the left springing to the right, as it starts to move; all closed by `theory`.
     simulated : float or None
         Time simulated [sqrt(r/g)]; None for static methods.
     state_hash : str or None
@@ -55,6 +63,9 @@ class Check:
     eta_limit: float | None
     eta_theory: float | None
     mode: Mode | None
+    mode_in_motion: Mode | None
+    mode_limit: Mode | None
+    mode_theory: Mode
     joints: tuple[ObservedJoint, ...]
     simulated: float | None
     state_hash: str | None
@@ -109,17 +120,16 @@ def check(
     rung = choose(method, spatial=spatial, settings=settings, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
-    closed = closed_joints(arch)
-    simulated = state_hash = blocks = splits = None
+    mode = later = simulated = state_hash = blocks = splits = None
+    joints = closed_joints(arch)
     if rung.name == "theory":
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
         mode = continuous.mode if verdict is Verdict.COLLAPSES else None
-        joints = closed
     elif rung.name == "limit":
         verdict, reason = _static(arch, mu, built.eta)
-        falls = verdict is Verdict.COLLAPSES
-        mode = built.mode if falls else None
-        joints = _limit_joints(arch, built) if falls else closed
+        if verdict is Verdict.COLLAPSES:
+            found = mechanism(arch, mu)
+            mode, joints = found.mode, _limit_joints(found)
     else:
         seen = trial(
             arch,
@@ -130,7 +140,8 @@ def check(
             reduce=reduce,
             progress=progress,
         )
-        verdict, reason, mode, joints = seen.verdict, seen.reason, seen.mode, seen.joints
+        verdict, reason, joints = seen.verdict, seen.reason, seen.joints
+        mode, later = seen.mode, seen.mode_in_motion
         simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
         state_hash = seen.motion.recording.state_hash if seen.motion else None
         blocks, splits = seen.blocks, seen.splits
@@ -143,6 +154,9 @@ def check(
         eta_limit=built.eta,
         eta_theory=continuous.eta,
         mode=mode,
+        mode_in_motion=later,
+        mode_limit=built.mode,
+        mode_theory=continuous.mode,
         joints=joints,
         simulated=simulated,
         state_hash=state_hash,
@@ -171,25 +185,19 @@ def _static(arch: Arch, mu: float, least: float | None) -> tuple[Verdict, str]:
     return verdict, reason
 
 
-def _limit_joints(arch: Arch, state: limit.LimitState) -> tuple[ObservedJoint, ...]:
-    """Joints that turn or slide at the least thickness, mirrored onto both halves."""
+def _limit_joints(found: Mechanism) -> tuple[ObservedJoint, ...]:
+    """What the joints of a mechanism do."""
 
-    def among(angle: float, places: tuple[float, ...]) -> bool:
-        return any(math.isclose(abs(angle), place, abs_tol=1e-9) for place in places)
-
-    def joint_state(angle: float) -> JointState:
-        turns_inside = among(angle, state.hinges_intrados)
-        turns_outside = among(angle, state.hinges_extrados)
-        if turns_inside and turns_outside:
+    def state(outside: bool, inside: bool, *slides: bool) -> JointState:
+        if outside and inside:
             return JointState.OPEN
-        if among(angle, state.slides):
-            turns = turns_inside or turns_outside
-            return JointState.HINGE_AND_SLIDES if turns else JointState.SLIDES
-        if turns_inside:
+        if any(slides):
+            return JointState.HINGE_AND_SLIDES if outside or inside else JointState.SLIDES
+        if inside:
             return JointState.HINGE_INTRADOS
-        return JointState.HINGE_EXTRADOS if turns_outside else JointState.CLOSED
+        return JointState.HINGE_EXTRADOS if outside else JointState.CLOSED
 
     return tuple(
-        ObservedJoint(angle=float(angle), state=joint_state(float(angle)))
-        for angle in arch.joint_angles
+        ObservedJoint(angle=angle, state=state(*row))
+        for angle, row in zip(found.angles.tolist(), found.active.tolist(), strict=True)
     )

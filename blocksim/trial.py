@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from blocksim.arch import Arch, require_friction, require_lean
+from blocksim.assembly import Array
 from blocksim.engines.base import World
 from blocksim.joints import ObservedJoint, classify, closed_joints, observed_mode
 from blocksim.ladder import choose
@@ -56,9 +57,13 @@ class Trial:
     motion : Motion or None
         None where the arch was not let go.
     joints : tuple of ObservedJoint
-        Empty where gravity leans out of the plane and the arch collapses: their states
-        are those of motion in the plane.
+        As it starts to move, at the onset. Empty where gravity leans out of the plane and
+        the arch collapses: their states are those of motion in the plane.
     mode : Mode or None
+        Of the mechanism it starts with: that of the onset test, by these joints.
+    mode_in_motion : Mode or None
+        Of the moving run when it has moved by `motion.EARLY`. By then a joint that slides
+        may turn as well, and others may have joined in; None where it was not let go.
     blocks, splits : int
         Blocks that were simulated, and joints that a reduction had to split again.
     """
@@ -69,6 +74,7 @@ class Trial:
     motion: Motion | None
     joints: tuple[ObservedJoint, ...]
     mode: Mode | None
+    mode_in_motion: Mode | None
     blocks: int
     splits: int
 
@@ -177,16 +183,12 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
     reason += _asides(held, motion) + given_words(setup.given)
-    joints, mode = closed_joints(arch), None
+    joints, mode, later = closed_joints(arch), None, None
     if lean and verdict is Verdict.COLLAPSES:
         joints = ()  # their states are those of motion in the plane
     elif verdict is Verdict.COLLAPSES:
-        # In motion more joints may join in: then what it starts with names the mode.
-        for mechanism in ([motion.mechanism] if motion else []) + [first.mechanism]:
-            joints = classify(setup.assembly, mechanism)
-            mode = observed_mode(joints, arch.half_angle, arch.voussoirs)
-            if mode:
-                break
+        joints, mode = _seen(setup, first.mechanism)
+        later = _seen(setup, motion.mechanism)[1] if motion else None
     return Trial(
         verdict=verdict,
         reason=reason,
@@ -194,9 +196,16 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         motion=motion,
         joints=joints,
         mode=mode,
+        mode_in_motion=later,
         blocks=setup.blocks,
         splits=held.splits,
     )
+
+
+def _seen(setup: Setup, poses: Array) -> tuple[tuple[ObservedJoint, ...], Mode | None]:
+    """Read joints and mode from where the blocks of an arch have moved."""
+    joints = classify(setup.assembly, poses)
+    return joints, observed_mode(joints, setup.arch.half_angle, setup.arch.voussoirs)
 
 
 def _asides(held: Held, motion: Motion | None) -> str:
