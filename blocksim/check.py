@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 
@@ -186,7 +185,7 @@ def _static(arch: Arch, mu: float, least: float | None) -> tuple[Verdict, str]:
 
 
 def _limit_joints(found: Mechanism) -> tuple[ObservedJoint, ...]:
-    """What the joints of a mechanism do."""
+    """Tell what the joints of a mechanism do."""
 
     def state(outside: bool, inside: bool, *slides: bool) -> JointState:
         if outside and inside:

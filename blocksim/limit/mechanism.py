@@ -255,9 +255,9 @@ def conditions(
 
 def _solve(program: Conditions) -> tuple[Array, float, Array]:
     """Solve the program: unknowns x, value s, rates."""
-    state, rates = _optimum(program, np.zeros(program.matrix.shape[1] + 1), 1.0)
+    # HiGHS works to 1e-7, which is a thin arch's whole strength: once more, from near.
+    state, rates = _optimum(program, np.append(0.0 * program.matrix[0], 0.0), 1.0)
     if state[-1] > -SPARE / 2:
-        # HiGHS works to 1e-7, which is a thin arch's whole strength: once more, from near.
         state, rates = _optimum(program, state, CLOSER)
     if state[-1] <= -SPARE / 2:
         return state[:-1], float(state[-1]), np.zeros_like(rates)
