@@ -7,10 +7,10 @@ in `mode_draws.py`.
 What is compared. The least thickness is bracketed by the onset test alone, to 0.1 % (`direct`:
 1e-8). The mode is that of the mechanism the arch starts with at the lower end of that bracket,
 or, where friction is critical, with 0.5 % less of it. Limit analysis of the same voussoirs
-comes first, the map, which is of the continuous arch, second. Runs 0.5 % to both sides confirm the
-bracket (at its ends they would take most of the time) and tell the mode in motion, which is
-counted aside: by then a joint that slides may turn as well, and more than the weakest mode may
-be overcome. An arch is called near a line if its published mode changes as mu or alpha changes
+comes first, the map, which is of the continuous arch, second. Runs 0.5 % to both sides confirm
+the bracket (at its ends they would take most of the time) and tell the mode in motion, which is
+counted aside: by then a joint that slides may turn as well, and more than the weakest mode be
+overcome. An arch is called near a line if its published mode changes as mu or alpha changes
 by 0.3 %: no more, in 99 of 100, does the least thickness of the voussoirs differ from the
 map's, if that is counted in alpha.
 
