@@ -162,11 +162,16 @@ def main(
     cases = drawn(10, 2, 1, FEWEST) if quick else drawn(sweep, rsr, about, most)
     path = out / f"onset_modes_{engine}.jsonl"
     rows = answers(path, cases, partial(ask, engine=engine), 1 if quick else 2)
+    return written(rows, path, engine)
+
+
+def written(rows: list[Row], path: Path, engine: str) -> Result:
+    """Write rows as a table and as a figure beside the file they are kept in; count them."""
     with path.with_suffix(".csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-    _figure(rows, out / f"onset_modes_{engine}.png", engine)
+    _figure(rows, path.with_suffix(".png"), engine)
     called = [row for row in rows if row["mode_limit"] == Mode.RSR]
     return Result(
         engine=engine,
