@@ -232,11 +232,15 @@ def _over_map(axes: Axes, rows: list[Row], *, zoomed: bool) -> None:
         axes.plot(*_places(own), ms=11 if zoomed else 8, zorder=6, **ring)
         handles.append(Line2D([], [], ms=10, label=f"{words}  {len(own)}", **ring))
     if zoomed:
-        for text in [text for text in axes.texts if getattr(text, "arrow_patch", None)]:
-            text.remove()  # the name of rsr, which lies beyond
         mus, etas = np.array(_places(rows))
         axes.set_xlim(mus.min() - 0.02, mus.max() + 0.02)
         axes.set_ylim(etas.min() - 0.005, etas.max() + 0.005)
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        for text in list(axes.texts):
+            mu, eta = getattr(text, "xy", text.get_position())
+            arrow = getattr(text, "arrow_patch", None)
+            if arrow or not (left <= mu <= right and low <= eta <= high):
+                text.remove()  # a name that lies beyond
     axes.legend(handles=handles, loc="best", title="starts with", fontsize=9)
 
 
