@@ -33,6 +33,7 @@ from analysis.command import run
 from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.view.style import QUIET
 
@@ -74,7 +75,7 @@ class Outcome:
 def world(arch: Arch, mu: float) -> Blocks:
     """Put an arch into the engine."""
     engine, assembly = Direct(), arch.assembly()
-    return Blocks(assembly, mu, engine.settings(assembly))
+    return Blocks(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
 
 
 def way(blocks: Blocks, start: Array, arch: Arch, until: float) -> float:

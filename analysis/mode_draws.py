@@ -96,12 +96,12 @@ def _sweeps(drawn: Drawn) -> float:
 
 def draw() -> Iterator[Drawn]:
     """Draw arches, without end."""
-    streams = {turn: _stream(turn) for turn in TURNS}
+    streams = {turn: critical_draws(turn) for turn in TURNS}
     for turn in itertools.cycle(TURNS):
         yield next(streams[turn])
 
 
-def _stream(turn: Mode | None) -> Iterator[Drawn]:
+def critical_draws(turn: Mode | None) -> Iterator[Drawn]:
     """Draw arches of one kind, independently of the others."""
     random = np.random.default_rng([SEED, TURNS.index(turn)])
     while True:

@@ -1,21 +1,22 @@
 """The whole map by simulation, resumable.
 
-Question: do arches collapse in motion in the mode that the closed form publishes for them,
-and at its thickness, all over the map? Which arches are asked about is in `mode_draws.py`.
+Question: do arches collapse in the mode that limit analysis finds for their voussoirs, and the
+closed form publishes, and at its thickness, all over the map? Which arches are asked about is
+in `mode_draws.py`.
 
-What is compared. The mode is the one seen in motion 0.5 % below: closer, mixed modes start too
-slowly for an engine of impulses (in a first run, 0.05 % below, pymunk could not tell 6 of 107),
-and far below more than the weakest mode is overcome. The map is of the continuous arch: where
-the mode is another one, limit analysis of the same voussoirs tells whether they are the reason.
-The least thickness is bracketed by the onset test alone, to 0.1 % (`direct`: 1e-8); the runs at
-0.5 % confirm it, and moving runs at the bracket's ends would take most of the time. The mode at
-the lower end of that bracket is counted, too. An arch is called near a line if its published
-mode changes as mu or alpha changes by 0.3 %: no more, in 99 of 100, does the least thickness of
-the voussoirs differ from the map's, if that is counted in alpha.
+What is compared. The least thickness is bracketed by the onset test alone, to 0.1 % (`direct`:
+1e-8). The mode is that of the mechanism the arch starts with at the lower end of that bracket,
+or, where friction is critical, with 0.5 % less of it. Limit analysis of the same voussoirs
+comes first, the map, which is of the continuous arch, second. Runs 0.5 % to both sides confirm
+the bracket (at its ends they would take most of the time) and tell the mode in motion, which is
+counted aside: by then a joint that slides may turn as well, and more than the weakest mode be
+overcome. An arch is called near a line if its published mode changes as mu or alpha changes
+by 0.3 %: no more, in 99 of 100, does the least thickness of the voussoirs differ from the
+map's, if that is counted in alpha.
 
-Expected: away from the lines the published mode, near them that or the mode of limit analysis;
-brackets centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; all fall below and
-stand above.
+Expected: the mode of limit analysis, and away from the lines the published one, too; brackets
+centred within 0.2 % of limit analysis by pymunk, 1e-8 by `direct`; all fall below and stand
+above.
 
 Run: python -m analysis.mode_sweep OUT [--arches N] [--engines NAME ...]. Rows are kept in
 OUT/rows; the same command goes on after an interruption, which reports the arches that are
@@ -43,7 +44,9 @@ from matplotlib.lines import Line2D
 
 from analysis.command import run
 from analysis.mode_draws import MOST_FRICTION, Drawn, Draws, divide, draw
+from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
+from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.regions import first_sliding
 from blocksim.evidence.verdict import Verdict
@@ -61,15 +64,15 @@ NO_MODE = "none"
 class Seen:
     """An arch as an engine saw it.
 
-    Verdicts `below` and `above` what is critical; modes in motion, at the onset, and by limit
-    analysis; the bracket's centre and its error, nan where there is none.
+    Verdicts `below` and `above` what is critical; the mode it starts with, that in motion, and
+    that of limit analysis; the bracket's centre and its error, nan where there is none.
     """
 
     drawn: Drawn
     below: Verdict
     above: Verdict
     observed: str
-    at_onset: str
+    in_motion: str
     built: str
     eta: float
     error: float
@@ -80,37 +83,31 @@ class Seen:
         return self.observed == self.drawn.published
 
     @property
-    def unexplained(self) -> bool:
-        """Whether it is not that of limit analysis either."""
-        return self.observed not in self.explained
-
-    @property
-    def explained(self) -> set[str]:
-        """Modes as published and as limit analysis says."""
-        return {self.drawn.published.value, self.built}
+    def as_built(self) -> bool:
+        """Whether the mode is that of limit analysis of the same voussoirs."""
+        return self.observed == self.built
 
 
 @dataclass(frozen=True)
 class Result:
     """Headline numbers of one engine.
 
-    `false` counts wrong verdicts below and above, `unsure` undecided ones. Of the modes in
-    motion, `as_published` are those of the map, `as_built` others that limit analysis finds,
-    and `elsewise` neither; `clear_` counts arches that are not near a line. `onset_elsewise` is
-    `elsewise` of the modes at the onset.
+    `false` counts wrong verdicts below and above, `unsure` undecided ones. Of the modes arches
+    start with, `as_built` are those of limit analysis of the same voussoirs, `as_published`
+    those of the map; `clear_` counts arches that are not near a line. `in_motion` counts modes
+    in motion that are those of limit analysis.
     """
 
     engine: str
     arches: int
     false: int
     unsure: int
-    as_published: int
     as_built: int
-    elsewise: int
+    as_published: int
+    in_motion: int
     clear: int
+    clear_built: int
     clear_published: int
-    clear_elsewise: int
-    onset_elsewise: int
     worst_error: float
     median_error: float
     confusion: dict[tuple[str, str], int]
@@ -121,9 +118,11 @@ def _seen(drawn: Drawn, rows: Sequence[dict[str, object]]) -> Seen:
     below, above, *brackets = rows
     alpha, mu = math.radians(drawn.alpha_deg), float(str(below["mu"]))
     built = least_thickness(alpha, mu, drawn.voussoirs)
-    eta, error, at_onset = drawn.eta or math.nan, math.nan, NO_MODE
+    eta, error, observed, said = drawn.eta or math.nan, math.nan, below["mode"], built.mode
+    if drawn.eta is not None:
+        said = mechanism(Arch(half_angle=alpha, eta=eta, voussoirs=drawn.voussoirs), mu).mode
     for row in brackets:
-        at_onset = str(row["mode"] or NO_MODE)
+        observed = row["mode"]
         low, high = row["eta_low"], row["eta_high"]
         if low is not None and high is not None and built.eta is not None:
             eta = (float(str(low)) + float(str(high))) / 2
@@ -132,9 +131,9 @@ def _seen(drawn: Drawn, rows: Sequence[dict[str, object]]) -> Seen:
         drawn=drawn,
         below=Verdict(str(below["verdict"])),
         above=Verdict(str(above["verdict"])),
-        observed=str(below["mode"] or NO_MODE),
-        at_onset=at_onset,
-        built=str(built.mode or NO_MODE),
+        observed=str(observed or NO_MODE),
+        in_motion=str(below["mode_in_motion"] or NO_MODE),
+        built=str(said or NO_MODE),
         eta=eta,
         error=error,
     )
@@ -179,15 +178,12 @@ def _result(
             (each.below is Verdict.STANDS) + (each.above is Verdict.COLLAPSES) for each in every
         ),
         unsure=sum((e.below, e.above).count(Verdict.UNDECIDED) for e in every),
+        as_built=sum(each.as_built for each in every),
         as_published=sum(each.as_published for each in every),
-        as_built=sum(not each.as_published and not each.unexplained for each in every),
-        elsewise=sum(each.unexplained for each in every),
+        in_motion=sum(each.in_motion == each.built for each in every),
         clear=len(clear),
+        clear_built=sum(each.as_built for each in clear),
         clear_published=sum(each.as_published for each in clear),
-        clear_elsewise=sum(each.unexplained for each in clear),
-        onset_elsewise=sum(
-            each.drawn.eta is None and each.at_onset not in each.explained for each in every
-        ),
         worst_error=float(errors.max()),
         median_error=float(np.median(errors)),
         confusion=dict(_counts(every)),
@@ -195,7 +191,7 @@ def _result(
 
 
 def _counts(every: Sequence[Seen]) -> Counter[tuple[str, str]]:
-    return Counter((each.drawn.published.value, each.observed) for each in every)
+    return Counter((each.built, each.observed) for each in every)
 
 
 def _tell(share: float, what: str) -> None:
@@ -227,39 +223,39 @@ def _over_map(axes: Axes, every: Sequence[Seen], engine: str) -> None:
             handles.append(Line2D([], [], ls="", ms=7, label=words, **look))
     for marked, colour, words in (
         (
-            [e for e in every if not e.as_published and not e.unexplained],
+            [e for e in every if e.as_built and not e.as_published],
             INK,
-            "not as published,\nbut as limit says",
+            "as limit says,\nnot as published",
         ),
-        ([e for e in every if e.unexplained], MISS, "neither as published\nnor as limit says"),
+        ([e for e in every if not e.as_built], MISS, "not as limit says"),
     ):
         ring = {"marker": "o", "mfc": "none", "mec": colour, "mew": 0.9, "ls": ""}
         axes.plot([e.drawn.mu for e in marked], [e.eta for e in marked], ms=9, zorder=6, **ring)
         if marked:
             label = f"{words}  {len(marked)}"
             handles.append(Line2D([], [], ms=9, label=label, **ring))
-    axes.legend(handles=handles, loc="upper left", title="observed", fontsize=8)
+    axes.legend(handles=handles, loc="upper left", title="starts with", fontsize=8)
     axes.set_title(f"{len(every)} arches by {engine}, over the published modes")
 
 
 def _confusion(axes: Axes, every: Sequence[Seen]) -> None:
-    """Draw how often each mode is observed where each is published, in brackets off lines."""
+    """Draw how often each mode is seen where limit says each, in brackets off lines."""
     counts, clear = _counts(every), _counts([e for e in every if not e.drawn.near])
-    published = [mode.value for mode in Mode if any(row == mode for row, _ in counts)]
     names = [*(mode.value for mode in Mode), NO_MODE]
+    built = [name for name in names if any(row == name for row, _ in counts)]
     observed = [name for name in names if any(column == name for _, column in counts)]
-    table = np.array([[counts[row, column] for column in observed] for row in published])
+    table = np.array([[counts[row, column] for column in observed] for row in built])
     axes.imshow(
         table / table.sum(axis=1, keepdims=True), cmap="Blues", vmin=0, vmax=1.6, aspect="auto"
     )
     for (row, column), count in np.ndenumerate(table):
         if count:
-            off = clear[published[row], observed[column]]
+            off = clear[built[row], observed[column]]
             axes.text(column, row, f"{count} ({off})", ha="center", va="center")
     axes.set_xticks(range(len(observed)), observed)
-    axes.set_yticks(range(len(published)), published)
-    axes.set_xlabel("mode observed")
-    axes.set_ylabel("mode published")
+    axes.set_yticks(range(len(built)), built)
+    axes.set_xlabel("mode it starts with")
+    axes.set_ylabel("mode by limit analysis")
     axes.spines[:].set_visible(False)
     axes.set_title("Modes: all arches (those away from lines of the map)")
 

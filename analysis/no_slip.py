@@ -92,7 +92,7 @@ def ask(case: Case) -> Row:
         voussoirs=case.voussoirs,
         weight=case.weight,
     )
-    found = trial(arch, case.mu, "direct", moving=False)
+    found = trial(arch.problem(case.mu), "direct", moving=False)
     return {
         "verdict": found.verdict,
         "reason": found.reason,

@@ -10,6 +10,7 @@ from arches import arch_at, bracket_at
 from blocksim.arch.motion import load_recording, simulate
 from blocksim.ask.search import Answer, Search
 from blocksim.blocks.joints import joint_motion
+from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.evidence.onset import onset
@@ -39,7 +40,8 @@ def held(arch, mu):
 
 def world_of(arch, mu, step=0.01):
     engine, assembly = Direct(), arch.assembly()
-    return Blocks(assembly, mu, replace(engine.settings(assembly), step=step))
+    settings = replace(engine.settings(assembly), step=step)
+    return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 
 @pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "weight"), CASES)

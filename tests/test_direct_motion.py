@@ -10,6 +10,7 @@ from arches import arch_at
 from blocksim.arch.circular import Arch
 from blocksim.arch.motion import simulate
 from blocksim.blocks.joints import joint_motion
+from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import Blocks, Direct
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.motion import moving_run
@@ -19,7 +20,8 @@ from blocksim.evidence.verdict import Verdict
 
 def world_of(assembly, mu, step):
     engine = Direct()
-    return Blocks(assembly, mu, replace(engine.settings(assembly), step=step))
+    settings = replace(engine.settings(assembly), step=step)
+    return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 
 FALLS = [(90, 0.9, 20, 0.9), (125, 0.9, 15, 0.9), (150, 2.0, 15, 0.97), (65, 0.35, 12, 0.7)]

@@ -43,7 +43,9 @@ class Bracket:
         Exact values for the voussoirs as built and the continuous arch; `eta_limit` is 0
         where any thickness stands (some arches of three voussoirs).
     mode, mode_limit, mode_theory : Mode or None
-        As observed at `eta_low`, and exact.
+        Of the mechanism it starts with at `eta_low`; exact, at the least thickness.
+    mode_in_motion : Mode or None
+        As seen in the moving run at `eta_low`, see `Trial`; None where there was none.
     thrust, beta_r, beta_s : float or None
         Scaled thrust; angles of the inner hinge and inner sliding joint [rad]. For
         static methods.
@@ -72,6 +74,7 @@ class Bracket:
     mode: Mode | None
     mode_limit: Mode | None
     mode_theory: Mode
+    mode_in_motion: Mode | None = None
     thrust: float | None = None
     beta_r: float | None = None
     beta_s: float | None = None
@@ -238,7 +241,7 @@ def _by_simulation(
     search.expand(ETA_MAX if guess is None else guess)
     search.bisect(answer.tol)
     verdicts: list[bool] = []
-    mode = None
+    mode = later = None
     for expected in (Verdict.COLLAPSES, Verdict.STANDS):
         # The lower end tells the mode, too.
         if expected in ends and (confirm or expected is Verdict.COLLAPSES):
@@ -247,7 +250,9 @@ def _by_simulation(
                 progress(0.95, f"moving run at {eta_of[expected]:.6g}")
             ended = conclude(held, moving=confirm)
             verdicts.append(ended.verdict is expected)
-            mode = observed_mode(ended.joints, arch) or mode
+            if ended.verdict is Verdict.COLLAPSES:
+                mode = observed_mode(ended.joints, arch)
+                later = observed_mode(ended.joints_in_motion, arch)
     confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
     words = {True: "confirmed", False: "not confirmed", None: "not tried"}
     reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"
@@ -260,6 +265,7 @@ def _by_simulation(
         eta_low=search.low,
         eta_high=search.high,
         mode=mode,
+        mode_in_motion=later,
         confirmed=confirmed,
         runs=search.runs,
         undecided=search.undecided,

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch
+from blocksim.arch.limit.mechanism import Mechanism, mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
@@ -35,11 +35,16 @@ class Check:
         Least thickness of the voussoirs as built and of the continuous arch; 0 where any
         thickness stands (some arches of three voussoirs), None where none up to 2 does.
     mode : Mode or None
-        How it starts to collapse; None where it stands or the joints form none of the modes.
+        How this arch starts to collapse: of the mechanism of the onset test by an engine,
+        of eqs (15) and (16) by `limit`. By `theory`, which tells of no other thickness, as
+        `mode_theory`. None where it stands or the joints form none of the modes.
     mode_in_motion : Mode or None
-        The same a little later, in the moving run, when more joints may have joined in.
+        As seen in the moving run after a displacement of `motion.EARLY`; see `Trial`.
+    mode_limit, mode_theory : Mode or None
+        At the least thickness of the voussoirs as built and of the continuous arch, which
+        need not be `mode`; at eta = 2 where no thickness up to that stands.
     joints : tuple of ObservedJoint
-        From the left springing to the right.
+        From the left springing to the right, as it starts to move; all closed by `theory`.
     simulated : float or None
         Time simulated [sqrt(r/g)]; None for static methods.
     state_hash : str or None
@@ -60,6 +65,8 @@ class Check:
     eta_theory: float | None
     mode: Mode | None
     mode_in_motion: Mode | None
+    mode_limit: Mode | None
+    mode_theory: Mode
     joints: tuple[ObservedJoint, ...]
     simulated: float | None
     state_hash: str | None
@@ -112,18 +119,16 @@ def check(
     rung = choose(method, problem=problem, settings=settings, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
-    closed = closed_joints(problem.assembly)
-    in_motion: Mode | None = None
-    simulated = state_hash = blocks = splits = None
+    mode = later = simulated = state_hash = blocks = splits = None
+    joints = closed_joints(problem.assembly)
     if rung.name == "theory":
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
         mode = continuous.mode if verdict is Verdict.COLLAPSES else None
-        joints = closed
     elif rung.name == "limit":
         verdict, reason = _static(arch, mu, built.eta)
-        falls = verdict is Verdict.COLLAPSES
-        mode = built.mode if falls else None
-        joints = _limit_joints(arch, built) if falls else closed
+        if verdict is Verdict.COLLAPSES:
+            found = mechanism(arch, mu)
+            mode, joints = found.mode, _limit_joints(found)
     else:
         seen = trial(
             problem,
@@ -134,7 +139,7 @@ def check(
         )
         verdict, reason, joints = seen.verdict, seen.reason, seen.joints
         mode = observed_mode(joints, arch)
-        in_motion = observed_mode(seen.joints_in_motion, arch)
+        later = observed_mode(seen.joints_in_motion, arch)
         simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
         state_hash = seen.motion.recording.state_hash if seen.motion else None
         blocks, splits = seen.blocks, seen.splits
@@ -147,7 +152,9 @@ def check(
         eta_limit=built.eta,
         eta_theory=continuous.eta,
         mode=mode,
-        mode_in_motion=in_motion,
+        mode_in_motion=later,
+        mode_limit=built.mode,
+        mode_theory=continuous.mode,
         joints=joints,
         simulated=simulated,
         state_hash=state_hash,
@@ -178,25 +185,19 @@ def _static(arch: Arch, mu: float, least: float | None) -> tuple[Verdict, str]:
     return verdict, reason
 
 
-def _limit_joints(arch: Arch, state: limit.LimitState) -> tuple[ObservedJoint, ...]:
-    """Joints that turn or slide at the least thickness, mirrored onto both halves."""
+def _limit_joints(found: Mechanism) -> tuple[ObservedJoint, ...]:
+    """Tell what the joints of a mechanism do."""
 
-    def among(angle: float, places: tuple[float, ...]) -> bool:
-        return any(math.isclose(abs(angle), place, abs_tol=1e-9) for place in places)
-
-    def joint_state(angle: float) -> JointState:
-        turns_inside = among(angle, state.hinges_intrados)
-        turns_outside = among(angle, state.hinges_extrados)
-        if turns_inside and turns_outside:
+    def state(outside: bool, inside: bool, *slides: bool) -> JointState:
+        if outside and inside:
             return JointState.OPEN
-        if among(angle, state.slides):
-            turns = turns_inside or turns_outside
-            return JointState.HINGE_AND_SLIDES if turns else JointState.SLIDES
-        if turns_inside:
+        if any(slides):
+            return JointState.HINGE_AND_SLIDES if outside or inside else JointState.SLIDES
+        if inside:
             return JointState.HINGE_INTRADOS
-        return JointState.HINGE_EXTRADOS if turns_outside else JointState.CLOSED
+        return JointState.HINGE_EXTRADOS if outside else JointState.CLOSED
 
     return tuple(
-        ObservedJoint(angle=float(angle), state=joint_state(float(angle)))
-        for angle in arch.joint_angles
+        ObservedJoint(angle=angle, state=state(*row))
+        for angle, row in zip(found.angles.tolist(), found.active.tolist(), strict=True)
     )

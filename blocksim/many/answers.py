@@ -181,6 +181,7 @@ def _question(asked: Asked, version: str) -> Row:
         "version": version,
         "verdict": None,
         "mode": None,
+        "mode_in_motion": None,
         "mode_theory": None,
         "eta_theory": None,
         "eta_limit": None,
@@ -211,6 +212,7 @@ def _by_simulation(case: Case, row: Row) -> None:
             )
             row.update(
                 mode=found.mode,
+                mode_in_motion=found.mode_in_motion,
                 eta_limit=found.eta_limit,
                 eta_low=found.eta_low,
                 eta_high=found.eta_high,
@@ -228,6 +230,7 @@ def _by_simulation(case: Case, row: Row) -> None:
             row.update(
                 verdict=seen.verdict.value,
                 mode=seen.mode,
+                mode_in_motion=seen.mode_in_motion,
                 eta_limit=seen.eta_limit,
                 reason=seen.reason,
             )

@@ -28,6 +28,7 @@ COLUMNS = {
     "version": "string",
     "verdict": "string",
     "mode": "string",
+    "mode_in_motion": "string",
     "mode_theory": "string",
     "eta_theory": "double",
     "eta_limit": "double",

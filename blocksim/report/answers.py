@@ -7,7 +7,9 @@ import math
 from blocksim.arch.bracket import Bracket
 from blocksim.arch.check import Check
 from blocksim.arch.circular import GRAVITY
+from blocksim.arch.modes import Mode
 from blocksim.blocks.joints import JointState
+from blocksim.evidence.motion import EARLY
 
 
 def plain(value: object) -> object:
@@ -35,6 +37,9 @@ def check_record(answer: Check) -> dict[str, object]:
         "eta_limit": answer.eta_limit,
         "eta_theory": answer.eta_theory,
         "mode": answer.mode,
+        "mode_in_motion": answer.mode_in_motion,
+        "mode_limit": answer.mode_limit,
+        "mode_theory": answer.mode_theory,
         "joints": [
             {"angle_deg": math.degrees(joint.angle), "state": joint.state.value}
             for joint in answer.joints
@@ -61,6 +66,7 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
         "eta_limit": answer.eta_limit,
         "eta_theory": answer.eta_theory,
         "mode": answer.mode,
+        "mode_in_motion": answer.mode_in_motion,
         "mode_limit": answer.mode_limit,
         "mode_theory": answer.mode_theory,
         "thrust": answer.thrust,
@@ -88,11 +94,15 @@ def check_lines(answer: Check) -> list[str]:
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
         f"mu {answer.mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}",
         f"  because {answer.reason}",
-        f"  least   eta {ratio(answer.eta_limit)} as built, "
-        f"{ratio(answer.eta_theory)} continuous",
+        _exact("least  ", answer),
     ]
-    if answer.mode:
-        lines.append(f"  mode    {answer.mode.value}, {answer.mode.description}")
+    if answer.method == "theory":
+        of = "of the continuous arch at its least thickness"
+        if answer.eta_theory is None:
+            of = "of the continuous arch, of any thickness"
+    else:
+        of = f"of the voussoirs as built, at eta {arch.eta:g}"
+    lines += _modes(answer, of)
     active = [joint for joint in answer.joints if joint.state is not JointState.CLOSED]
     if active:
         told = ", ".join(f"{math.degrees(j.angle):+.1f} deg {j.state.value}" for j in active)
@@ -115,11 +125,10 @@ def bracket_lines(answer: Bracket) -> list[str]:
         f"  arch    alpha {math.degrees(answer.half_angle):g} deg, mu {answer.mu:g}, "
         f"{answer.voussoirs} voussoirs, weight {answer.weight}",
         f"  because {answer.reason}",
-        f"  exact   eta {ratio(answer.eta_limit)} as built, "
-        f"{ratio(answer.eta_theory)} continuous",
+        _exact("exact  ", answer),
     ]
-    if answer.mode:
-        lines.append(f"  mode    {answer.mode.value}, {answer.mode.description}")
+    whose = "continuous arch" if answer.method == "theory" else "voussoirs as built"
+    lines += _modes(answer, f"of the {whose}, at eta {ratio(answer.eta_low)}")
     if answer.thrust is not None:
         lines.append(f"  thrust  h = {answer.thrust:.9g}")
     if answer.beta_r is not None:
@@ -128,6 +137,31 @@ def bracket_lines(answer: Bracket) -> list[str]:
         lines.append(f"  slides  {math.degrees(answer.beta_s):.4f} deg from the crown")
     if answer.undecided:
         lines.append(f"  unsure  {answer.undecided} of {answer.runs} ratios undecided")
+    return lines
+
+
+def _exact(label: str, answer: Check | Bracket) -> str:
+    """Tell the least thickness as built and of the continuous arch, each with its mode."""
+
+    def least(eta: float | None, mode: Mode | None) -> str:
+        return f"{'none up to 2' if eta is None else ratio(eta)} ({mode or 'mode unnamed'})"
+
+    return (
+        f"  {label} eta {least(answer.eta_limit, answer.mode_limit)} as built, "
+        f"{least(answer.eta_theory, answer.mode_theory)} continuous"
+    )
+
+
+def _modes(answer: Check | Bracket, of: str) -> list[str]:
+    """Tell the mode an arch starts with and, if it is another, that in motion."""
+    lines: list[str] = []
+    if answer.mode:
+        lines.append(f"  mode    {answer.mode.value}, {answer.mode.description}, {of}")
+    if answer.mode_in_motion and answer.mode_in_motion is not answer.mode:
+        later = answer.mode_in_motion
+        lines.append(
+            f"  moving  {later.value}, {later.description}, once it has moved {EARLY:g} r"
+        )
     return lines
 
 

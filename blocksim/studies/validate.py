@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from blocksim.arch import limit
 from blocksim.arch.bracket import ETA_MAX, Bracket, bracket
 from blocksim.arch.circular import Arch
+from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import Scenario, load_scenario, shipped
@@ -26,9 +27,7 @@ TOLS = {"pymunk": 0.001, "pybullet": 0.004}
 ERROR_BOUND = 0.002
 """A bracket whose centre is farther than this from `limit` is a miss."""
 ASIDE = 0.01
-"""How far below the bracket the mode is observed, and at which verdicts are asked."""
-NEARER = 0.002
-"""How far below the mode is looked at again where it differs from that of `limit`."""
+"""How far below and above the bracket arches are let go."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +50,10 @@ class Row:
     error : float or None
         Centre of the bracket over `eta_limit`, less 1.
     mode_observed : Mode or None
-        In a moving run 1 % below the bracket.
+        Of the mechanism it starts with, at the bracket's lower end; where the claim is a
+        verdict, of the arch as it is.
+    mode_in_motion : Mode or None
+        In the moving run 1 % below the bracket, where more than the weakest mode may move.
     below, above : Verdict or None
         1 % below and above the bracket, by onset test and moving run; None where not tried.
     verdict_expected, verdict : Verdict or None
@@ -82,6 +84,7 @@ class Row:
     eta_high: float | None = None
     error: float | None = None
     mode_observed: Mode | None = None
+    mode_in_motion: Mode | None = None
     below: Verdict | None = None
     above: Verdict | None = None
     verdict_expected: Verdict | None = None
@@ -163,13 +166,12 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         tol=TOLS[engine],
         confirm=False,
     )
-    mode, below, above = found.mode, None, None
-    recording = None
+    in_motion = below = above = recording = None
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
         arch = scenario.arch(under)
         seen = trial(arch.problem(scenario.mu), engine)
-        mode, below = observed_mode(seen.joints, arch), seen.verdict
+        in_motion, below = observed_mode(seen.joints_in_motion, arch), seen.verdict
         recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
@@ -180,7 +182,7 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
     middle = found.centre or found.eta_low
     if middle is not None and found.eta_limit:
         error = middle / found.eta_limit - 1
-    miss = "; ".join(_misses(found, error, mode, below, above))
+    miss = "; ".join(_misses(found, error, below, above))
     return replace(
         _asked(scenario, engine),
         eta_limit=found.eta_limit,
@@ -188,11 +190,12 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
         eta_low=found.eta_low,
         eta_high=found.eta_high,
         error=error,
-        mode_observed=mode,
+        mode_observed=found.mode,
+        mode_in_motion=in_motion,
         below=below,
         above=above,
         miss=miss,
-        note=_note(scenario, found, mode),
+        note=_note(scenario, found, in_motion),
         wall_s=time.perf_counter() - started,
         recording=recording,
     )
@@ -206,6 +209,7 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
     return replace(
         _asked(scenario, engine),
         mode_observed=observed_mode(seen.joints, arch),
+        mode_in_motion=observed_mode(seen.joints_in_motion, arch),
         verdict_expected=scenario.expected_verdict,
         verdict=seen.verdict,
         miss="" if right else f"{seen.verdict}, expected is {scenario.expected_verdict}",
@@ -275,7 +279,6 @@ def _exclusive(one: Row, other: Row) -> bool:
 def _misses(
     found: Bracket,
     error: float | None,
-    mode: Mode | None,
     below: Verdict | None,
     above: Verdict | None,
 ) -> list[str]:
@@ -288,8 +291,10 @@ def _misses(
         misses.append("no bracket")
     elif abs(error) > ERROR_BOUND:
         misses.append(f"error {error:+.2%}")
-    if mode is not found.mode_limit:
-        misses.append(f"mode {mode or 'unnamed'}, limit says {found.mode_limit or 'unnamed'}")
+    if found.mode is not found.mode_limit:
+        misses.append(
+            f"mode {found.mode or 'unnamed'}, limit says {found.mode_limit or 'unnamed'}"
+        )
     if below is not Verdict.COLLAPSES:
         misses.append(f"{below or 'nothing tried'} 1 % below")
     if above not in {Verdict.STANDS, None}:
@@ -297,20 +302,18 @@ def _misses(
     return misses
 
 
-def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
+def _note(scenario: Scenario, found: Bracket, in_motion: Mode | None) -> str:
     """Say why modes differ, where that is known, and what else to keep in mind."""
     notes: list[str] = []
-    if mode is not found.mode_limit:
-        tied = {mode, found.mode_limit} <= {*scenario.expected_modes}
-        nearer = _mode_nearer(scenario, found)
-        if tied:
+    if found.mode is not found.mode_limit:
+        if {found.mode, found.mode_limit} <= {*scenario.expected_modes}:
             notes.append("on a line of the map, where both modes coincide")
-        elif nearer is found.mode_limit:
-            notes.append(
-                f"0.2 % below it is {nearer}: 1 % below, a second mode is overcome too"
-            )
-        else:
-            notes.append(f"0.2 % below it is {nearer or 'unnamed'}")
+        elif found.eta_low is not None:
+            there = mechanism(scenario.arch(found.eta_low), scenario.mu).mode
+            said = there or "unnamed"
+            notes.append(f"at the bracket's lower end limit analysis says {said}")
+    if in_motion and in_motion is not found.mode:
+        notes.append(f"in motion, 1 % below, the mode is {in_motion}")
     most = get_engine(found.method).most_friction
     if scenario.mu > most:
         there = limit.least_thickness(
@@ -319,13 +322,3 @@ def _note(scenario: Scenario, found: Bracket, mode: Mode | None) -> str:
         least = "nothing stands" if there.eta is None else f"{there.eta:.6g}, {there.mode}"
         notes.append(f"friction is {most:g} in the engine, where limit analysis says {least}")
     return "; ".join(notes)
-
-
-def _mode_nearer(scenario: Scenario, found: Bracket) -> Mode | None:
-    """Mode of the onset test close to the limit."""
-    if found.eta_low is None:
-        return None
-    eta = (found.centre or found.eta_low) * (1 - NEARER)
-    arch = scenario.arch(eta)
-    seen = trial(arch.problem(scenario.mu), found.method, moving=False)
-    return observed_mode(seen.joints, arch)

@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import Blocks, Direct
 
 STEPS = (0.02, 0.01, 0.005, 0.0025)
@@ -34,7 +35,7 @@ def standing_block(width, height, slope=0.0):
 
 def world_of(assembly, mu, step):
     settings = replace(Direct().settings(assembly), step=step)
-    return Blocks(assembly, mu, settings)
+    return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 
 def order(errors):

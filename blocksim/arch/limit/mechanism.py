@@ -29,6 +29,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from blocksim.arch.circular import Arch, Weight, centroid_factor, crown_width
@@ -43,6 +44,8 @@ AT_LIMIT = 1e-10
 """Extra strength below which the arch is at its least thickness."""
 SPARE = 1.0
 """Strength to spare looked for at most: a flat arch has any amount at a great thrust."""
+CLOSER = 1e-6
+"""Unit in which the program is solved the second time."""
 STEPS = 60
 CONDITIONS = ("hinge-extrados", "hinge-intrados", "slides-out", "slides-in")
 """Order of the columns of `Mechanism.strength` and `Mechanism.rates`."""
@@ -68,7 +71,8 @@ class Mechanism:
         Velocity of each voussoir, with associated sliding: of its point at the centre of
         the arch (to the right, upwards) and its rotation (counter-clockwise), r = 1.
     mode : Mode or None
-        Collapse mode; None where it stands or the joints form none of the seven.
+        Collapse mode at this thickness, which far below the least need not be that at the
+        least; None where it stands or the joints form none of the seven.
     """
 
     angles: Array
@@ -80,6 +84,11 @@ class Mechanism:
     crown_moment: float
     motions: Array
     mode: Mode | None
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Which conditions move, (n + 1, 4)."""
+        return _moving(self.rates)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -247,25 +256,14 @@ def conditions(
 
 def _solve(program: Conditions) -> tuple[Array, float, Array]:
     """Solve the program: unknowns x, value s, rates."""
-    rows, unknowns = program.matrix.shape
-    matrix = np.column_stack([program.matrix, np.full(rows, -1.0)])
-    result = linprog(
-        np.append(np.zeros(unknowns), 1.0),
-        A_ub=matrix,
-        b_ub=-program.offset,
-        bounds=[(None, None)] * unknowns + [(-SPARE, None)],
-        method="highs-ds",
-    )
-    if result.status != 0:
-        message = f"HiGHS: {result.message}"
-        raise RuntimeError(message)
-    state: Array = np.asarray(result.x, dtype=float)
-    marginals: Array = np.asarray(result.ineqlin.marginals, dtype=float)
-    rates: Array = np.maximum(-marginals, 0.0)
-    rates[rates < ACTIVE] = 0.0
+    # HiGHS works to 1e-7, which is a thin arch's whole strength: once more, from near.
+    state, rates = _optimum(program, np.append(0.0 * program.matrix[0], 0.0), 1.0)
+    if state[-1] > -SPARE / 2:
+        state, rates = _optimum(program, state, CLOSER)
     if state[-1] <= -SPARE / 2:
         return state[:-1], float(state[-1]), np.zeros_like(rates)
-    # HiGHS works to 1e-7; its active set is right, and fulfilled here to the last bits.
+    matrix = np.column_stack([program.matrix, np.full(rates.size, -1.0)])
+    # The active set is right, and fulfilled here to the last bits.
     moving = rates > 0
     for _ in range(2):
         left = matrix[moving] @ state + program.offset[moving]
@@ -274,6 +272,25 @@ def _solve(program: Conditions) -> tuple[Array, float, Array]:
         unbalanced[-1] += 1.0
         rates[moving] -= np.linalg.lstsq(matrix[moving].T, unbalanced, rcond=None)[0]
     return state[:-1], float(state[-1]), rates
+
+
+def _optimum(program: Conditions, about: Array, unit: float) -> tuple[Array, Array]:
+    """Let HiGHS solve the program in unknowns counted from `about` in a unit: (x, s), rates."""
+    rows, unknowns = program.matrix.shape
+    matrix = np.column_stack([program.matrix, np.full(rows, -1.0)])
+    result = linprog(
+        np.append(np.zeros(unknowns), 1.0),
+        A_ub=matrix,
+        b_ub=-(matrix @ about + program.offset) / unit,
+        bounds=[(None, None)] * unknowns + [((-SPARE - about[-1]) / unit, None)],
+        method="highs-ds",
+    )
+    if result.status != 0:
+        message = f"HiGHS: {result.message}"
+        raise RuntimeError(message)
+    rates: Array = np.maximum(-np.asarray(result.ineqlin.marginals, dtype=float), 0.0)
+    rates[rates < ACTIVE] = 0.0
+    return about + unit * np.asarray(result.x, dtype=float), rates
 
 
 def motions_of(angles: Array, rates: Array, eta: float, mu: float) -> Array:
@@ -291,11 +308,14 @@ def motions_of(angles: Array, rates: Array, eta: float, mu: float) -> Array:
     return np.cumsum(np.column_stack([centre, turn]), axis=0)[:-1]
 
 
+def _moving(rates: Array) -> NDArray[np.bool_]:
+    return rates > ACTIVE * max(float(rates.max()), ACTIVE)
+
+
 def _mode(arch: Arch, rates: Array) -> Mode | None:
-    least = ACTIVE * max(float(rates.max()), ACTIVE)
     active = [
         ActiveJoint(abs(angle), slides=k >= 2, intrados=k == 1)
-        for angle, row in zip(arch.joint_angles.tolist(), rates, strict=True)
-        for k in np.flatnonzero(row > least).tolist()
+        for angle, row in zip(arch.joint_angles.tolist(), _moving(rates), strict=True)
+        for k in np.flatnonzero(row).tolist()
     ]
     return name_mode(active, crown_width(arch.half_angle, arch.voussoirs)) if active else None

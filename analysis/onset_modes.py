@@ -1,0 +1,269 @@
+"""The mode an arch starts with, over the whole map and where modes are narrow.
+
+Question: does an engine see, close to the least thickness, the mechanism that limit analysis
+finds for the same voussoirs, in all seven modes? Asked about are the arches of `mode_sweep.py`,
+of 20 to 40 voussoirs. A voussoir of these spans the band of rsr, so that limit analysis itself
+calls most draws of rsr another mode: the same half-angles and frictions are asked again with
+120 to 200 voussoirs, and others within 0.2 % of those of S and J, where rsr meets other modes.
+
+The mode is that of the mechanism an arch starts with, by the onset test: `direct` 1e-5 below
+the least thickness of the voussoirs (or the friction they need, where that is critical), pymunk
+5e-4 below. It is compared first with the mechanism of limit analysis (eqs 15 and 16) for the
+same voussoirs at the same thickness, then with theory.
+
+Run: python -m analysis.onset_modes OUT [--engine pymunk] [--sweep N] [--rsr N] [--about N]
+[--most N]. Rows are kept in OUT/onset_modes_ENGINE.jsonl, the same command goes on after an
+interruption; they are written as OUT/onset_modes_ENGINE.csv, too.
+"""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import itertools
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from analysis.command import run
+from analysis.keeping import Row, answers
+from analysis.mode_draws import critical_draws, draw
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit import least_thickness
+from blocksim.arch.limit.mechanism import mechanism
+from blocksim.arch.modes import Mode
+from blocksim.arch.observed import observed_mode
+from blocksim.arch.theory import least_thickness as theory_of
+from blocksim.arch.theory.regions import landmarks
+from blocksim.ask.search import ETA_MAX
+from blocksim.evidence.trial import trial
+from blocksim.many.answers import version_of
+from blocksim.view.mapfigure import draw_regions
+from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
+
+SEED = 14
+ARCHES = 2300
+FINEST = 200
+FEWEST = 120
+BELOW = {"direct": 1e-5, "pymunk": 5e-4}
+AROUND = 0.002
+"""Share of half-angle and friction within which arches are drawn about S and J."""
+NONE = "none"
+
+
+@dataclass(frozen=True)
+class Fine:
+    """An arch: where it was drawn (map, rsr, S or J), half-angle [deg], friction, voussoirs.
+
+    `eta` where friction is critical, not thickness.
+    """
+
+    where: str
+    alpha_deg: float
+    mu: float
+    voussoirs: int
+    eta: float | None = None
+
+
+@dataclass(frozen=True)
+class Result:
+    """Arches, and how many modes are as limit analysis and as theory say.
+
+    `rsr` counts arches that limit analysis calls rsr, `rsr_seen` those of them that the engine
+    does. `modes` counts (where drawn, by limit analysis, observed).
+    """
+
+    engine: str
+    arches: int
+    as_limit: int
+    as_theory: int
+    rsr: int
+    rsr_seen: int
+    undecided: int
+    modes: dict[tuple[str, str, str], int]
+
+
+def drawn(sweep: int, rsr: int, about: int, most: int) -> list[Fine]:
+    """Draw the arches: those of `mode_sweep`, its rsr with more voussoirs, about S and J."""
+    counts = np.random.default_rng(SEED)
+    every = [
+        Fine("map", each.alpha_deg, each.mu, each.voussoirs, each.eta)
+        for each in itertools.islice(draw(), sweep)
+    ]
+    every += [
+        Fine(Mode.RSR.value, each.alpha_deg, each.mu, int(counts.integers(FEWEST, most + 1)))
+        for each in itertools.islice(critical_draws(Mode.RSR), rsr)
+    ]
+    for name in ("S", "J"):
+        every += itertools.islice(_near(name, most), about)
+    return every
+
+
+def _near(name: str, most: int) -> Iterator[Fine]:
+    """Draw arches about a point of the map that stand at some thickness."""
+    random = np.random.default_rng([SEED, ord(name)])
+    mark = landmarks()[name]
+    while True:
+        alpha, mu = np.array([mark.half_angle, mark.mu]) * random.uniform(
+            1 - AROUND, 1 + AROUND, 2
+        )
+        voussoirs = int(random.integers(FEWEST, most + 1))
+        if least_thickness(alpha, mu, voussoirs).eta and theory_of(alpha, mu).eta:
+            yield Fine(name, math.degrees(alpha), float(mu), voussoirs)
+
+
+def ask(fine: Fine, engine: str) -> Row:
+    """Ask an engine what the arch starts with, and limit analysis and theory likewise."""
+    alpha = math.radians(fine.alpha_deg)
+    least = least_thickness(alpha, fine.mu, fine.voussoirs)
+    mu, eta, below = fine.mu, fine.eta, 1 - BELOW[engine]
+    if eta is None:
+        eta = (ETA_MAX if least.eta is None else least.eta) * below
+    else:
+        mu *= below
+    arch = Arch(half_angle=alpha, eta=eta, voussoirs=fine.voussoirs)
+    seen = trial(arch.problem(mu), engine, moving=False)
+    mode = observed_mode(seen.joints, arch)
+    there = mechanism(arch, mu).mode
+    return {
+        "drawn": fine.where,
+        "alpha_deg": fine.alpha_deg,
+        "mu": mu,
+        "voussoirs": fine.voussoirs,
+        "eta": eta,
+        "verdict": seen.verdict.value,
+        "mode": NONE if mode is None else mode.value,
+        "mode_limit": NONE if there is None else there.value,
+        "mode_theory": theory_of(alpha, mu).mode.value,
+        "engine": engine,
+        "version": version_of(engine),
+        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+    }
+
+
+def main(
+    out: Path,
+    *,
+    quick: bool = False,
+    engine: str = "direct",
+    sweep: int = ARCHES,
+    rsr: int = 230,
+    about: int = 40,
+    most: int = FINEST,
+) -> Result:
+    """Run the study or go on with it; write rows and figure and return the numbers."""
+    cases = drawn(10, 2, 1, FEWEST) if quick else drawn(sweep, rsr, about, most)
+    path = out / f"onset_modes_{engine}.jsonl"
+    rows = answers(path, cases, partial(ask, engine=engine), 1 if quick else 2)
+    return written(rows, path, engine)
+
+
+def written(rows: list[Row], path: Path, engine: str) -> Result:
+    """Write rows as a table and as a figure beside the file they are kept in; count them."""
+    with path.with_suffix(".csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    _figure(rows, path.with_suffix(".png"), engine)
+    called = [row for row in rows if row["mode_limit"] == Mode.RSR]
+    return Result(
+        engine=engine,
+        arches=len(rows),
+        as_limit=sum(row["mode"] == row["mode_limit"] for row in rows),
+        as_theory=sum(row["mode"] == row["mode_theory"] for row in rows),
+        rsr=len(called),
+        rsr_seen=sum(row["mode"] == Mode.RSR for row in called),
+        undecided=sum(row["verdict"] == "undecided" for row in rows),
+        modes=dict(
+            Counter((str(r["drawn"]), str(r["mode_limit"]), str(r["mode"])) for r in rows)
+        ),
+    )
+
+
+def _figure(rows: list[Row], path: Path, engine: str) -> None:
+    """Draw what arches start with over the map, and count it against limit analysis."""
+    parts = (
+        ("the arches of the sweep", [r for r in rows if r["drawn"] == "map"]),
+        ("rsr, about S and J", [r for r in rows if r["drawn"] != "map"]),
+    )
+    parts = tuple((title, own) for title, own in parts if own)
+    with mpl.rc_context(FONT):
+        figure = Figure(figsize=(14, 6.6 * len(parts)), layout="constrained")
+        grid = figure.subplots(len(parts), 2, width_ratios=(1.5, 1), squeeze=False)
+        for (title, own), (over, table) in zip(parts, grid, strict=True):
+            counts = sorted(int(str(r["voussoirs"])) for r in own)
+            span = f"{counts[0]} to {counts[-1]} voussoirs"
+            _over_map(over, own, zoomed=own[0]["drawn"] != "map")
+            over.set_title(f"{title}: {len(own)} of {span}, {BELOW[engine]:g} below the limit")
+            _table(table, own, engine)
+        figure.savefig(path, dpi=110)
+
+
+def _over_map(axes: Axes, rows: list[Row], *, zoomed: bool) -> None:
+    """Draw the modes seen over those published (Fig. 9)."""
+    draw_regions(axes)
+    handles: list[Line2D] = []
+    for mode in (*Mode, None):
+        name, style = (mode.value, MODES[mode]) if mode else (NONE, UNNAMED)
+        own = [row for row in rows if row["mode"] == name]
+        look = {"marker": style.marker, "mfc": style.colour, "mec": "white", "mew": 0.4}
+        axes.plot(*_places(own), ls="", ms=7 if zoomed else 4.5, zorder=5, **look)
+        if own:
+            handles.append(Line2D([], [], ls="", ms=8, label=f"{name}  {len(own)}", **look))
+    rings = (
+        ("as limit analysis,\nnot as published", INK, False),
+        ("not as limit analysis", MISS, True),
+    )
+    for words, colour, missed in rings:
+        own = [
+            row
+            for row in rows
+            if (row["mode"] != row["mode_limit"]) is missed
+            and (missed or row["mode"] != row["mode_theory"])
+        ]
+        ring = {"marker": "o", "mfc": "none", "mec": colour, "mew": 0.8, "ls": ""}
+        axes.plot(*_places(own), ms=11 if zoomed else 8, zorder=6, **ring)
+        handles.append(Line2D([], [], ms=10, label=f"{words}  {len(own)}", **ring))
+    if zoomed:
+        mus, etas = np.array(_places(rows))
+        axes.set_xlim(mus.min() - 0.02, mus.max() + 0.02)
+        axes.set_ylim(etas.min() - 0.005, etas.max() + 0.005)
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        for text in list(axes.texts):
+            mu, eta = getattr(text, "xy", text.get_position())
+            arrow = getattr(text, "arrow_patch", None)
+            if arrow or not (left <= mu <= right and low <= eta <= high):
+                text.remove()  # a name that lies beyond
+    axes.legend(handles=handles, loc="best", title="starts with", fontsize=9)
+
+
+def _table(axes: Axes, rows: list[Row], engine: str) -> None:
+    """Draw how often each mode is seen where limit analysis says each."""
+    counts = Counter((str(row["mode_limit"]), str(row["mode"])) for row in rows)
+    names = [m for m in (*Mode, NONE) if any(m in pair for pair in counts)]
+    grid = np.array([[counts[limit, seen] for seen in names] for limit in names])
+    axes.imshow(grid > 0, cmap="Blues", vmin=0, vmax=2.5)
+    for (down, across), count in np.ndenumerate(grid):
+        axes.text(across, down, str(count or ""), ha="center", va="center", fontsize=12)
+    axes.set_xticks(range(len(names)), names)
+    axes.set_yticks(range(len(names)), names)
+    axes.set_xlabel(f"starts with, by {engine}")
+    axes.set_ylabel("limit analysis of the same voussoirs")
+    axes.spines[:].set_visible(False)
+
+
+def _places(rows: list[Row]) -> tuple[list[float], list[float]]:
+    return [float(str(r["mu"])) for r in rows], [float(str(r["eta"])) for r in rows]
+
+
+if __name__ == "__main__":
+    run(main)
