@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from blocksim import interrupts
+
+if interrupts.is_program():
+    # Before the imports below, which take a second.
+    interrupts.install()
+
 from blocksim.arch import Arch as Arch
 from blocksim.assembly import Assembly as Assembly
 from blocksim.assembly import Block as Block

@@ -167,7 +167,7 @@ def test_a_crash_is_no_verdict(
         raise ZeroDivisionError(message)
 
     monkeypatch.setattr("blocksim.cli.app", crash)
-    monkeypatch.setattr("blocksim.cli.signal.signal", lambda *_: None)
+    monkeypatch.setattr("blocksim.cli.interrupts.install", lambda: None)
     with pytest.raises(SystemExit) as end:
         main()
     assert end.value.code == 70

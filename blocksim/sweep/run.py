@@ -19,7 +19,7 @@ from blocksim.arch import require
 from blocksim.errors import MissingPart
 from blocksim.files import make_folder
 from blocksim.ladder import STATIC
-from blocksim.processes import processes
+from blocksim.processes import Crew, processes
 from blocksim.progress import Progress, silent
 from blocksim.sweep.answers import (
     Answered,
@@ -225,9 +225,11 @@ class _Hands:
         return True
 
     def leave(self, *, wait: bool = False) -> None:
-        """Let go of processes, their work unfinished or not."""
-        if self._given is None:
-            self._executor.shutdown(wait=wait, cancel_futures=True)
+        """Let go of processes, after their work or at once."""
+        if self._given is None and wait:
+            self._executor.shutdown()
+        elif isinstance(self._executor, Crew):
+            self._executor.end()
 
 
 def _work(
