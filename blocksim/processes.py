@@ -38,9 +38,10 @@ class Crew(ProcessPoolExecutor):
 
     def end(self) -> None:
         """End all work, unfinished as it is."""
-        self.shutdown(wait=False, cancel_futures=True)
         for child in set(active_children()) - self._others:
             child.terminate()
+        # Waited for: a pool that breaks while Python ends may say so.
+        self.shutdown(cancel_futures=True)
 
 
 def processes(count: int) -> Crew:
