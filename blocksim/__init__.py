@@ -25,5 +25,4 @@ from blocksim.recording import Recording as Recording
 from blocksim.recording import load_recording as load_recording
 from blocksim.trial import simulate as simulate
 from blocksim.verdict import Verdict as Verdict
-
-__version__ = "0.1.0"
+from blocksim.version import __version__ as __version__

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from blocksim import limit, theory
-from blocksim.arch import Arch, Weight, is_number, require, require_friction
+from blocksim.arch import Arch, Weight, is_number, require, require_friction, require_lean
 from blocksim.ladder import choose, chosen_words
 from blocksim.modes import Mode
 from blocksim.progress import Progress, silent
@@ -29,6 +29,11 @@ class Bracket:
     half_angle, mu : float
     voussoirs : int
     weight : str
+    lean : float
+        Angle by which gravity leans out of the plane [rad]; `eta_limit` and `eta_theory`
+        are those without it.
+    depth : float
+        Depth out of the plane [r].
     tol : float
         Relative width asked for.
     eta_low : float or None
@@ -77,6 +82,8 @@ class Bracket:
     splits: int | None = None
     reason: str = ""
     wall_s: float = 0.0
+    lean: float = 0.0
+    depth: float = 1.0
 
     @property
     def centre(self) -> float | None:
@@ -94,6 +101,8 @@ def bracket(
     weight: Weight = "centreline",
     method: str = "auto",
     tol: float = 0.005,
+    lean: float = 0.0,
+    depth: float = 1.0,
     confirm: bool = True,
     settings: Overrides = BY_RULE,
     reduce: bool = False,
@@ -116,6 +125,10 @@ def bracket(
         `auto`, `theory`, `limit`, or the name of an engine.
     tol : float
         Relative width at which to end, above 0 and at most 0.5.
+    lean : float
+        Angle by which gravity leans out of the plane [rad].
+    depth : float
+        Depth out of the plane [r], which decides only where gravity leans.
     confirm : bool
         Let the arch go at both ends; without, an engine answers by the onset test alone.
     settings : mapping of str to float
@@ -138,8 +151,9 @@ def bracket(
     started = time.perf_counter()
     require_friction(mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
-    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    rung = choose(method, tol, settings=settings, reduce=reduce)
+    require_lean(lean)
+    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight, depth=depth)
+    rung = choose(method, tol, spatial=lean != 0, settings=settings, reduce=reduce)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
     answer = Bracket(
@@ -148,6 +162,8 @@ def bracket(
         mu=mu,
         voussoirs=voussoirs,
         weight=weight,
+        lean=lean,
+        depth=depth,
         tol=tol,
         eta_low=None,
         eta_high=None,
@@ -180,7 +196,7 @@ def bracket(
             reason="static limit analysis of the voussoirs as built",
         )
     else:
-        held = partial(hold, mu=mu, engine=rung.name, settings=settings)
+        held = partial(hold, mu=mu, engine=rung.name, lean=lean, settings=settings)
         answer = _by_simulation(
             arch, answer, continuous.eta, held, progress, confirm=confirm, reduce=reduce
         )

@@ -29,6 +29,8 @@ class Check:
         A sentence.
     arch : Arch
     mu : float
+    lean : float
+        Angle by which gravity leans out of the plane [rad].
     eta_limit, eta_theory : float or None
         Least thickness of the voussoirs as built and of the continuous arch; None where
         no thickness up to 2 stands.
@@ -52,6 +54,7 @@ class Check:
     reason: str
     arch: Arch
     mu: float
+    lean: float
     eta_limit: float | None
     eta_theory: float | None
     mode: Mode | None
@@ -140,6 +143,7 @@ def check(
         reason=reason + chosen_words(method, rung),
         arch=arch,
         mu=mu,
+        lean=lean,
         eta_limit=built.eta,
         eta_theory=continuous.eta,
         mode=mode,

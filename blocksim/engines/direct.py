@@ -13,13 +13,13 @@ the floor (`blocksim.ground`), without bouncing.
 from __future__ import annotations
 
 import math
-from importlib.metadata import version
 
 import numpy as np
 
 from blocksim.assembly import SUPPORT, Array, Assembly
 from blocksim.contact import ContactProblem, Neighbours, Solution, Touch
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
+from blocksim.version import __version__
 
 STEP = 0.01
 LONG, SLOW = 0.2, 5e-4
@@ -49,8 +49,8 @@ class Direct:
 
     @property
     def version(self) -> str:
-        """Version of the linear algebra, the only library in it."""
-        return version("scipy")
+        """Version of blocksim, whose own it is."""
+        return __version__
 
     def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002 - the protocol's
         """Return the same settings for every assembly."""
