@@ -17,7 +17,7 @@ from blocksim.arch import Arch, require, require_friction, require_lean
 from blocksim.assembly import PLANAR, SPATIAL, Array, displacement
 from blocksim.engines.base import Quality, Settings
 from blocksim.errors import InputError
-from blocksim.files import require_file, write_whole
+from blocksim.files import AnyPath, json_text, require_file, write_whole
 
 FORMAT = 1
 WRITTEN = "written by blocksim simulate"
@@ -94,7 +94,7 @@ class Recording:
         """Return times in seconds for a gravity in m/s^2."""
         return self.times * math.sqrt(self.arch.radius / gravity)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: AnyPath) -> None:
         """Write a compressed .npz: arrays and one JSON text, nothing executable.
 
         Raises
@@ -112,7 +112,7 @@ class Recording:
             "quality": asdict(self.quality),
             "state_hash": self.state_hash,
         }
-        text = np.array(json.dumps(header))
+        text = np.array(json_text(header))
 
         def write(file: BinaryIO) -> None:
             np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
@@ -120,7 +120,7 @@ class Recording:
         write_whole(path, write)
 
 
-def load_recording(path: Path) -> Recording:
+def load_recording(path: AnyPath) -> Recording:
     """Read a recording and check that it is one.
 
     Raises
@@ -128,6 +128,7 @@ def load_recording(path: Path) -> Recording:
     InputError
         If the file is missing, too large, or no recording.
     """
+    path = Path(path)
     where = str(path)
     require_file(path, "recording", "an existing .npz file", LARGEST_FILE)
     try:
@@ -165,6 +166,8 @@ def _settings(written: dict[str, Any]) -> Settings:
     """Read settings, those of older recordings, too: they called the lean a tilt."""
     named = {"lean" if name == "tilt" else name: value for name, value in dict(written).items()}
     named.pop("plane_lock", None)
+    # JSON has no infinity.
+    named |= {name: float(value) for name, value in named.items() if isinstance(value, str)}
     return Settings(**named)
 
 

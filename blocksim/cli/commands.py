@@ -73,7 +73,7 @@ from blocksim.report.answers import (
 )
 from blocksim.scenario import load_scenario, shipped
 from blocksim.trial import simulate as record_motion
-from blocksim.validate import scenarios
+from blocksim.validate import USUAL, scenarios, unasked
 from blocksim.validate import validate as run_validation
 from blocksim.verdict import Verdict
 from blocksim.workprec import cases, measure
@@ -242,19 +242,30 @@ def validate(
         bool, typer.Option("--quick/--full", help="Scenarios marked quick, or all of them.")
     ] = False,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/validate"),
+    methods: Annotated[
+        str | None,
+        typer.Option(
+            help=f"Engines, with commas: {', '.join(ENGINES)}; "
+            f"{' and '.join(USUAL)} if left out."
+        ),
+    ] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes.")] = 2,
 ) -> None:
     """Simulate published arches and hold them against the analytical map."""
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.report.tables import write_results
 
+    engines = None if methods is None else [each.strip() for each in methods.split(",")]
+    for each in engines or ():
+        require(each in ENGINES, "--methods", each, f"one or more of {', '.join(ENGINES)}")
     make_folder(out)
     chosen = scenarios(quick=quick)
+    left_out = unasked(chosen, engines)
     with progress() as report:
-        rows = run_validation(chosen, workers=workers, progress=report)
-    paths = write_results(rows, out)
+        rows = run_validation(chosen, engines, workers=workers, progress=report)
+    paths = write_results(rows, out, left_out)
     show(validation_table(rows))
-    say("\n".join(validation_lines(rows)))
+    say("\n".join(validation_lines(rows, left_out)))
     say("wrote " + ", ".join(str(path) for path in paths))
 
 

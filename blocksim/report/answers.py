@@ -10,13 +10,6 @@ from blocksim.check import Check
 from blocksim.joints import JointState
 
 
-def plain(value: object) -> object:
-    """Return a value as JSON has it: inf, which JSON lacks, becomes a text."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    return value
-
-
 def check_record(answer: Check) -> dict[str, object]:
     """Return a check as `check --json` prints it."""
     arch = answer.arch
@@ -28,7 +21,7 @@ def check_record(answer: Check) -> dict[str, object]:
         "verdict": answer.verdict.value,
         "reason": answer.reason,
         "eta": arch.eta,
-        "mu": plain(answer.mu),
+        "mu": answer.mu,
         "half_angle_deg": math.degrees(arch.half_angle),
         "voussoirs": arch.voussoirs,
         "weight": arch.weight,
@@ -55,7 +48,7 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
     return {
         "method": answer.method,
         "half_angle_deg": math.degrees(answer.half_angle),
-        "mu": plain(answer.mu),
+        "mu": answer.mu,
         "voussoirs": answer.voussoirs,
         "weight": answer.weight,
         "depth": answer.depth,

@@ -10,11 +10,12 @@ from pydantic import BeforeValidator, Field
 
 from blocksim.arch import require
 from blocksim.errors import MISSING
+from blocksim.scenario import infinite
 
 DRAWN_AT_ONCE = 4096
 """Arches drawn together; a longer random design begins with those of a shorter one."""
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=True)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=True), BeforeValidator(infinite)]
 
 
 def _as_table(written: object) -> object:

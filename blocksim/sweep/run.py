@@ -17,7 +17,7 @@ from pathlib import Path
 
 from blocksim.arch import require
 from blocksim.errors import MissingPart
-from blocksim.files import make_folder
+from blocksim.files import AnyPath, make_folder
 from blocksim.ladder import STATIC
 from blocksim.processes import Crew, processes
 from blocksim.progress import Progress, silent
@@ -78,7 +78,7 @@ class Summary:
 
 def sweep(
     design: Questions,
-    folder: Path,
+    folder: AnyPath,
     *,
     executor: Executor | None = None,
     workers: int = 2,
@@ -120,6 +120,7 @@ def sweep(
     require(workers >= 1, "workers", workers, "at least 1")
     require(in_flight is None or in_flight >= 1, "in_flight", in_flight, "at least 1")
     versions = {method: version_of(method) for method in design.method}
+    folder = Path(folder)
     make_folder(folder)
     many = in_flight or 2 * workers
     tally = Tally()

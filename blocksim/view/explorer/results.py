@@ -10,7 +10,7 @@ from typing import Any
 
 from blocksim.arch import WEIGHTS, is_number
 from blocksim.errors import InputError
-from blocksim.files import require_file
+from blocksim.files import AnyPath, require_file
 from blocksim.modes import Mode
 
 LARGEST_FILE = 20_000_000
@@ -56,7 +56,7 @@ class Result:
     said: str
 
 
-def read_results(path: Path) -> list[Result]:
+def read_results(path: AnyPath) -> list[Result]:
     """Read the results of a `validate` run.
 
     Parameters
@@ -74,6 +74,7 @@ def read_results(path: Path) -> list[Result]:
     InputError
         If the file is missing, too large, or no such results.
     """
+    path = Path(path)
     require_file(path, "--results", f"an existing {WRITTEN}", LARGEST_FILE)
     try:
         rows = json.loads(path.read_bytes())["rows"]
