@@ -157,7 +157,8 @@ def test_without_a_thickness_the_least_one_is_asked_for(tmp_path: Path) -> None:
 
 
 def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path) -> None:
-    near = "half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\nratio = [0.5, 0.97, 0.995, 1.005, 1.03]\n"
+    near = "half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\n"
+    near += "ratio = [0.5, 0.97, 0.995, 1.005, 1.03]\n"
     widths = {"band = 0.01": 2, "band = 0.04": 4, "band = inf": 5, "": 5}
     for text, simulated in widths.items():
         folder = tmp_path / (text or "none")
