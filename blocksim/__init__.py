@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from blocksim.common import interrupts
+
+if interrupts.is_program():
+    # Before the imports below, which take a second.
+    interrupts.install()
+
 from blocksim.arch.bracket import Bracket as Bracket
 from blocksim.arch.bracket import bracket as bracket
 from blocksim.arch.check import Check as Check
@@ -19,7 +25,6 @@ from blocksim.blocks.problem import Problem as Problem
 from blocksim.common.errors import BlocksimError as BlocksimError
 from blocksim.common.errors import InputError as InputError
 from blocksim.common.errors import MissingPart as MissingPart
+from blocksim.common.version import __version__ as __version__
 from blocksim.evidence.recording import Recording as Recording
 from blocksim.evidence.verdict import Verdict as Verdict
-
-__version__ = "0.1.0"

@@ -7,7 +7,7 @@ from pathlib import Path
 from blocksim.many import Design, load_design, read_rows
 
 GRID = """
-alpha_deg = { low = 60, high = 150, steps = 4 }
+half_angle_deg = { low = 60, high = 150, steps = 4 }
 mu = [0.5, 0.9, inf]
 voussoirs = [9, 12]
 eta = [0.05, 0.1]
@@ -15,7 +15,7 @@ weight = ["centreline", "sector"]
 method = ["theory", "limit"]
 """
 SIMULATED = """
-alpha_deg = { low = 60, high = 150 }
+half_angle_deg = { low = 60, high = 150 }
 mu = { low = 0.4, high = 2, log = true }
 voussoirs = { low = 7, high = 12 }
 eta = { low = 0.05, high = 0.2 }

@@ -103,7 +103,23 @@ WRONG = {
     "--out no npz": ("simulate", *ARCH, "--eta", ".1", "--out", "x.mp4"),
     "map no picture": ("map", "--out", "map.docx"),
     "map no such zoom": ("map", "--out", "map.png", "--zoom", "central", "--lines"),
-    "render nothing stands": ("render", "semicircle_sliding", "--out", "x.png"),
+    "render nothing stands": ("render", "--alpha", "90", "--mu", "0.3", "--out", "x.png"),
+    "picture of no height": ("render", "semicircle", "--out", "x.png", "--height", "480"),
+    "eta and ratio": ("check", *ARCH, "--eta", "0.1", "--ratio", "0.99"),
+    "ratio of nothing": ("check", "--alpha", "90", "--mu", "0.3", "--ratio", "0.9"),
+    "lean in the plane": (
+        "simulate",
+        *ARCH,
+        "--eta",
+        ".1",
+        "--lean",
+        "5",
+        "--method",
+        "direct",
+        "--out",
+        "x.npz",
+    ),
+    "validate by statics": ("validate", "--methods", "limit", "--out", "out"),
     "render no picture": ("render", "semicircle", "--out", "x.txt"),
     "map unwritable": ("map", "--out", "none/map.png"),
     "validate unwritable": ("validate", "--quick", "--out", "/proc/none"),
@@ -167,7 +183,7 @@ def test_a_crash_is_no_verdict(
         raise ZeroDivisionError(message)
 
     monkeypatch.setattr("blocksim.cli.app", crash)
-    monkeypatch.setattr("blocksim.cli.signal.signal", lambda *_: None)
+    monkeypatch.setattr("blocksim.cli.interrupts.install", lambda: None)
     with pytest.raises(SystemExit) as end:
         main()
     assert end.value.code == 70

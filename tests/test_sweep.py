@@ -22,7 +22,7 @@ from blocksim.many import table as tables
 from blocksim.many.answers import Answered, Asked, answer
 from blocksim.many.shards import identities
 
-DIRECT = 'alpha_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
+DIRECT = 'half_angle_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
 PYMUNK = DIRECT.replace("direct", "pymunk")
 
 
@@ -31,7 +31,7 @@ def test_a_grid_takes_every_combination(tmp_path: Path) -> None:
     cases = list(design.cases())
     assert len(cases) == design.size == 4 * 3 * 2 * 2 * 2 * 2
     assert len(set(cases)) == len(cases)
-    assert {case.alpha_deg for case in cases} == {60.0, 90.0, 120.0, 150.0}
+    assert {case.half_angle_deg for case in cases} == {60.0, 90.0, 120.0, 150.0}
     assert {case.mu for case in cases} == {0.5, 0.9, math.inf}
 
 
@@ -42,7 +42,7 @@ def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
     assert more[: len(few)] == few
     assert len(more) == 10_000
     assert few != list(design_of(tmp_path, SIMULATED.replace("seed = 7", "seed = 8")).cases())
-    assert all(60 <= case.alpha_deg <= 150 and 0.4 <= case.mu <= 2 for case in more)
+    assert all(60 <= case.half_angle_deg <= 150 and 0.4 <= case.mu <= 2 for case in more)
     # Even over the whole numbers, ends included: 833 of each in 5000, +-5 standard errors.
     counts = Counter(case.voussoirs for case in more)
     assert sorted(counts) == [7, 8, 9, 10, 11, 12]
@@ -64,13 +64,13 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (("alpha_deg = {", "alpha = {"), "alpha = "),
-        (("high = 150", "high = 180"), "alpha_deg = 180.0: must be above 0 and below 180"),
-        (("low = 60", "low = 0"), "alpha_deg = 0.0: must be above 0"),
-        (("high = 150", "high = 50"), "alpha_deg.high = 50.0: must be above low = 60.0"),
-        ((", steps = 4", ""), "alpha_deg.steps is missing"),
-        (("steps = 4", "steps = 1"), "alpha_deg.steps = 1"),
-        (("low = 60,", ""), "alpha_deg.low is missing"),
+        (("half_angle_deg = {", "alpha = {"), "alpha = "),
+        (("high = 150", "high = 180"), "half_angle_deg = 180.0: must be above 0 and below 180"),
+        (("low = 60", "low = 0"), "half_angle_deg = 0.0: must be above 0"),
+        (("high = 150", "high = 50"), "half_angle_deg.high = 50.0: must be above low = 60.0"),
+        ((", steps = 4", ""), "half_angle_deg.steps is missing"),
+        (("steps = 4", "steps = 1"), "half_angle_deg.steps = 1"),
+        (("low = 60,", ""), "half_angle_deg.low is missing"),
         (("[0.5, 0.9, inf]", "[]"), "mu = []"),
         (("[0.5, 0.9, inf]", '["rough"]'), "mu.values.0 = 'rough'"),
         (("[0.5, 0.9, inf]", "nan"), "mu = nan"),
@@ -145,7 +145,7 @@ def test_without_a_thickness_the_least_one_is_asked_for(tmp_path: Path) -> None:
         sweep(design_of(tmp_path, text), tmp_path, executor=executor)
     for row in rows_of(tmp_path).values():
         single = bracket(
-            half_angle=math.radians(float(str(row["alpha_deg"]))),
+            half_angle=math.radians(float(str(row["half_angle_deg"]))),
             mu=float(str(row["mu"])),
             voussoirs=int(str(row["voussoirs"])),
             weight=row["weight"],
@@ -157,7 +157,8 @@ def test_without_a_thickness_the_least_one_is_asked_for(tmp_path: Path) -> None:
 
 
 def test_engines_simulate_within_the_band_only_or_wherever_asked(tmp_path: Path) -> None:
-    near = "alpha_deg = 90\nmu = 0.7\nvoussoirs = 9\nratio = [0.5, 0.97, 0.995, 1.005, 1.03]\n"
+    near = "half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\n"
+    near += "ratio = [0.5, 0.97, 0.995, 1.005, 1.03]\n"
     widths = {"band = 0.01": 2, "band = 0.04": 4, "band = inf": 5, "": 5}
     for text, simulated in widths.items():
         folder = tmp_path / (text or "none")
@@ -204,7 +205,9 @@ def test_settings_are_axes_like_any_other_and_part_of_the_question(tmp_path: Pat
 
 
 def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
-    text = 'alpha_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
+    text = (
+        'half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
+    )
     for confirm in ("true", "false"):
         with ThreadPoolExecutor(1) as executor:
             sweep(design_of(tmp_path, text + confirm), tmp_path, executor=executor)
@@ -221,7 +224,7 @@ def test_a_failing_case_becomes_a_row_that_says_so(
         raise RuntimeError(f"out of\nluck with {arch.voussoirs}")
 
     monkeypatch.setattr(answers, "check", fails)
-    text = 'alpha_deg = 90\nmu = [0.1, 0.7]\nratio = [1, 60]\nmethod = ["limit", "direct"]'
+    text = 'half_angle_deg = 90\nmu = [0.1, 0.7]\nratio = [1, 60]\nmethod = ["limit", "direct"]'
     with ThreadPoolExecutor(1) as executor:
         done = sweep(design_of(tmp_path, text), tmp_path, executor=executor)
     errors = {
@@ -259,7 +262,7 @@ def test_a_case_that_kills_its_process_becomes_a_row(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: type[Exception]
 ) -> None:
     def poison(case: Case) -> bool:
-        return case.mu == 0.9 and case.voussoirs == 12 and case.alpha_deg == 90
+        return case.mu == 0.9 and case.voussoirs == 12 and case.half_angle_deg == 90
 
     made: list[Executor] = []
 
@@ -273,7 +276,9 @@ def test_a_case_that_kills_its_process_becomes_a_row(
     lost = [row for row in rows.values() if row["error"] is not None]
     assert len(rows) == 192
     assert done.tally.failed == len(lost) == 8
-    assert all((row["mu"], row["voussoirs"], row["alpha_deg"]) == (0.9, 12, 90) for row in lost)
+    assert all(
+        (row["mu"], row["voussoirs"], row["half_angle_deg"]) == (0.9, 12, 90) for row in lost
+    )
     assert (len(made) > 1) == (error is BrokenExecutor)
 
 
@@ -360,7 +365,7 @@ def test_a_worker_of_another_version_is_refused() -> None:
 
 def arch_of(row: dict[str, object], eta: float) -> Arch:
     return Arch(
-        half_angle=math.radians(float(str(row["alpha_deg"]))),
+        half_angle=math.radians(float(str(row["half_angle_deg"]))),
         eta=eta,
         voussoirs=int(str(row["voussoirs"])),
         weight=row["weight"],

@@ -33,6 +33,11 @@ class Bracket:
     half_angle, mu : float
     voussoirs : int
     weight : str
+    lean : float
+        Angle by which gravity leans out of the plane [rad]; `eta_limit` and `eta_theory`
+        are those without it.
+    depth : float
+        Depth out of the plane [r].
     tol : float
         Relative width asked for.
     eta_low : float or None
@@ -85,6 +90,8 @@ class Bracket:
     splits: int | None = None
     reason: str = ""
     wall_s: float = 0.0
+    lean: float = 0.0
+    depth: float = 1.0
 
     @property
     def centre(self) -> float | None:
@@ -102,6 +109,8 @@ def bracket(
     weight: Weight = "centreline",
     method: str = "auto",
     tol: float = 0.005,
+    lean: float = 0.0,
+    depth: float = 1.0,
     confirm: bool = True,
     settings: Overrides = BY_RULE,
     reduce: bool = False,
@@ -124,6 +133,10 @@ def bracket(
         `auto`, `theory`, `limit`, or the name of an engine.
     tol : float
         Relative width at which to end, above 0 and at most 0.5.
+    lean : float
+        Angle by which gravity leans out of the plane [rad].
+    depth : float
+        Depth out of the plane [r], which decides only where gravity leans.
     confirm : bool
         Let the arch go at both ends; without, an engine answers by the onset test alone.
     settings : mapping of str to float
@@ -146,8 +159,8 @@ def bracket(
     started = time.perf_counter()
     require_friction(mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
-    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    rung = choose(method, tol, settings=settings, reduce=reduce)
+    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight, depth=depth)
+    rung = choose(method, tol, problem=arch.problem(mu, lean), settings=settings, reduce=reduce)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
     answer = Bracket(
@@ -156,6 +169,8 @@ def bracket(
         mu=mu,
         voussoirs=voussoirs,
         weight=weight,
+        lean=lean,
+        depth=depth,
         tol=tol,
         eta_low=None,
         eta_high=None,
@@ -226,7 +241,7 @@ def _by_simulation(
             reduction = reduction.at(built)
         elif reduce:
             reduction = Reduction.of(built, answer.mu)
-        held = held_at(built.problem(answer.mu), reduction=reduction)
+        held = held_at(built.problem(answer.mu, answer.lean), reduction=reduction)
         # An engine may have split it, or given it up.
         kept = held.setup.reduction
         reduction = kept if isinstance(kept, Reduction) else None

@@ -31,6 +31,8 @@ class Check:
         A sentence.
     arch : Arch
     mu : float
+    lean : float
+        Angle by which gravity leans out of the plane [rad].
     eta_limit, eta_theory : float or None
         Least thickness of the voussoirs as built and of the continuous arch; 0 where any
         thickness stands (some arches of three voussoirs), None where none up to 2 does.
@@ -61,6 +63,7 @@ class Check:
     reason: str
     arch: Arch
     mu: float
+    lean: float
     eta_limit: float | None
     eta_theory: float | None
     mode: Mode | None
@@ -149,6 +152,7 @@ def check(
         reason=reason + chosen_words(method, rung),
         arch=arch,
         mu=mu,
+        lean=lean,
         eta_limit=built.eta,
         eta_theory=continuous.eta,
         mode=mode,

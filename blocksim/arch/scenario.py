@@ -9,18 +9,27 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, TypeVar
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.modes import Mode
 from blocksim.common.errors import MISSING, InputError
-from blocksim.common.files import require_file
+from blocksim.common.files import AnyPath, require_file
 from blocksim.evidence.verdict import Verdict
 
 LARGEST_FILE = 64 * 1024
 """Bytes; a larger file is not read."""
 
+RENAMED = {"alpha_deg": "half_angle_deg", "tilt_deg": "lean_deg"}
+"""Keys that were called otherwise."""
 Table = TypeVar("Table")
+
+
+def infinite(written: object) -> object:
+    """Take the text "inf" for infinity, as JSON has it."""
+    return math.inf if written == "inf" else written
+
+
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 
 
@@ -45,7 +54,7 @@ class ContactTable:
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    mu: Annotated[float, Field(gt=0, strict=True)]
+    mu: Annotated[float, Field(gt=0, strict=True), BeforeValidator(infinite)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,7 +168,7 @@ def shipped() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
-def load_scenario(name: str) -> Scenario:
+def load_scenario(name: AnyPath) -> Scenario:
     """Read a scenario by its path, or by the name of a shipped one.
 
     Raises
@@ -169,13 +178,13 @@ def load_scenario(name: str) -> Scenario:
     """
     path = Path(name)
     known = shipped()
-    if path.suffix != ".toml" and name in known:
-        path = known[name]
+    if path.suffix != ".toml" and str(name) in known:
+        path = known[str(name)]
     allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
     return _scenario(path.stem, read_table(path, ScenarioFile, "scenario", allowed))
 
 
-def read_table(path: Path, schema: type[Table], what: str, allowed: str) -> Table:
+def read_table(path: AnyPath, schema: type[Table], what: str, allowed: str) -> Table:
     """Read a TOML file as a dataclass says.
 
     Parameters
@@ -191,6 +200,7 @@ def read_table(path: Path, schema: type[Table], what: str, allowed: str) -> Tabl
     InputError
         In one line, with file, field, value and what is allowed.
     """
+    path = Path(path)
     require_file(path, what, allowed, LARGEST_FILE)
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -210,6 +220,9 @@ def _first_of(error: ValidationError, where: str) -> InputError:
     first = min(errors, key=lambda each: each["type"] != "unexpected_keyword_argument")
     field = ".".join(str(part) for part in first["loc"])
     if first["type"] == "unexpected_keyword_argument":
+        now = RENAMED.get(str(first["loc"][-1]))
+        if now:
+            return InputError(field, first["input"], f"named {now}", where=where)
         return InputError(field, first["input"], "left out: there is no such key", where=where)
     if first["type"] in {"missing", "missing_argument"}:
         return InputError(field, MISSING, "given", where=where)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
 
-from blocksim.ask.methods import METHODS, missing
+from blocksim.ask.methods import METHODS, Method, missing
+from blocksim.common.version import __version__
+from blocksim.engines import get_engine
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,19 +23,53 @@ class Finding:
         Smallest relative width of a bracket it can answer for.
     remedy : str or None
         How to get what is missing; None where it can run.
+    version : str or None
+        Of its library, or of blocksim where it is blocksim's own.
     """
 
     method: str
     sees: str
     finest: float
     remedy: str | None
+    version: str | None
 
 
 def examine() -> list[Finding]:
     """Look at every method of the ladder."""
     return [
         Finding(
-            method=method.name, sees=method.sees, finest=method.finest, remedy=missing(method)
+            method=method.name,
+            sees=method.sees,
+            finest=method.finest,
+            remedy=missing(method),
+            version=_version(method),
         )
         for method in METHODS.values()
     ]
+
+
+def libraries() -> dict[str, str | None]:
+    """Return the versions of the libraries blocksim can use; None where one is not there."""
+    try:
+        wanted = requires("blocksim") or []
+    except PackageNotFoundError:  # run from its source, not installed
+        wanted = []
+    names = {
+        re.split(r"[^\w.-]", each, maxsplit=1)[0]
+        for each in wanted
+        if not re.search(r"extra *== *['\"]dev", each)
+    }
+    return {name: _installed(name) for name in sorted(names)}
+
+
+def _version(method: Method) -> str | None:
+    if method.is_static:
+        return __version__
+    return None if missing(method) else get_engine(method.name).version
+
+
+def _installed(library: str) -> str | None:
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return None

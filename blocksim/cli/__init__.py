@@ -2,46 +2,49 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 import traceback
 from contextlib import suppress
-from typing import NoReturn
 
 import typer
 
 from blocksim.cli.commands import app
+from blocksim.common import interrupts
 from blocksim.common.errors import BlocksimError
 
 WRONG_INPUT = 2
 CRASHED = 70
 """After what should not happen: Python's own 1 would say that the arch collapses."""
-INTERRUPTED, CLOSED, TERMINATED = 130, 141, 143
-"""As a shell says it of the signals for an interrupt, a closed pipe, an end."""
+CLOSED = 141
+"""As a shell says it of the signal for a closed pipe."""
 
 
 def main() -> None:
     """Run the command line; wrong input is one line and exit code 2."""
-    signal.signal(signal.SIGTERM, _terminate)
+    interrupts.install()
+    code = CRASHED
+    with suppress(KeyboardInterrupt), interrupts.Told():
+        code = _code()
+    # An interrupt counts whatever became of it on its way: libraries turn it into others.
+    sys.exit(interrupts.code() or code)
+
+
+def _code() -> int:
+    """Run the command line and return its exit code."""
     try:
-        code = app(standalone_mode=False)
-    except BlocksimError as error:
-        _fail(str(error))
-    except (KeyboardInterrupt, typer.Abort):
-        sys.exit(INTERRUPTED)
+        return app(standalone_mode=False) or 0
     except SystemExit as end:
         # With 1 typer and rich leave where nobody reads on.
-        sys.exit(CLOSED if end.code == 1 else end.code)
-    except OSError as error:
-        _fail(str(error))
+        return CLOSED if end.code == 1 else int(end.code or 0)
+    except (BlocksimError, OSError) as error:
+        return _complain(str(error) or type(error).__name__)
     except Exception as error:
         message = _complaint(error)
-        if message is None:
+        if message is not None:
+            return _complain(message)
+        if not interrupts.code():
             traceback.print_exc()
-            sys.exit(CRASHED)
-        _fail(message)
-    else:
-        sys.exit(code or 0)
+        return CRASHED
 
 
 def _complaint(error: Exception) -> str | None:
@@ -57,13 +60,8 @@ def _complaint(error: Exception) -> str | None:
     return said if given in said else f"{said}, not {given}"
 
 
-def _terminate(*_: object) -> NoReturn:
-    """End as an interrupt does: the default would leave the semaphores of processes behind."""
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # `timeout` sends it twice
-    sys.exit(TERMINATED)
-
-
-def _fail(message: str) -> NoReturn:
-    with suppress(OSError):
-        typer.echo(f"blocksim: {message}", err=True)
-    sys.exit(WRONG_INPUT)
+def _complain(message: str) -> int:
+    if not interrupts.code():
+        with suppress(OSError):
+            typer.echo(f"blocksim: {message}", err=True)
+    return WRONG_INPUT

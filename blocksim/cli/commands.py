@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+import platform
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.table import Table
 
+from blocksim import __version__
 from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.check import check as ask_check
 from blocksim.arch.circular import GRAVITY
 from blocksim.arch.motion import simulate as record_motion
 from blocksim.arch.scenario import load_scenario, shipped
-from blocksim.ask.doctor import examine
+from blocksim.ask.doctor import examine, libraries
 from blocksim.cli.console import (
     answer_with,
     chart_table,
@@ -27,10 +30,10 @@ from blocksim.cli.console import (
 )
 from blocksim.cli.drawing import write_arch, write_map
 from blocksim.cli.filming import (
+    HEIGHT,
     At,
     Beside,
     EngineOption,
-    Given,
     Height,
     RenderOptions,
     Slow,
@@ -40,11 +43,14 @@ from blocksim.cli.filming import (
 )
 from blocksim.cli.options import (
     Alpha,
+    Depth,
     Eta,
+    Given,
     Json,
     Lean,
     MethodOption,
     Mu,
+    Ratio,
     Reduce,
     Scene,
     Set,
@@ -53,10 +59,13 @@ from blocksim.cli.options import (
     arch_of,
     named_options,
     question,
+    require_given,
     settings_of,
+    thickness_words,
 )
 from blocksim.cli.sweeping import run_sweep
 from blocksim.common.checks import is_number, require
+from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import make_folder, require_place
 from blocksim.engines import ENGINES
 from blocksim.evidence.verdict import Verdict
@@ -67,21 +76,35 @@ from blocksim.report.answers import (
     check_record,
 )
 from blocksim.studies.chart import cases, measure
-from blocksim.studies.validate import scenarios
+from blocksim.studies.validate import USUAL, scenarios, unasked
 from blocksim.studies.validate import validate as run_validation
 
 app = typer.Typer(
     name="blocksim",
-    help="Does a masonry arch stand, how thin can it be, how does it fall?",
-    no_args_is_help=True,
+    invoke_without_command=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 FILMS = ("mp4", "gif")
+NUMBERS = {"alpha", "mu", "n", "eta"}
 LONGEST_RECORDING = 600.0
 """Seconds."""
+
+
+@app.callback()
+def start(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Answer whether a masonry arch stands, how thin it can be and how it falls."""
+    if version:
+        say(f"blocksim {__version__}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        say(context.get_help())
 
 
 @app.command()
@@ -89,9 +112,11 @@ def check(
     scene: Scene = None,
     alpha: Alpha = None,
     eta: Eta = None,
+    ratio: Ratio = None,
     mu: Mu = None,
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
+    depth: Depth = None,
     method: MethodOption = "auto",
     lean: Lean = None,
     settings: Set = None,
@@ -99,8 +124,12 @@ def check(
     as_json: Json = False,
 ) -> None:
     """Tell whether an arch stands: exit code 0 stands, 1 collapses, 3 undecided."""
-    asked = question(scene, alpha, mu, voussoirs, weight, lean)
-    arch = arch_of(asked, eta)
+    given = Given(
+        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
+        depth=depth, lean=lean,
+    )  # fmt: skip
+    asked = question(scene, given, thick=True)
+    arch = arch_of(asked, ratio)
     with named_options(), progress() as report:
         answer = ask_check(
             arch,
@@ -111,6 +140,7 @@ def check(
             reduce=reduce,
             progress=report,
         )
+    answer = replace(answer, reason=answer.reason + thickness_words(asked, ratio))
     answer_with(check_record(answer), check_lines(answer), as_json=as_json)
     raise typer.Exit(EXIT_CODES[answer.verdict])
 
@@ -122,6 +152,8 @@ def bracket(
     mu: Mu = None,
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
+    depth: Depth = None,
+    lean: Lean = None,
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
@@ -129,7 +161,10 @@ def bracket(
     as_json: Json = False,
 ) -> None:
     """Find how thin the arch can be."""
-    asked = question(scene, alpha, mu, voussoirs, weight)
+    given = Given(
+        alpha=alpha, mu=mu, voussoirs=voussoirs, weight=weight, depth=depth, lean=lean
+    )
+    asked = question(scene, given)
     with named_options(), progress() as report:
         answer = ask_bracket(
             half_angle=asked.half_angle,
@@ -138,6 +173,8 @@ def bracket(
             weight=asked.weight,
             method=method,
             tol=tol,
+            lean=asked.lean,
+            depth=asked.depth / asked.radius,
             settings=settings_of(settings),
             reduce=reduce,
             progress=report,
@@ -147,16 +184,20 @@ def bracket(
 
 @app.command()
 def simulate(
-    out: Annotated[Path, typer.Option(help="Recording to write, .npz.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Recording to write, .npz; required.")
+    ] = None,
     scene: Scene = None,
     alpha: Alpha = None,
     eta: Eta = None,
+    ratio: Ratio = None,
     mu: Mu = None,
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
+    depth: Depth = None,
     method: Annotated[
         str, typer.Option(help=f"auto, or an engine: {', '.join(ENGINES)}.")
-    ] = "pymunk",
+    ] = "auto",
     seconds: Annotated[
         float | None, typer.Option(help="Seconds to record; until decided if left out.")
     ] = None,
@@ -164,8 +205,13 @@ def simulate(
     settings: Set = None,
 ) -> None:
     """Let an arch go and record its motion."""
-    asked = question(scene, alpha, mu, voussoirs, weight, lean)
-    arch = arch_of(asked, eta)
+    given = Given(
+        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
+        depth=depth, lean=lean,
+    )  # fmt: skip
+    asked = question(scene, given, thick=True, out=out)
+    arch = arch_of(asked, ratio)
+    out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require_place(out)
     duration = None
@@ -197,19 +243,30 @@ def validate(
         bool, typer.Option("--quick/--full", help="Scenarios marked quick, or all of them.")
     ] = False,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/validate"),
+    methods: Annotated[
+        str | None,
+        typer.Option(
+            help=f"Engines, with commas: {', '.join(ENGINES)}; "
+            f"{' and '.join(USUAL)} if left out."
+        ),
+    ] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes.")] = 2,
 ) -> None:
     """Simulate published arches and hold them against the analytical map."""
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.report.tables import write_results
 
+    engines = None if methods is None else [each.strip() for each in methods.split(",")]
+    for each in engines or ():
+        require(each in ENGINES, "--methods", each, f"one or more of {', '.join(ENGINES)}")
     make_folder(out)
     chosen = scenarios(quick=quick)
+    left_out = unasked(chosen, engines)
     with progress() as report:
-        rows = run_validation(chosen, workers=workers, progress=report)
-    paths = write_results(rows, out)
+        rows = run_validation(chosen, engines, workers=workers, progress=report)
+    paths = write_results(rows, out, left_out)
     show(validation_table(rows))
-    say("\n".join(validation_lines(rows)))
+    say("\n".join(validation_lines(rows, left_out)))
     say("wrote " + ", ".join(str(path) for path in paths))
 
 
@@ -238,10 +295,13 @@ def chart(
 
 @app.command()
 def sweep(
-    design: Annotated[Path, typer.Argument(help="Which arches to ask about: a .toml file.")],
+    design: Annotated[
+        Path | None, typer.Argument(help="Which arches to ask about: a .toml file; required.")
+    ] = None,
     out: Annotated[
-        Path, typer.Option(help="Folder for the rows; one that has some is resumed.")
-    ],
+        Path | None,
+        typer.Option(help="Folder for the rows; one that has some is resumed; required."),
+    ] = None,
     workers: Annotated[int, typer.Option(min=1, max=256, help="Processes.")] = 2,
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a dask scheduler, instead of processes.")
@@ -252,12 +312,18 @@ def sweep(
     as_json: Json = False,
 ) -> None:
     """Ask about many arches; a kill at any moment loses nothing that was done."""
-    run_sweep(design, out, workers, scheduler, parquet=parquet, as_json=as_json)
+    if design is None:
+        extra = " and --out" if out is None else ""
+        raise InputError(f"DESIGN{extra}", ALL_MISSING if extra else MISSING, "given")
+    require_given(out=out)
+    run_sweep(design, out or Path(), workers, scheduler, parquet=parquet, as_json=as_json)
 
 
 @app.command(name="map")
 def draw_map(
-    out: Annotated[Path, typer.Option(help="Picture, .svg or .png, or a page, .html.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Picture, .svg or .png, or a page, .html; required.")
+    ] = None,
     lines: Annotated[
         bool, typer.Option("--lines", help="Dividing lines and lines of equal alpha instead.")
     ] = False,
@@ -273,25 +339,31 @@ def draw_map(
     As a page (.html) it can be explored: any point's arch, its lines of thrust and
     friction, and its collapse.
     """
-    write_map(out, zoom, results, lines=lines)
+    require_given(out=out)
+    write_map(out or Path(), zoom, results, lines=lines)
 
 
 @app.command()
 def render(
-    out: Annotated[Path, typer.Option(help="File to write: .mp4, .gif, .png or .svg.")],
+    out: Annotated[
+        Path | None, typer.Option(help="File to write: .mp4, .gif, .png or .svg; required.")
+    ] = None,
     scene: Annotated[
         str | None, typer.Argument(help="Scenario, or a recording: an .npz file.")
     ] = None,
     alpha: Alpha = None,
     eta: Eta = None,
+    ratio: Ratio = None,
     mu: Mu = None,
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
+    depth: Depth = None,
+    lean: Lean = None,
     beside: Beside = None,
     view: View = "2d",
     slow: Slow = None,
     at: At = None,
-    height: Height = 720,
+    height: Height = None,
     method: EngineOption = None,
 ) -> None:
     """Draw an arch, or film its motion.
@@ -302,15 +374,23 @@ def render(
     recording: a film, a view in 3d, a frame of an .npz file. A scenario is simulated first,
     1 % below its least thickness where none is given.
     """
+    given = Given(
+        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
+        depth=depth, lean=lean,
+    )  # fmt: skip
+    if scene is None:
+        question(scene, given, out=out)
+    require_given(out=out)
+    out = out or Path()
     kind = picture_kind(out, (*FILMS, "png", "svg"))
-    given = Given(alpha, eta, mu, voussoirs, weight)
     filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
-        shown = RenderOptions(view=view, slow=slow, at=at, height=height)
+        shown = RenderOptions(view=view, slow=slow, at=at, height=height or HEIGHT)
         require(at is None or kind not in FILMS, "--at", at, "left out of a film")
         film(out, recordings(scene, given, method, beside), shown)
     else:
-        for name, value in (("slow", slow), ("at", at), ("method", method)):
+        shown = {"slow": slow, "at": at, "height": height, "method": method}
+        for name, value in shown.items():
             require(value is None, f"--{name}", value, "left out: the picture is of no motion")
         write_arch(out, kind, scene, given)
 
@@ -319,11 +399,13 @@ def render(
 def list_scenarios() -> None:
     """List the scenarios that come with blocksim."""
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for heading in ("name", "title", "source"):
-        table.add_column(heading)
+    for heading in ("name", "alpha", "mu", "n", "eta", "title", "source"):
+        table.add_column(heading, justify="right" if heading in NUMBERS else "left")
     for name in shipped():
-        scenario = load_scenario(name)
-        table.add_row(name, scenario.title, scenario.source)
+        each = load_scenario(name)
+        eta = "-" if each.eta is None else f"{each.eta:g}"
+        numbers = f"{math.degrees(each.half_angle):g}", f"{each.mu:.4g}", str(each.voussoirs)
+        table.add_row(name, *numbers, eta, each.title, each.source)
     show(table)
 
 
@@ -331,9 +413,12 @@ def list_scenarios() -> None:
 def doctor() -> None:
     """Tell what is installed and what each method can do here."""
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for heading in ("method", "here", "finest bracket", "sees"):
+    for heading in ("method", "version", "here", "finest bracket", "sees"):
         table.add_column(heading)
     for finding in examine():
         finest = "exact" if finding.finest == 0 else f"{finding.finest:g}"
-        table.add_row(finding.method, finding.remedy or "ready", finest, finding.sees)
+        here = finding.remedy or "ready"
+        table.add_row(finding.method, finding.version or "-", here, finest, finding.sees)
     show(table)
+    say(f"blocksim {__version__}, Python {platform.python_version()}")
+    say(", ".join(f"{name} {found or '-'}" for name, found in libraries().items()))

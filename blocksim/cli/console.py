@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,11 +14,11 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from blocksim.common.checks import require
-from blocksim.common.files import require_place, write_whole
+from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.progress import Progress as Report
-from blocksim.report.answers import ratio
+from blocksim.report.answers import ratio, signed
 from blocksim.studies.chart import Point, on_front
-from blocksim.studies.validate import Row, disagreements, numbered
+from blocksim.studies.validate import Row, Unasked, disagreements, numbered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -77,7 +76,7 @@ def validation_table(rows: list[Row]) -> Table:
     return table
 
 
-def validation_lines(rows: list[Row]) -> list[str]:
+def validation_lines(rows: list[Row], unasked: Sequence[Unasked] = ()) -> list[str]:
     """Return how many rows agree, what does not, and where engines differ, in words."""
     misses = [row for row in rows if row.miss]
     right = f"{len(rows) - len(misses)} of {len(rows)}"
@@ -87,7 +86,7 @@ def validation_lines(rows: list[Row]) -> list[str]:
         apart = disagreements(rows)
         lines.append(f"the engines disagree in {len(apart)} places")
         lines += [f"  {each}" for each in apart]
-    return lines
+    return lines + [f"not asked of {each.words}" for each in unasked]
 
 
 def chart_table(points: list[Point]) -> Table:
@@ -125,7 +124,7 @@ def _answer(row: Row | None) -> str:
     """Return what one engine saw, and the error of its bracket."""
     if row is None:
         return "-"
-    error = "" if row.error is None else f" {row.error:+.3%}"
+    error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
     return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
 
 
@@ -149,7 +148,7 @@ def save_picture(figure: Figure, out: Path, kind: str) -> None:
 
 def answer_with(record: dict[str, object], lines: list[str], *, as_json: bool) -> None:
     """Print an answer, as one JSON object or as lines for people."""
-    say(json.dumps(record, allow_nan=False) if as_json else "\n".join(lines))
+    say(json_text(record) if as_json else "\n".join(lines))
 
 
 def show(table: Table) -> None:

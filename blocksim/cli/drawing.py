@@ -6,8 +6,7 @@ from pathlib import Path
 
 from blocksim.arch.theory import least_thickness
 from blocksim.cli.console import picture_kind, save_picture, say
-from blocksim.cli.filming import Given
-from blocksim.cli.options import named_options, question
+from blocksim.cli.options import Given, arch_of, named_options, question
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
@@ -49,11 +48,10 @@ def write_arch(out: Path, kind: str, scene: str | None, given: Given) -> None:
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
 
-    asked = question(scene, given.alpha, given.mu, given.voussoirs, given.weight)
-    ratio_given = asked.eta if given.eta is None else given.eta
+    asked = question(scene, given)
     with named_options():
-        if ratio_given is not None:
-            pictures = [picture_of_arch(asked.arch(ratio_given), asked.mu)]
+        if asked.eta is not None or given.ratio is not None:
+            pictures = [picture_of_arch(arch_of(asked, given.ratio), asked.mu)]
         else:
             critical = least_thickness(asked.half_angle, asked.mu, asked.weight)
             if critical.eta is None:

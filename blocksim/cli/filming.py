@@ -4,26 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 import typer
 
-from blocksim.arch.limit import least_thickness
 from blocksim.arch.motion import load_recording, simulate
-from blocksim.arch.scenario import Scenario
-from blocksim.ask.methods import SPATIAL
 from blocksim.cli.console import progress, say
-from blocksim.cli.options import named_options, question
+from blocksim.cli.options import Given, arch_of, named_options, question
 from blocksim.common.checks import require
-from blocksim.common.errors import MISSING, InputError
 from blocksim.engines import ENGINES
 from blocksim.evidence.recording import Recording
-from blocksim.studies.validate import ASIDE
 
 FALL = 6.0
 """Time recorded of a scenario, enough for a collapse to reach the ground [sqrt(r/g)]."""
+HEIGHT = 720
 HEIGHTS = (180, 2160)
 SLOWEST = 1000.0
 
@@ -38,23 +34,15 @@ Slow = Annotated[
 At = Annotated[
     float | None, typer.Option(help="For .png, .svg: seconds since the release (the end).")
 ]
-Height = Annotated[int, typer.Option(help="In pixels; frames are 16:9.")]
+Height = Annotated[
+    int | None, typer.Option(help="Of a frame in pixels, 720 if left out; frames are 16:9.")
+]
 EngineOption = Annotated[
     str | None,
     typer.Option(
-        "--method", help=f"Simulates a scenario: {', '.join(ENGINES)}; direct if left out."
+        "--method", help=f"Simulates a scenario: auto (if left out), {', '.join(ENGINES)}."
     ),
 ]
-
-
-class Given(NamedTuple):
-    """The options that describe an arch, as given."""
-
-    alpha: float | None
-    eta: float | None
-    mu: float | None
-    voussoirs: int | None
-    weight: str | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,33 +77,21 @@ def recordings(
     """Read recordings, or simulate the scenario."""
     second = [] if beside is None else [load_recording(beside)]
     if scene is not None and scene.endswith(".npz"):
-        for name, value in {**given._asdict(), "method": method}.items():
+        for name, value in {**asdict(given), "method": method}.items():
             require(value is None, f"--{name}", value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
-    asked = question(scene, given.alpha, given.mu, given.voussoirs, given.weight)
+    asked = question(scene, given)
+    arch = arch_of(asked, given.ratio)
     with named_options(), progress() as report:
-        arch = asked.arch(_ratio(asked) if given.eta is None else given.eta)
-        # Of those in the plane, only direct lets blocks fall on the ground.
-        named = method or (SPATIAL if asked.lean else "direct")
         run = simulate(
             arch,
             mu=asked.mu,
-            method=named,
+            method=method or "auto",
             duration=FALL,
             lean=asked.lean,
             progress=report,
         )
     return [run, *second]
-
-
-def _ratio(asked: Scenario) -> float:
-    """Thickness of the scenario, or a little below the least."""
-    if asked.eta is not None:
-        return asked.eta
-    least = least_thickness(asked.half_angle, asked.mu, asked.voussoirs, asked.weight).eta
-    if least is None:
-        raise InputError("eta", MISSING, "given where no thickness stands")
-    return least * (1 - ASIDE)
 
 
 def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import typer
 
 from blocksim.arch.circular import Arch
+from blocksim.arch.limit import least_thickness
 from blocksim.arch.scenario import Scenario, load_scenario
 from blocksim.ask.methods import CHOICES
-from blocksim.common.checks import is_number, require
-from blocksim.common.errors import MISSING, InputError
+from blocksim.ask.search import ETA_MAX
+from blocksim.common.checks import is_number, require, require_friction
+from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.evidence.setup import SETTINGS
 
 Scene = Annotated[str | None, typer.Argument(help="Scenario: a .toml file or a shipped name.")]
@@ -22,6 +24,14 @@ Alpha = Annotated[
     float | None, typer.Option(help="Half-angle of embrace in degrees, 0 to 180.")
 ]
 Eta = Annotated[float | None, typer.Option(help="Thickness-to-radius ratio, up to 2.")]
+Ratio = Annotated[
+    float | None,
+    typer.Option(help="Instead of --eta: thickness over the least that stands, as built."),
+]
+Depth = Annotated[
+    float | None,
+    typer.Option(help="Depth out of the plane in m; 1 if left out, as the radius is."),
+]
 Mu = Annotated[float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")]
 Voussoirs = Annotated[
     int | None, typer.Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
@@ -70,42 +80,105 @@ NO_SCENARIO = Scenario(
 """Defaults of the options; half-angle and friction have none and are always replaced."""
 
 
+ASIDE = 0.99
+"""Thickness of a scenario that sets none, over its least: it collapses, in one mode."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """The options that describe an arch, as given; None where they are not."""
+
+    alpha: float | None = None
+    eta: float | None = None
+    ratio: float | None = None
+    mu: float | None = None
+    voussoirs: int | None = None
+    weight: str | None = None
+    depth: float | None = None
+    lean: float | None = None
+
+
+def require_given(**options: object) -> None:
+    """Name all options that are missing at once."""
+    absent = [f"--{name}" for name, value in options.items() if value is None]
+    if absent:
+        listed = " and ".join(filter(None, (", ".join(absent[:-1]), absent[-1])))
+        raise InputError(listed, MISSING if len(absent) == 1 else ALL_MISSING, "given")
+
+
 def question(
-    scene: str | None,
-    alpha: float | None,
-    mu: float | None,
-    voussoirs: int | None,
-    weight: str | None,
-    lean: float | None = None,
+    scene: str | None, given: Given, *, thick: bool = False, **needed: object
 ) -> Scenario:
-    """Merge a scenario, where there is one, with the options that override it."""
+    """Merge a scenario, where there is one, with the options that override it.
+
+    Parameters
+    ----------
+    scene : str or None
+    given : Given
+    thick : bool
+        Whether a thickness has to be given where there is no scenario.
+    needed : object
+        Other options that have to be given, by name.
+    """
+    if scene is None:
+        eta = given.eta if given.ratio is None else given.ratio
+        thickness = {"eta": eta} if thick else {}
+        require_given(**needed, alpha=given.alpha, mu=given.mu, **thickness)
+    require_given(**needed)
+    alpha, lean, depth = given.alpha, given.lean, given.depth
     if alpha is not None:
         ok = is_number(alpha, 0, math.nextafter(180, 0))
         require(ok, "--alpha", alpha, "above 0 and below 180 deg")
     if lean is not None:
         ok = is_number(lean, -90, math.nextafter(90, 0))
         require(ok, "--lean", lean, "above -90 and below 90 deg")
-    if scene is None:
-        require(alpha is not None, "--alpha", MISSING, "given where no scenario is")
-        require(mu is not None, "--mu", MISSING, "given where no scenario is")
+    both = given.eta is not None and given.ratio is not None
+    require(not both, "--ratio", given.ratio, "left out where --eta is given")
     asked = load_scenario(scene) if scene is not None else NO_SCENARIO
     changes: dict[str, object] = {
         "half_angle": None if alpha is None else math.radians(alpha),
-        "mu": mu,
-        "voussoirs": voussoirs,
-        "weight": weight,
+        "mu": given.mu,
+        "voussoirs": given.voussoirs,
+        "weight": given.weight,
+        "depth": depth,
+        "eta": given.eta,
         "lean": None if lean is None else math.radians(lean),
     }
     return replace(asked, **{key: value for key, value in changes.items() if value is not None})
 
 
-def arch_of(asked: Scenario, eta: float | None) -> Arch:
-    """Return the arch asked about, at the thickness given or else the scenario's."""
-    ratio_given = asked.eta if eta is None else eta
-    if ratio_given is None:
-        raise InputError("--eta", MISSING, "given where no scenario sets it")
+def arch_of(asked: Scenario, ratio: float | None) -> Arch:
+    """Return the arch asked about.
+
+    At a share of the least thickness as built where that is given, else at the scenario's
+    thickness, else at `ASIDE` of the least.
+    """
     with named_options():
-        return asked.arch(ratio_given)
+        if asked.eta is not None and ratio is None:
+            return asked.arch(asked.eta)
+        if ratio is not None:
+            require(is_number(ratio, 0, 100), "--ratio", ratio, "above 0 and at most 100")
+        require_friction(asked.mu)
+        # Checked by the arch before anything is made of them.
+        asked.arch(1.0)
+        arch = asked.half_angle, asked.mu, asked.voussoirs, asked.weight
+        least = least_thickness(*arch).eta
+        if least is None:
+            field = "--eta" if ratio is None else "--ratio"
+            value = MISSING if ratio is None else ratio
+            allowed = "given" if ratio is None else "left out for --eta"
+            raise InputError(field, value, f"{allowed}: no thickness up to 2 stands here")
+        eta = (ratio or ASIDE) * least
+        if ratio is not None:
+            require(eta <= ETA_MAX, "--ratio", ratio, f"at most {ETA_MAX / least:.6g}, eta = 2")
+        return asked.arch(eta)
+
+
+def thickness_words(asked: Scenario, ratio: float | None) -> str:
+    """Say which thickness was taken where none was given, to be added to a reason."""
+    if asked.eta is not None or ratio is not None:
+        return ""
+    return f"; no thickness was given, so it is {ASIDE:g} of the least as built"
 
 
 def settings_of(given: list[str] | None) -> dict[str, float]:
@@ -122,7 +195,7 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
     return settings
 
 
-OPTIONS = {"eta", "mu", "voussoirs", "weight", "method", "tol", "reduce"}
+OPTIONS = {"eta", "mu", "voussoirs", "weight", "depth", "method", "tol", "reduce"}
 """Fields that are options, too."""
 
 

@@ -13,6 +13,8 @@ _SHORT.maxstring = _SHORT.maxother = 200
 
 MISSING = object()
 """Stands for a value that was not given."""
+ALL_MISSING = object()
+"""The same of several fields, named together."""
 
 
 class BlocksimError(Exception):
@@ -42,7 +44,8 @@ class InputError(BlocksimError, ValueError):
         self.allowed = allowed
         self.where = where
         place = f"{where}: " if where else ""
-        is_so = "is missing" if value is MISSING else f"= {_SHORT.repr(value)}"
+        said = {id(MISSING): "is missing", id(ALL_MISSING): "are missing"}
+        is_so = said.get(id(value), f"= {_SHORT.repr(value)}")
         super().__init__(f"{place}{field} {is_so}: must be {allowed}")
 
 

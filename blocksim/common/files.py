@@ -2,25 +2,49 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 from collections.abc import Callable
 from contextlib import suppress
 from errno import EISDIR
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import BinaryIO
+from typing import BinaryIO, cast
 
 from blocksim.common.errors import InputError
 
+AnyPath = str | os.PathLike[str]
+"""What every public function takes for a path."""
 
-def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
+
+def json_text(document: object, *, indent: int | None = None) -> str:
+    """Return a document as JSON, which has no infinity: that is written as the text "inf".
+
+    `float` reads it again.
+    """
+    return json.dumps(_plain(document), indent=indent, allow_nan=False)
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(float(value))
+    if isinstance(value, dict):
+        items = cast("dict[str, object]", value).items()
+        return {key: _plain(each) for key, each in items}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in cast("list[object]", value)]
+    return value
+
+
+def write_whole(path: AnyPath, write: Callable[[BinaryIO], object]) -> None:
     """Write aside, then rename, so that nobody ever sees half a file.
 
     It is on the disk, not only in the system's memory, when this returns.
 
     Parameters
     ----------
-    path : Path
+    path : str or path
     write : callable
         Writes to the open binary file it is given.
 
@@ -29,6 +53,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     InputError
         If the file cannot be written.
     """
+    path = Path(path)
     aside = path.with_name(f".{path.name}.part")
     try:
         with aside.open("wb") as file:
@@ -45,7 +70,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
             aside.unlink()
 
 
-def require_file(path: Path, field: str, allowed: str, largest: int) -> None:
+def require_file(path: AnyPath, field: str, allowed: str, largest: int) -> None:
     """Check that a file is there to be read.
 
     Parameters
@@ -63,6 +88,7 @@ def require_file(path: Path, field: str, allowed: str, largest: int) -> None:
     InputError
         If it is no file, cannot be read, or is too large.
     """
+    path = Path(path)
     try:
         if not path.is_file():
             raise InputError(field, str(path), allowed)
@@ -102,7 +128,7 @@ def require_place(path: Path) -> None:
         raise InputError("--out", str(path), f"writable ({error.strerror})") from None
 
 
-def make_folder(path: Path) -> None:
+def make_folder(path: AnyPath) -> None:
     """Create a folder for results, and check that they can be written.
 
     Raises
@@ -110,6 +136,7 @@ def make_folder(path: Path) -> None:
     InputError
         If it cannot be created or written.
     """
+    path = Path(path)
     try:
         path.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=path):

@@ -5,39 +5,88 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Generator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Callable, Generator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
+from typing import ParamSpec, TypeVar
+
+from blocksim.common.interrupts import KeptBack
+
+Asked = ParamSpec("Asked")
+Found = TypeVar("Found")
 
 
-def processes(count: int) -> ProcessPoolExecutor:
+class Crew(ProcessPoolExecutor):
+    """An executor of processes that can be ended at once; see `processes`."""
+
+    def __init__(self, count: int) -> None:
+        self._others = set(active_children())
+        # spawn: engines are libraries with state of their own, which fork would share.
+        super().__init__(count, mp_context=get_context("spawn"), initializer=_begin)
+
+    def submit(
+        self,
+        fn: Callable[Asked, Found],
+        /,
+        *args: Asked.args,
+        **kwargs: Asked.kwargs,
+    ) -> Future[Found]:
+        """Hand out work, for which a process may be started."""
+        with _undisturbed():
+            return super().submit(fn, *args, **kwargs)
+
+    def end(self) -> None:
+        """End all work, unfinished as it is."""
+        for child in set(active_children()) - self._others:
+            child.terminate()
+        # Waited for: a pool that breaks while Python ends may say so.
+        self.shutdown(cancel_futures=True)
+
+
+def processes(count: int) -> Crew:
     """Return an executor of that many processes, started as they are needed."""
-    # spawn: engines are libraries with state of their own, which fork would share.
-    return ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_begin)
+    return Crew(count)
 
 
 @contextmanager
 def crew(count: int) -> Generator[Executor]:
     """Lend processes; where the block is left by an exception their work ends at once."""
-    others = set(active_children())
     executor = processes(count)
     try:
         yield executor
     except BaseException:
-        executor.shutdown(wait=False, cancel_futures=True)
-        for child in set(active_children()) - others:
-            child.terminate()
+        executor.end()
         raise
     executor.shutdown()
 
 
+@contextmanager
+def _undisturbed() -> Generator[None]:
+    """Keep Ctrl-C from what is started inside, for good, and from starting half of it.
+
+    A terminal sends it to all processes; only this one answers, and ends the others. A
+    process being started would print a traceback.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    with KeptBack():
+        # A process that is started inherits what is blocked.
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _begin() -> None:
-    """See that a worker ends with its parent, and without a word where both are interrupted.
+    """See that a worker ends with its parent, and is ended by nobody else's Ctrl-C.
 
     It would wait for work for ever after a kill of its parent.
     """
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     parent = parent_process()
     if parent is not None:
         threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()

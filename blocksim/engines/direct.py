@@ -13,12 +13,12 @@ the floor (`blocksim.engines.ground`), without bouncing.
 from __future__ import annotations
 
 import math
-from importlib.metadata import version
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
+from blocksim.common.version import __version__
 from blocksim.engines.base import Quality, Settings, World
 from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
 
@@ -50,8 +50,8 @@ class Direct:
 
     @property
     def version(self) -> str:
-        """Version of the linear algebra, the only library in it."""
-        return version("scipy")
+        """Version of blocksim, whose own it is."""
+        return __version__
 
     def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002 - the protocol's
         """Return the same settings for every assembly."""

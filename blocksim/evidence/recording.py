@@ -20,7 +20,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_file, write_whole
+from blocksim.common.files import AnyPath, json_text, require_file, write_whole
 from blocksim.engines.base import Quality, Settings
 
 FORMAT = 2
@@ -109,7 +109,7 @@ class Recording:
         """Return times in seconds for a gravity in m/s^2."""
         return self.times * math.sqrt(self.assembly.size / gravity)
 
-    def save(self, path: Path) -> None:
+    def save(self, path: AnyPath) -> None:
         """Write a compressed .npz: arrays and one JSON text, nothing executable.
 
         Raises
@@ -126,7 +126,7 @@ class Recording:
             "quality": to_record(self.quality),
             "state_hash": self.state_hash,
         }
-        text = np.array(json.dumps(header))
+        text = np.array(json_text(header))
 
         def write(file: BinaryIO) -> None:
             np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
@@ -152,6 +152,7 @@ def read_recording(path: Path, renew: Callable[[Header], Header] = dict) -> Reco
     InputError
         If the file is missing, too large, or no recording.
     """
+    path = Path(path)
     where = str(path)
     require_file(path, "recording", "an existing .npz file", LARGEST_FILE)
     try:

@@ -169,7 +169,7 @@ def _question(asked: Asked, version: str) -> Row:
     case = asked.case
     return {
         "id": asked.identity.hex(),
-        "alpha_deg": case.alpha_deg,
+        "half_angle_deg": case.half_angle_deg,
         "mu": "inf" if math.isinf(case.mu) else case.mu,
         "voussoirs": case.voussoirs,
         "weight": case.weight,
@@ -201,7 +201,7 @@ def _by_simulation(case: Case, row: Row) -> None:
     try:
         if case.is_bracket:
             found = bracket(
-                half_angle=math.radians(case.alpha_deg),
+                half_angle=math.radians(case.half_angle_deg),
                 mu=case.mu,
                 voussoirs=case.voussoirs,
                 weight=case.weight,
@@ -221,7 +221,7 @@ def _by_simulation(case: Case, row: Row) -> None:
             )
         else:
             arch = Arch(
-                half_angle=math.radians(case.alpha_deg),
+                half_angle=math.radians(case.half_angle_deg),
                 eta=float(str(row["eta"])),
                 voussoirs=case.voussoirs,
                 weight=case.weight,

@@ -8,13 +8,14 @@ from typing import Annotated, ClassVar, cast
 import numpy as np
 from pydantic import BeforeValidator, Field
 
+from blocksim.arch.scenario import infinite
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING
 
 DRAWN_AT_ONCE = 4096
 """Arches drawn together; a longer random design begins with those of a shorter one."""
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=True)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=True), BeforeValidator(infinite)]
 
 
 def _as_table(written: object) -> object:

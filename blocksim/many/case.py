@@ -19,7 +19,7 @@ class Case(NamedTuple):
 
     Parameters
     ----------
-    alpha_deg : float
+    half_angle_deg : float
         Half-angle of embrace [deg].
     mu : float
     voussoirs : int
@@ -40,7 +40,7 @@ class Case(NamedTuple):
         Given to the engine instead of what its rule says.
     """
 
-    alpha_deg: float
+    half_angle_deg: float
     mu: float
     voussoirs: int
     weight: Weight

@@ -6,7 +6,6 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, ClassVar, cast
 
 import numpy as np
@@ -18,6 +17,7 @@ from blocksim.arch.scenario import read_table
 from blocksim.ask.methods import CHOICES, METHODS, STATIC
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
+from blocksim.common.files import AnyPath
 from blocksim.evidence.setup import SETTINGS, require_setting
 from blocksim.many.axis import DRAWN_AT_ONCE, Axis, AxisField, Number, require_axis
 from blocksim.many.case import AUTO_ENGINE, Case
@@ -74,7 +74,7 @@ class Design:
 
     Parameters
     ----------
-    alpha_deg, mu : Axis
+    half_angle_deg, mu : Axis
     voussoirs : Axis
     weight : tuple of str
     eta, ratio : Axis, optional
@@ -98,7 +98,7 @@ class Design:
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    alpha_deg: AxisField
+    half_angle_deg: AxisField
     mu: AxisField
     voussoirs: AxisField = USUAL_VOUSSOIRS
     weight: Words = ("centreline",)
@@ -142,7 +142,7 @@ class Design:
         return METHODS[AUTO_ENGINE if method == "auto" else method].settings
 
     def _axes(self) -> list[Axis]:
-        arch = self.alpha_deg, self.mu, self.voussoirs, self.eta, self.ratio
+        arch = self.half_angle_deg, self.mu, self.voussoirs, self.eta, self.ratio
         axes = *arch, *self.settings.axes.values()
         return [axis for axis in axes if axis is not None]
 
@@ -156,7 +156,7 @@ class Design:
 
     def _grid(self) -> Iterator[tuple[_Arch, _Values]]:
         arches = itertools.product(
-            self.alpha_deg.every(),
+            self.half_angle_deg.every(),
             self.mu.every(),
             self.voussoirs.every(),
             cast("tuple[Weight, ...]", self.weight),
@@ -171,7 +171,7 @@ class Design:
         nothing = [None] * DRAWN_AT_ONCE
         for start in range(0, table.count, DRAWN_AT_ONCE):
             arches = zip(
-                self.alpha_deg.draw(generator, whole=False),
+                self.half_angle_deg.draw(generator, whole=False),
                 self.mu.draw(generator, whole=False),
                 self.voussoirs.draw(generator, whole=True),
                 cast("list[Weight]", generator.choice(self.weight, DRAWN_AT_ONCE).tolist()),
@@ -194,7 +194,7 @@ _Values = tuple[float, ...]
 """Of the settings given."""
 
 
-def load_design(path: Path) -> Design:
+def load_design(path: AnyPath) -> Design:
     """Read a design.
 
     Parameters
@@ -223,7 +223,7 @@ def _require_ranges(design: Design) -> None:
     """Raise `InputError` where a case would be out of range."""
     spaced = design.random is None
     for field, top, allowed in (
-        ("alpha_deg", math.nextafter(180, 0), "above 0 and below 180"),
+        ("half_angle_deg", math.nextafter(180, 0), "above 0 and below 180"),
         ("mu", math.inf, "above 0 (inf for unbounded friction)"),
         ("voussoirs", 1000, "a whole number from 3 to 1000"),
         ("eta", ETA_MAX, "above 0 and at most 2"),

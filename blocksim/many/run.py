@@ -18,8 +18,8 @@ from pathlib import Path
 from blocksim.ask.methods import STATIC
 from blocksim.common.checks import require
 from blocksim.common.errors import MissingPart
-from blocksim.common.files import make_folder
-from blocksim.common.processes import processes
+from blocksim.common.files import AnyPath, make_folder
+from blocksim.common.processes import Crew, processes
 from blocksim.common.progress import Progress, silent
 from blocksim.many.answers import (
     Answered,
@@ -78,7 +78,7 @@ class Summary:
 
 def sweep(
     design: Questions,
-    folder: Path,
+    folder: AnyPath,
     *,
     executor: Executor | None = None,
     workers: int = 2,
@@ -120,6 +120,7 @@ def sweep(
     require(workers >= 1, "workers", workers, "at least 1")
     require(in_flight is None or in_flight >= 1, "in_flight", in_flight, "at least 1")
     versions = {method: version_of(method) for method in design.method}
+    folder = Path(folder)
     make_folder(folder)
     many = in_flight or 2 * workers
     tally = Tally()
@@ -225,9 +226,11 @@ class _Hands:
         return True
 
     def leave(self, *, wait: bool = False) -> None:
-        """Let go of processes, their work unfinished or not."""
-        if self._given is None:
-            self._executor.shutdown(wait=wait, cancel_futures=True)
+        """Let go of processes, after their work or at once."""
+        if self._given is None and wait:
+            self._executor.shutdown()
+        elif isinstance(self._executor, Crew):
+            self._executor.end()
 
 
 def _work(

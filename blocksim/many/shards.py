@@ -12,7 +12,7 @@ from typing import cast
 from filelock import FileLock, Timeout
 
 from blocksim.common.errors import InputError
-from blocksim.common.files import write_whole
+from blocksim.common.files import AnyPath, write_whole
 
 HEAD = b'{"id": "'
 ID_LENGTH = 24
@@ -85,7 +85,7 @@ def _mend(path: Path) -> None:
         path.unlink()
 
 
-def read_rows(folder: Path) -> Iterator[dict[str, object]]:
+def read_rows(folder: AnyPath) -> Iterator[dict[str, object]]:
     """Read the rows of a sweep, in no particular order.
 
     Parameters
@@ -95,7 +95,7 @@ def read_rows(folder: Path) -> Iterator[dict[str, object]]:
     Yields
     ------
     dict
-        The question (`alpha_deg`, `mu`, `voussoirs`, `weight`, `eta`, `ratio`,
+        The question (`half_angle_deg`, `mu`, `voussoirs`, `weight`, `eta`, `ratio`,
         `asked`, `settings`), `method` that answered and its `version`, and the answer;
         `error` is None unless there is none. Infinite friction is the text "inf".
 
@@ -104,7 +104,7 @@ def read_rows(folder: Path) -> Iterator[dict[str, object]]:
     InputError
         If a file is not of a sweep.
     """
-    for line in _lines(folder):
+    for line in _lines(Path(folder)):
         yield cast("dict[str, object]", json.loads(line))
 
 

@@ -27,7 +27,7 @@ def by_statics(cases: Sequence[Case], rows: list[Row]) -> list[int]:
         groups[case.voussoirs, case.weight].append(k)
     left: list[int] = []
     for (voussoirs, weight), group in groups.items():
-        alpha = np.radians([cases[k].alpha_deg for k in group])
+        alpha = np.radians([cases[k].half_angle_deg for k in group])
         mu = np.array([cases[k].mu for k in group])
         continuous = least_thicknesses(alpha, mu, weight)
         names, least = continuous.mode.tolist(), _or_none(continuous.eta)

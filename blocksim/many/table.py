@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from itertools import islice
-from pathlib import Path
 from typing import Any, BinaryIO
 
 from blocksim.common.errors import MissingPart
-from blocksim.common.files import write_whole
+from blocksim.common.files import AnyPath, write_whole
 from blocksim.evidence.setup import SETTINGS
 from blocksim.many.shards import read_rows
 
@@ -16,7 +15,7 @@ ROWS_AT_ONCE = 50_000
 """Rows held in memory, a row group of the table."""
 COLUMNS = {
     "id": "string",
-    "alpha_deg": "double",
+    "half_angle_deg": "double",
     "mu": "double",
     "voussoirs": "int64",
     "weight": "string",
@@ -48,7 +47,7 @@ def require_parquet() -> None:
         raise MissingPart("Parquet", "pip install 'blocksim[parquet]'")
 
 
-def write_parquet(folder: Path, path: Path) -> None:
+def write_parquet(folder: AnyPath, path: AnyPath) -> None:
     """Write the rows of a sweep as a Parquet table, in the order of `read_rows`.
 
     Columns are the keys of a row; infinite friction is a number, and settings that were

@@ -12,13 +12,6 @@ from blocksim.blocks.joints import JointState
 from blocksim.evidence.motion import EARLY
 
 
-def plain(value: object) -> object:
-    """Return a value as JSON has it: inf, which JSON lacks, becomes a text."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    return value
-
-
 def check_record(answer: Check) -> dict[str, object]:
     """Return a check as `check --json` prints it."""
     arch = answer.arch
@@ -30,10 +23,13 @@ def check_record(answer: Check) -> dict[str, object]:
         "verdict": answer.verdict.value,
         "reason": answer.reason,
         "eta": arch.eta,
-        "mu": plain(answer.mu),
+        "mu": answer.mu,
         "half_angle_deg": math.degrees(arch.half_angle),
         "voussoirs": arch.voussoirs,
         "weight": arch.weight,
+        "radius": arch.radius,
+        "depth": arch.depth,
+        "lean_deg": math.degrees(answer.lean),
         "eta_limit": answer.eta_limit,
         "eta_theory": answer.eta_theory,
         "mode": answer.mode,
@@ -57,9 +53,11 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
     return {
         "method": answer.method,
         "half_angle_deg": math.degrees(answer.half_angle),
-        "mu": plain(answer.mu),
+        "mu": answer.mu,
         "voussoirs": answer.voussoirs,
         "weight": answer.weight,
+        "depth": answer.depth,
+        "lean_deg": math.degrees(answer.lean),
         "tol": answer.tol,
         "eta_low": answer.eta_low,
         "eta_high": answer.eta_high,
@@ -92,7 +90,8 @@ def check_lines(answer: Check) -> list[str]:
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
-        f"mu {answer.mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}",
+        f"mu {answer.mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}, "
+        f"depth {arch.depth / arch.radius:g} r{lean_words(answer.lean)}",
         f"  because {answer.reason}",
         _exact("least  ", answer),
     ]
@@ -105,7 +104,9 @@ def check_lines(answer: Check) -> list[str]:
     lines += _modes(answer, of)
     active = [joint for joint in answer.joints if joint.state is not JointState.CLOSED]
     if active:
-        told = ", ".join(f"{math.degrees(j.angle):+.1f} deg {j.state.value}" for j in active)
+        told = ", ".join(
+            f"{signed(math.degrees(j.angle), 1)} deg {j.state.value}" for j in active
+        )
         lines.append(f"  joints  {told}")
     return lines
 
@@ -123,7 +124,8 @@ def bracket_lines(answer: Bracket) -> list[str]:
     lines = [
         f"{head}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(answer.half_angle):g} deg, mu {answer.mu:g}, "
-        f"{answer.voussoirs} voussoirs, weight {answer.weight}",
+        f"{answer.voussoirs} voussoirs, weight {answer.weight}, "
+        f"depth {answer.depth:g} r{lean_words(answer.lean)}",
         f"  because {answer.reason}",
         _exact("exact  ", answer),
     ]
@@ -163,6 +165,17 @@ def _modes(answer: Check | Bracket, of: str) -> list[str]:
             f"  moving  {later.value}, {later.description}, once it has moved {EARLY:g} r"
         )
     return lines
+
+
+def lean_words(lean: float) -> str:
+    """Say how far gravity leans out of the plane, where it does."""
+    return f", gravity leans {math.degrees(lean):g} deg out of the plane" if lean else ""
+
+
+def signed(value: float, digits: int) -> str:
+    """Return a number with its sign; what rounds to nothing has none."""
+    said = f"{value:+.{digits}f}"
+    return said if float(said) else said[1:]
 
 
 def ratio(eta: float | None) -> str:

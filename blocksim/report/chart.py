@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from blocksim.common.errors import InputError
-from blocksim.common.files import make_folder, require_file, write_whole
+from blocksim.common.files import AnyPath, make_folder, require_file, write_whole
 from blocksim.engines import ENGINES, get_engine, remedy
-from blocksim.report.answers import plain
 from blocksim.report.tables import as_json, machine, pictures, write_contents
 from blocksim.studies.chart import Point, on_front
 from blocksim.studies.knobs import KNOBS
@@ -22,7 +21,7 @@ LARGEST_FILE = 1 << 24
 """Bytes; a larger file of points is not opened."""
 
 
-def write_chart(points: Sequence[Point], folder: Path) -> list[Path]:
+def write_chart(points: Sequence[Point], folder: AnyPath) -> list[Path]:
     """Write chart.json and the pictures of `chart_figures`, .png and .svg, into a folder.
 
     Raises
@@ -30,6 +29,7 @@ def write_chart(points: Sequence[Point], folder: Path) -> list[Path]:
     InputError
         If they cannot be written.
     """
+    folder = Path(folder)
     make_folder(folder)
     made = [folder / "chart.json"]
     write_points(points, made[0])
@@ -38,7 +38,7 @@ def write_chart(points: Sequence[Point], folder: Path) -> list[Path]:
     return made
 
 
-def write_points(points: Sequence[Point], path: Path) -> None:
+def write_points(points: Sequence[Point], path: AnyPath) -> None:
     """Write points as JSON, as `read_points` takes them.
 
     Raises
@@ -46,11 +46,12 @@ def write_points(points: Sequence[Point], path: Path) -> None:
     InputError
         If they cannot be written.
     """
+    path = Path(path)
     make_folder(path.parent)
     by_time, by_work = on_front(points), on_front(points, "work")
     records = [
         {
-            **{key: plain(value) for key, value in asdict(point).items()},
+            **asdict(point),
             "against": point.against,
             "on_front": point in by_time,
             "on_front_of_work": point in by_work,
@@ -72,7 +73,7 @@ def write_points(points: Sequence[Point], path: Path) -> None:
     write_whole(path, lambda file: file.write(as_json(document)))
 
 
-def read_points(path: Path) -> list[Point]:
+def read_points(path: AnyPath) -> list[Point]:
     """Read points of another run or program, written by `write_points`.
 
     Files of before there were knobs are read, too: a tolerance `tol`, and `seconds` by the
@@ -83,6 +84,7 @@ def read_points(path: Path) -> list[Point]:
     InputError
         If the file is missing, too large, or holds no points.
     """
+    path = Path(path)
     require_file(path, "points", WRITTEN, LARGEST_FILE)
     try:
         return [_point(record) for record in json.loads(path.read_text("utf-8"))["points"]]

@@ -17,7 +17,15 @@ from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import ratio
 from blocksim.report.motion import Drawing, drawing
-from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, numbered
+from blocksim.studies.validate import (
+    ASIDE,
+    ERROR_BOUND,
+    TOLS,
+    Row,
+    Unasked,
+    disagreements,
+    numbered,
+)
 from blocksim.view import style
 
 STATES = {
@@ -55,7 +63,12 @@ class Case:
         return self.results[0].row
 
 
-def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str]) -> str:
+def report_page(
+    rows: Sequence[Row],
+    map_svg: bytes,
+    machine: Mapping[str, str],
+    unasked: Sequence[Unasked] = (),
+) -> str:
     """Write the page.
 
     Parameters
@@ -66,6 +79,7 @@ def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str])
         The map with the results.
     machine : mapping
         What the figures were measured on.
+    unasked : sequence of Unasked
 
     Returns
     -------
@@ -89,6 +103,7 @@ def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str])
     engines = list(dict.fromkeys(row.engine for row in rows))
     return template.render(
         cases=_cases(rows),
+        unasked=unasked,
         misses=[row for row in rows if row.miss],
         notes=[row for row in rows if row.note and not row.miss],
         engines=engines,
@@ -168,7 +183,10 @@ def _result(row: Row, anchor: str) -> Result:
 
 
 def _percent(share: float, digits: str = "g") -> str:
-    return f"{share * 100:{digits}}\N{NO-BREAK SPACE}%"
+    said = f"{share * 100:{digits}}"
+    # What rounds to nothing has no sign.
+    said = said if float(said) else said.lstrip("+-")
+    return f"{said}\N{NO-BREAK SPACE}%"
 
 
 def _capitalised(words: str) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import math
 import platform
 from collections.abc import Sequence
@@ -15,14 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import blocksim
-from blocksim.common.files import make_folder, write_whole
-from blocksim.report.answers import plain
+from blocksim.common.files import AnyPath, json_text, make_folder, write_whole
 from blocksim.report.page import report_page
 from blocksim.studies.validate import (
     ASIDE,
     ERROR_BOUND,
     TOLS,
     Row,
+    Unasked,
     disagreements,
     installed,
     numbered,
@@ -37,7 +36,7 @@ def as_record(row: Row) -> dict[str, object]:
     """Return a row with its angles in degrees, without the motion recorded."""
     fields = asdict(replace(row, recording=None))
     left_out = {"half_angle", "recording"}
-    record = {key: plain(value) for key, value in fields.items() if key not in left_out}
+    record = {key: value for key, value in fields.items() if key not in left_out}
     record["modes_published"] = "/".join(row.modes_published)
     return {"scenario": row.scenario, "half_angle_deg": math.degrees(row.half_angle), **record}
 
@@ -63,14 +62,24 @@ def processor() -> str:
     return platform.processor() or "unknown"
 
 
-def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
+def write_results(
+    rows: Sequence[Row], folder: AnyPath, unasked: Sequence[Unasked] = ()
+) -> list[Path]:
     """Write report.html, validate.json, validate.csv, map.png and map.svg into a folder.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+    folder : str or path
+    unasked : sequence of Unasked
+        What was not asked, and why; said in the page and in the JSON.
 
     Raises
     ------
     InputError
         If they cannot be written.
     """
+    folder = Path(folder)
     make_folder(folder)
     records = [as_record(row) for row in rows]
     settings = {"tol": TOLS, "error_bound": ERROR_BOUND, "aside": ASIDE}
@@ -79,6 +88,7 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
         "settings": settings,
         "rows": records,
         "disagreements": disagreements(rows),
+        "not_asked": [asdict(each) for each in unasked],
     }
     sheet = io.StringIO()
     writer = csv.DictWriter(sheet, fieldnames=list(records[0]), lineterminator="\n")
@@ -88,7 +98,7 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
     figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
     drawn = pictures("map", figure)
     contents = {
-        "report.html": report_page(rows, drawn["map.svg"], machine()).encode(),
+        "report.html": report_page(rows, drawn["map.svg"], machine(), unasked).encode(),
         "validate.json": as_json(document),
         "validate.csv": sheet.getvalue().encode(),
     }
@@ -97,7 +107,7 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
 
 def as_json(document: object) -> bytes:
     """Return a JSON document as the content of a file."""
-    return f"{json.dumps(document, indent=1, allow_nan=False)}\n".encode()
+    return f"{json_text(document, indent=1)}\n".encode()
 
 
 def pictures(name: str, figure: Figure) -> dict[str, bytes]:

@@ -14,7 +14,8 @@ from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import Scenario, load_scenario, shipped
-from blocksim.ask.methods import METHODS, missing
+from blocksim.ask.methods import METHODS, SPATIAL, missing
+from blocksim.common.checks import require
 from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import get_engine
@@ -22,8 +23,10 @@ from blocksim.evidence.recording import Recording
 from blocksim.evidence.trial import trial
 from blocksim.evidence.verdict import Verdict
 
-TOLS = {"pymunk": 0.001, "pybullet": 0.004}
-"""Engines that are validated, and the relative width of their brackets."""
+TOLS = {"direct": 1e-6, "pymunk": 0.001, "pybullet": 0.004, "mujoco": 0.004}
+"""Relative width of each engine's brackets."""
+USUAL = ("pymunk", "pybullet")
+"""Engines that are validated where none is named."""
 ERROR_BOUND = 0.002
 """A bracket whose centre is farther than this from `limit` is a miss."""
 ASIDE = 0.01
@@ -103,9 +106,46 @@ def scenarios(*, quick: bool) -> list[Scenario]:
     return [scenario for scenario in every if scenario.quick or not quick]
 
 
+@dataclass(frozen=True, kw_only=True)
+class Unasked:
+    """Scenarios that an engine was not asked about.
+
+    Parameters
+    ----------
+    engine : str
+    scenarios : tuple of str
+        Their names.
+    why : str
+    """
+
+    engine: str
+    scenarios: tuple[str, ...]
+    why: str
+
+    @property
+    def words(self) -> str:
+        """All of it in a line."""
+        return f"{self.engine}: {', '.join(self.scenarios)} ({self.why})"
+
+
 def installed() -> tuple[str, ...]:
-    """Return the engines to validate that can run here."""
-    return tuple(name for name in TOLS if missing(METHODS[name]) is None)
+    """Return the usual engines that can run here."""
+    return tuple(name for name in USUAL if missing(METHODS[name]) is None)
+
+
+def unasked(chosen: Sequence[Scenario], engines: Iterable[str] | None = None) -> list[Unasked]:
+    """Tell what `validate` does not ask, and why; arguments as there."""
+    found: list[Unasked] = []
+    for name in USUAL if engines is None else engines:
+        remedy = missing(METHODS[name])
+        leaning = tuple(each.name for each in chosen if each.lean)
+        if engines is None and remedy:
+            every = tuple(each.name for each in chosen)
+            found.append(Unasked(engine=name, scenarios=every, why=f"not here: {remedy}"))
+        elif leaning and not METHODS[name].is_spatial:
+            why = f"gravity leans out of the plane: {SPATIAL} sees that"
+            found.append(Unasked(engine=name, scenarios=leaning, why=why))
+    return found
 
 
 def validate(
@@ -122,7 +162,7 @@ def validate(
     chosen : sequence of Scenario
     engines : iterable of str, optional
         By default all that are `installed`. Scenarios whose gravity leans out of the
-        plane are for those that see that.
+        plane are for those that see that; `unasked` tells what is left out.
     workers : int
         Processes; 1 runs in this one.
     progress : Progress, optional
@@ -131,8 +171,18 @@ def validate(
     -------
     list of Row
         In the order of scenarios, then engines, whatever finishes first.
+
+    Raises
+    ------
+    InputError
+        If there is no such engine.
+    MissingPart
+        If the library of one that is named is not installed.
     """
-    names = installed() if engines is None else tuple(engines)
+    names = installed() if engines is None else tuple(dict.fromkeys(engines))
+    for name in names:
+        require(name in TOLS, "methods", name, f"one or more of {', '.join(TOLS)}")
+        get_engine(name)
     jobs = [
         (scenario, engine)
         for scenario in chosen

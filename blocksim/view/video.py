@@ -15,7 +15,7 @@ from av.video.reformatter import Colorspace
 from numpy.typing import NDArray
 from PIL import Image
 
-from blocksim.common.files import write_whole
+from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.recording import Recording
 from blocksim.view.film import TALL, Film, ViewName
@@ -33,7 +33,7 @@ COLOURS = 255
 
 def render(
     recordings: Sequence[Recording],
-    out: Path,
+    out: AnyPath,
     *,
     view: ViewName = "2d",
     slow: float | None = None,
@@ -68,6 +68,7 @@ def render(
     InputError
         If the file cannot be written.
     """
+    out = Path(out)
     kind = out.suffix.removeprefix(".")
     film = Film(recordings, view=view, slow=slow, height=height, rate=RATES.get(kind, 30))
     if kind in STILLS:

@@ -12,7 +12,7 @@ from blocksim.arch.circular import WEIGHTS
 from blocksim.arch.modes import Mode
 from blocksim.common.checks import is_number
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_file
+from blocksim.common.files import AnyPath, require_file
 
 LARGEST_FILE = 20_000_000
 """Bytes: some 20,000 rows."""
@@ -57,7 +57,7 @@ class Result:
     said: str
 
 
-def read_results(path: Path) -> list[Result]:
+def read_results(path: AnyPath) -> list[Result]:
     """Read the results of a `validate` run.
 
     Parameters
@@ -75,6 +75,7 @@ def read_results(path: Path) -> list[Result]:
     InputError
         If the file is missing, too large, or no such results.
     """
+    path = Path(path)
     require_file(path, "--results", f"an existing {WRITTEN}", LARGEST_FILE)
     try:
         rows = json.loads(path.read_bytes())["rows"]

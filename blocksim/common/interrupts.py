@@ -1,0 +1,100 @@
+"""Ctrl-C and the request to end, at any moment: no traceback, the exit code of a shell.
+
+Python itself says them as tracebacks, and imports take a second in which they are likely. So
+the program's first import is this module, which imports next to nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import TracebackType
+
+SIGINT, SIGTERM = 2, 15
+CODES = {SIGINT: 130, SIGTERM: 143}
+"""As a shell says it."""
+TWICE = 1.0
+"""Seconds in which the same wish counts once: `timeout` sends its signal twice."""
+
+
+class _State:
+    """What the handler goes by."""
+
+    working = False
+    """There is work that has to be told: files half-written, processes, a progress bar."""
+    waiting = False
+    """Not now: it is told when this ends."""
+    code = 0
+    """Exit code of the signal that came."""
+    since = 0.0
+
+
+def is_program() -> bool:
+    """Tell whether blocksim is the program that runs, and no part of another."""
+    name = os.path.basename(sys.argv[0]) if getattr(sys, "argv", None) else ""  # noqa: PTH119
+    # While Python looks for the module to run, -m stands for its name.
+    return name.partition(".")[0] == "blocksim" or (
+        name == "-m" and "blocksim" in sys.orig_argv
+    )
+
+
+def install() -> None:
+    """Take both signals; before there is any work they end the process at once."""
+    # The import of signals takes a while, too.
+    sys.excepthook = _say_unless_interrupted
+    import signal
+
+    for number in CODES:
+        signal.signal(number, _handle)
+
+
+class Told:
+    """Work inside is told by `KeyboardInterrupt` that it has to end, so that it cleans up."""
+
+    def __enter__(self) -> None:
+        _State.working, _State.code = True, 0
+
+    def __exit__(self, *_: object) -> None:
+        _State.working = False
+
+
+class KeptBack:
+    """Nothing is told inside, where half of something would be left, but after it."""
+
+    def __enter__(self) -> None:
+        _State.waiting = True
+
+    def __exit__(self, *_: object) -> None:
+        _State.waiting = False
+        if _State.code and _State.working:
+            raise KeyboardInterrupt
+
+
+def code() -> int:
+    """Return the exit code of the signal that came, 0 where none did."""
+    return _State.code
+
+
+def _handle(number: int, _: object) -> None:
+    known = CODES[number]
+    if not _State.working:
+        os._exit(known)
+    if _State.code:
+        if time.monotonic() - _State.since > TWICE:
+            os._exit(known)
+        return
+    _State.code, _State.since = known, time.monotonic()
+    if not _State.waiting:
+        raise KeyboardInterrupt
+
+
+def _say_unless_interrupted(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
+    if issubclass(kind, KeyboardInterrupt):
+        os._exit(_State.code or CODES[SIGINT])
+    sys.__excepthook__(kind, error, trace)

@@ -1,0 +1,91 @@
+"""Ctrl-C and the request to end: at any moment no traceback, and the exit code of a shell.
+
+A terminal sends Ctrl-C to every process of the command, so these tests do, too.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from running import PROGRAM, alive, children, until
+from sweeps import SIMULATED, written
+
+ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "101", "--method", "pymunk")
+CODES = {signal.SIGINT: 130, signal.SIGTERM: 143}
+
+
+def imports(pid: int) -> bool:
+    """Whether it has come to its first library, with most of its imports to come."""
+    return "numpy" in Path(f"/proc/{pid}/maps").read_text()
+
+
+def interrupted(
+    since: Callable[[int], object], delay: float, sent: signal.Signals, *asked: str
+) -> None:
+    """Start a command, send the signal to all its processes, and hold it to its word."""
+    with subprocess.Popen(
+        [*PROGRAM, *asked], stdout=-1, stderr=-1, start_new_session=True
+    ) as driver:
+        until(lambda: bool(since(driver.pid)), driver)
+        time.sleep(delay)
+        assert driver.poll() is None, "ended too soon"
+        workers = children(driver.pid)
+        os.killpg(driver.pid, sent)
+        said, error = driver.communicate()
+        assert (said, error, driver.returncode) == (b"", b"", CODES[sent])
+    until(lambda: not any(alive(pid) for pid in workers))
+
+
+@pytest.mark.parametrize("sent", CODES)
+@pytest.mark.parametrize("delay", [0.0, 0.05, 0.2, 0.6])
+def test_while_it_starts(delay: float, sent: signal.Signals) -> None:
+    interrupted(imports, delay, sent, "bracket", *ARCH, "--tol", "1e-4")
+
+
+@pytest.mark.parametrize("sent", CODES)
+@pytest.mark.parametrize("delay", [0.0, 0.1, 0.5])
+@pytest.mark.parametrize("command", ["validate", "sweep"])
+def test_while_workers_start(
+    command: str, delay: float, sent: signal.Signals, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    asked = {
+        "validate": ("validate", "--full", "--out", str(out)),
+        "sweep": (*written(tmp_path, SIMULATED.replace("count = 40", "count = 4000")),),
+    }
+    interrupted(children, delay, sent, *asked[command])
+    assert not list(tmp_path.rglob("*.part"))
+
+
+def test_an_interrupt_that_a_library_swallows_still_counts() -> None:
+    code = "\n".join(
+        [
+            "import os, signal, sys",
+            "import blocksim.cli as cli",
+            "def run(**_):",
+            "    try:",
+            "        os.kill(os.getpid(), signal.SIGINT)",
+            "    except KeyboardInterrupt as error:",
+            "        raise ImportError('half a module') from error",
+            "cli.app = run",
+            "cli.main()",
+        ]
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+
+
+def test_a_library_leaves_signals_alone() -> None:
+    code = (
+        "import signal, blocksim; "
+        "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler; "
+        "assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

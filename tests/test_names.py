@@ -1,0 +1,137 @@
+"""What people give and are told: paths as texts, strict JSON, missing options, versions."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from report_rows import ROW, sliding
+from running import blocksim
+
+import blocksim as package
+from blocksim import load_recording
+from blocksim.arch.scenario import load_scenario, shipped
+from blocksim.cli.console import validation_lines, validation_table
+from blocksim.common.errors import InputError
+from blocksim.common.files import json_text
+from blocksim.engines import get_engine
+from blocksim.many import load_design
+from blocksim.report.answers import signed
+from blocksim.studies.validate import unasked
+
+
+def test_paths_may_be_texts_and_the_header_is_strict_json(tmp_path: Path) -> None:
+    path = str(tmp_path / "a.npz")
+    recording = replace(sliding(), mu=math.inf)
+    recording.save(path)
+    with np.load(path) as inside:
+        header = json.loads(str(inside["header"]), parse_constant=pytest.fail)
+    assert header["mu"] == "inf"
+    again = load_recording(path)
+    assert (again.mu, again.settings) == (math.inf, recording.settings)
+    assert zipfile.is_zipfile(path)
+
+
+def test_json_has_no_infinity_however_deep() -> None:
+    text = json_text({"a": [math.inf, {"b": -math.inf}], "c": (1.5, math.nan)})
+    read = json.loads(text, parse_constant=pytest.fail)
+    assert read == {"a": ["inf", {"b": "-inf"}], "c": [1.5, "nan"]}
+
+
+def test_infinite_friction_may_be_a_text_in_files(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        'title = "t"\nsource = "s"\n[arch]\nhalf_angle_deg = 90\nvoussoirs = 9\n'
+        '[contact]\nmu = "inf"\n'
+    )
+    assert load_scenario(str(path)).mu == math.inf
+    path.write_text('half_angle_deg = 90\nmu = ["inf", 1]\n')
+    assert load_design(str(path)).mu.values == (math.inf, 1.0)
+    path.write_text("alpha_deg = 90\nmu = 1\n")
+    with pytest.raises(InputError, match="alpha_deg = 90: must be named half_angle_deg"):
+        load_design(path)
+
+
+def test_what_rounds_to_nothing_has_no_sign() -> None:
+    assert [signed(x, 3) for x in (-4e-7, 4e-7, -0.0012)] == ["0.000", "0.000", "-0.001"]
+    row = replace(ROW, error=-1e-9)
+    assert "-0.000" not in str([*validation_table([row]).columns[-1].cells])
+
+
+def test_direct_is_of_blocksims_version() -> None:
+    assert get_engine("direct").version == package.__version__
+    assert f"blocksim {package.__version__}\n" == blocksim("--version").stdout
+
+
+@pytest.mark.parametrize(
+    ("asked", "named"),
+    [
+        (("check",), "--alpha, --mu and --eta are missing"),
+        (("check", "--mu", "1"), "--alpha and --eta are missing"),
+        (("simulate",), "--out, --alpha, --mu and --eta are missing"),
+        (("render",), "--out, --alpha and --mu are missing"),
+        (("bracket", "--alpha", "90"), "--mu is missing"),
+        (("sweep",), "DESIGN and --out are missing"),
+    ],
+)
+def test_all_missing_options_are_named(asked: tuple[str, ...], named: str) -> None:
+    done = blocksim(*asked)
+    assert (done.returncode, done.stderr) == (2, f"blocksim: {named}: must be given\n")
+
+
+def test_nothing_asked_is_help() -> None:
+    done = blocksim()
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "scenarios" in done.stdout
+    assert blocksim("-h").stdout.split() == blocksim("--help").stdout.split()
+
+
+def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:
+    asked = ("check", "semicircle", "--ratio", "0.999", "--depth", "2.5", "--json")
+    answer = json.loads(blocksim(*asked).stdout)
+    assert answer["eta"] == pytest.approx(0.999 * answer["eta_limit"], rel=1e-14)
+    assert (answer["depth"], answer["lean_deg"], answer["verdict"]) == (2.5, 0.0, "collapses")
+    stands = json.loads(blocksim(*asked, "--ratio", "1.001").stdout)
+    assert stands["verdict"] == "stands"
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_every_scenario_can_be_checked(name: str) -> None:
+    if load_scenario(name).lean:
+        pytest.importorskip("pybullet")
+    done = blocksim("check", name, "--json")
+    assert done.stderr == ""
+    answer = json.loads(done.stdout)
+    scenario = load_scenario(name)
+    assert answer["lean_deg"] == pytest.approx(math.degrees(scenario.lean))
+    assert answer["verdict"] == (scenario.expected_verdict or "collapses")
+    assert ("no thickness was given" in answer["reason"]) == (scenario.eta is None)
+
+
+def test_what_was_not_asked_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen = [load_scenario(name) for name in ("semicircle", "semicircle_tilted_stands")]
+    plane, *others = unasked(chosen)
+    assert (plane.engine, plane.scenarios) == ("pymunk", ("semicircle_tilted_stands",))
+    monkeypatch.setattr("blocksim.studies.validate.missing", lambda _: "get it")
+    found = unasked(chosen)
+    assert [each.scenarios for each in found] == [
+        ("semicircle", "semicircle_tilted_stands")
+    ] * 2
+    assert any("get it" in line for line in validation_lines([ROW], found))
+    assert not others or others[0].why.startswith("not here")
+
+
+def test_scenarios_and_doctor_list_figures() -> None:
+    line = next(
+        x for x in blocksim("scenarios").stdout.splitlines() if "semicircle_tilted_s" in x
+    )
+    assert line.split()[1:5] == ["90", "3", "15", "0.2"]
+    said = blocksim("doctor").stdout
+    assert re.search(r"blocksim \S+, Python 3\.\d+", said)
+    assert re.search(r"numpy \d", said)
