@@ -6,8 +6,8 @@ from pathlib import Path
 
 from blocksim.arch import require
 from blocksim.cli.console import picture_kind, save_picture, say
-from blocksim.cli.filming import Given
-from blocksim.cli.options import named_options, question
+from blocksim.cli.filming import Given, picture_of_leaning
+from blocksim.cli.options import arch_of, named_options, question
 from blocksim.errors import MISSING, InputError
 from blocksim.files import write_whole
 from blocksim.theory import least_thickness
@@ -45,12 +45,19 @@ def _map_page(out: Path, results: Path | None) -> None:
 
 
 def write_arch(out: Path, kind: str, scene: str | None, given: Given) -> None:
-    """Draw the voussoirs as built, or the continuous arch at its least thickness."""
+    """Draw the voussoirs as built, or the continuous arch at its least thickness.
+
+    Where gravity leans out of the plane, statics in the plane say nothing: the arch is put
+    into the engine that sees it, and drawn in perspective.
+    """
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
 
     asked = question(scene, given.alpha, given.mu, given.voussoirs, given.weight)
     ratio_given = asked.eta if given.eta is None else given.eta
+    if asked.lean:
+        picture_of_leaning(out, kind, arch_of(asked, given.eta), asked)
+        return
     with named_options():
         if ratio_given is not None:
             pictures = [picture_of_arch(asked.arch(ratio_given), asked.mu)]
