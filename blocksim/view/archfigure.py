@@ -192,14 +192,14 @@ def draw_arch(axes: Axes, picture: ArchPicture) -> None:
     for angle in picture.joints[1:-1]:
         axes.plot(*_radius(float(angle), inner, outer), color=INK, lw=0.5, zorder=2)
     pressure, shear = lines_of(picture)
-    for line, name, style in (
-        (pressure, f"line of thrust{picture.line}", {"color": THRUST, "lw": 2.0}),
-        (shear, "line of friction", {"color": FRICTION, "lw": 1.5, "ls": (0, (5, 1.6))}),
+    for line, name, colour, dashes, width in (
+        (pressure, f"line of thrust{picture.line}", THRUST, "-", 2.0),
+        (shear, "line of friction", FRICTION, (0, (5, 1.6)), 1.5),
     ):
         if line is None:
             axes.plot([], [], ls="", label=f"{name}: too far out to be drawn")
         else:
-            axes.plot(*line.T, zorder=5, label=name, **style)
+            axes.plot(*line.T, zorder=5, label=name, color=colour, ls=dashes, lw=width)
     _mark_joints(axes, picture, inner, outer)
     axes.margins(0.03)
     _draw_scale(axes)
@@ -219,8 +219,8 @@ def _draw_supports(axes: Axes, picture: ArchPicture) -> None:
     wider = max(0.0, 1 - half), 1 + half
     deep = min(SUPPORT, 0.8 * (math.pi - picture.half_angle))
     for side in (-1, 1):
-        ends = sorted((side * picture.half_angle, side * (picture.half_angle + deep)))
-        axes.add_patch(Polygon(_ring(*ends, *wider), fc=GROUND, ec="none", zorder=0.5,
+        low, high = sorted((side * picture.half_angle, side * (picture.half_angle + deep)))
+        axes.add_patch(Polygon(_ring(low, high, *wider), fc=GROUND, ec="none", zorder=0.5,
                                label="support"))  # fmt: skip
 
 

@@ -71,16 +71,17 @@ def _iso_lines(axes: Axes, span: tuple[float, float]) -> None:
         name = angle_name(half_angle)
         continued = iso_continued(half_angle)
         line = iso_line(half_angle)
-        for kind, curve, style in (
-            ("feasible", line, {"lw": 1.0}),
-            ("infeasible", continued, {"lw": 0.7, "ls": DASHED, "alpha": 0.8}),
+        for kind, curve, dashes, width in (
+            ("feasible", line, "-", 1.0),
+            ("infeasible", continued, DASHED, 0.7),
         ):
             if curve.mu.size and curve.eta.min() <= span[1]:
                 # Along the frame a line would be cut in half.
                 along = bool((curve.eta == span[1]).all())
                 axes.plot(curve.mu, curve.eta, color=ISO, gid=f"{kind} {name}",
                           label=names.pop(kind, None), zorder=1.5,
-                          clip_on=not along, **style)  # fmt: skip
+                          clip_on=not along, ls=dashes,
+                          lw=width)  # fmt: skip
         end = float((line if line.mu.size else continued).eta[-1])
         if span[0] < end <= span[1]:
             beside[name] = end

@@ -267,8 +267,8 @@ def _draw_points(
         (right - left) / (POINTS_ACROSS * inset[0]),
         (high - low) / (POINTS_UP * inset[1]),
     )
-    taken = [_place(point) for point in points if point not in unnamed]
-    taken += section.names.values()
+    marks = [_place(point) for point in points if not point.outline and point not in unnamed]
+    taken = list(section.names.values())
     for name, mark in theory.landmarks().items():
         x, y = LETTERS[name]
         taken.append((mark.mu + (x + 4) * grain[0], mark.eta + (y + 4) * grain[1]))
@@ -297,10 +297,12 @@ def _draw_points(
                           arrowprops={"arrowstyle": "<|-", "color": style.colour})  # fmt: skip
         if point.outline or point in unnamed:
             continue
+        away = _free_place((x, y), marks, taken, grain)
+        taken.append((x + away[0] * grain[0], y + away[1] * grain[1]))
         axes.annotate(
             point.label,
             (x, y),
-            xytext=_free_place(point, taken, grain, high),
+            xytext=away,
             textcoords="offset points",
             ha="center",
             va="center",
@@ -311,27 +313,28 @@ def _draw_points(
 
 
 def _free_place(
-    point: MapPoint, taken: list[tuple[float, float]], grain: tuple[float, float], top: float
+    start: tuple[float, float],
+    marks: Sequence[tuple[float, float]],
+    taken: Sequence[tuple[float, float]],
+    grain: tuple[float, float],
 ) -> tuple[float, float]:
-    """Choose where beside a point its label hides nothing, and take that place.
+    """Choose where beside a mark its label is over no other words, and nearest to it.
 
-    Offsets are in points; `grain` is what one covers.
+    Everything is on the map, but for the place, which is in points from the mark; `grain` is
+    what a point covers.
     """
-    across, up = grain
-    start = _place(point)
+    here = np.array(start)
+    others = [np.array(mark) for mark in marks if mark != start]
     for distance in (15.0, 18.0, 22.0, 28.0, 37.0):
-        for turn in (0, 1, 7, 2, 6, 3, 5, 4):
-            x, y = distance * np.cos(turn * np.pi / 4), distance * np.sin(turn * np.pi / 4)
-            place = start[0] + x * across, start[1] + y * up
-            others = [each for each in taken if each != start]
-            # Nearer to its own mark than to any other, and over none.
-            if place[1] < top and all(
-                math.hypot((place[0] - mu) / across, (place[1] - eta) / up) > distance
-                and (abs(place[0] - mu) > 11 * across or abs(place[1] - eta) > 10 * up)
-                for mu, eta in others
+        for turn in (0, 1, 15, 2, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8):
+            angle = turn * math.pi / 8
+            place = distance * np.array([math.cos(angle), math.sin(angle)])
+            marked = [(here - mark) / grain + place for mark in others]
+            written = [np.abs((here - words) / grain + place) for words in taken]
+            if all(math.hypot(*way) > 1.15 * distance for way in marked) and all(
+                across > 13 or up > 10 for across, up in written
             ):
-                taken.append(place)
-                return float(x), float(y)
+                return float(place[0]), float(place[1])
     return 15.0, 0.0
 
 
