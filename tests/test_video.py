@@ -427,7 +427,7 @@ def test_gif_keeps_the_colours_that_say_something(tmp_path: Path) -> None:
 
     In perspective: there hundreds of shades of stone and ground want a place, too.
     """
-    film = render([hinged()], tmp_path / "film.gif", view="3d", slow=2, height=360)
+    render([hinged()], tmp_path / "film.gif", view="3d", slow=2, height=360)
     told = {
         "extrados": JOINTS[JointState.HINGE_EXTRADOS],
         "intrados": JOINTS[JointState.HINGE_INTRADOS],
