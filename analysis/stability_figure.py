@@ -230,6 +230,7 @@ def draw(rows: Sequence[Row], folder: Path) -> list[Path]:
     return paths
 
 
+@mpl.rc_context(FONT)
 def draw_engine(rows: Sequence[Row], engine: str) -> Figure:
     """Draw the four panels of an engine, two by two: wide enough to be read."""
     figure = Figure(figsize=SIZE, layout="constrained")

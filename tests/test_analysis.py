@@ -74,7 +74,7 @@ def test_where_engines_stop_working(tmp_path: Path) -> None:
     assert {row.outcome for row in few} == {"undecided"}
     for engine in ("direct", "pymunk"):
         axes = study("stability_figure").draw_engine(rows, engine).axes
-        assert [each.get_title(loc="left").split(":")[0] for each in axes] == [engine] * 4
+        assert [each.get_title("left").split(":")[0] for each in axes] == [engine] * 4
     assert {path.stem for path in tmp_path.glob("*.png")} == {
         "stability_direct", "stability_pymunk", "stability_long",
     }  # fmt: skip
