@@ -28,7 +28,7 @@ from blocksim.arch.theory.equations import hinge_slope
 from blocksim.arch.theory.map import divide_friction, special_angles
 from blocksim.view.archfigure import arch_figure, picture_of_theory
 from blocksim.view.linemap import line_map_figure
-from blocksim.view.mapfigure import draw_regions, save_figure
+from blocksim.view.mapfigure import CENTRAL, WHOLE, draw_regions, save_figure
 from blocksim.view.style import FONT, INK, QUIET
 
 TOLERANCE = 1e-12
@@ -220,7 +220,7 @@ def _figure(number: int) -> Figure:
     if number in FILLED:
         figure = Figure(figsize=(8.6, 7.0), layout="constrained")
         axes = figure.add_subplot()
-        draw_regions(axes, central=number == 11)
+        draw_regions(axes, CENTRAL if number == 11 else WHOLE)
         for text in axes.texts:
             text.set_visible(number != 10)  # Fig. 10 is without words
         return figure

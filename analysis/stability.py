@@ -281,7 +281,7 @@ PARTS = (released, held, lines, energy, away, lasting)
 
 
 def main(out: Path, *, quick: bool = False, engines: list[str] | None = None) -> list[Row]:
-    """Run the study, write its rows and its figure, and return the rows.
+    """Run the study, write its rows and its figures, and return the rows.
 
     What an earlier run has written of an engine and part is kept, not asked again.
     """
@@ -303,7 +303,7 @@ def main(out: Path, *, quick: bool = False, engines: list[str] | None = None) ->
                 Row(**{**row, "case": tuple(row["case"])})
                 for row in json.loads(kept.read_text(encoding="utf-8"))
             ]
-    draw(rows, out / "stability.png")
+    draw(rows, out)
     return rows
 
 

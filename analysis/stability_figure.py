@@ -1,4 +1,4 @@
-"""The figure of `stability.py`: planes, lines and curves, a row of panels for each engine."""
+"""The figures of `stability.py`: planes, lines and curves, one for each engine."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ STATES = {
     "undecided": {"marker": "s", "mfc": "none", "mec": VERDICTS[Verdict.UNDECIDED]},
     "wrong": {"marker": "X", "mfc": MISS, "mec": MISS},
 }
-SMALL = 7.0
+SMALL = 8.0
+SIZE = (8.6, 8.0)
+"""Of a figure [inch]: no wider than a page can show with its words legible."""
 NONE = 1e-7
 """Height at which no gain is drawn."""
 LINES = {"alpha": "alpha [deg]", "mu": "mu", "n": "voussoirs", "radius": "radius [m]"}
@@ -119,7 +121,9 @@ def strips(axes: Axes, rows: Sequence[Row]) -> None:
         for i, place in enumerate(places):
             words = "inf" if math.isinf(place) else f"{place:g}"
             x = i / max(1, len(places) - 1)
-            axes.text(x, -line - 0.27, words, ha="center", va="top", fontsize=6, color=QUIET)
+            axes.text(
+                x, -line - 0.27, words, ha="center", va="top", fontsize=SMALL - 1, color=QUIET
+            )
         axes.text(-0.04, -line + 0.27, title, fontsize=SMALL, color=INK)
     axes.set(xlim=(-0.06, 1.06), ylim=(-len(LINES) + 0.45, 0.55), xticks=[], yticks=[])
     for spine in axes.spines.values():
@@ -203,38 +207,50 @@ COLUMNS = (
 )
 
 
-def draw(rows: Sequence[Row], path: Path) -> None:
-    """Write the figure of whatever rows there are."""
+def draw(rows: Sequence[Row], folder: Path) -> list[Path]:
+    """Write a figure for each engine there are rows of, and one that compares them."""
     engines = [name for name in METHODS if any(row.engine == name for row in rows)]
+    paths: list[Path] = []
     with mpl.rc_context(FONT):
-        figure = Figure(figsize=(16.5, 3.7 * (len(engines) + 1) + 0.4), layout="constrained")
-        grid = figure.add_gridspec(len(engines) + 1, 4, width_ratios=(1.15, 1, 1.3, 0.9))
-        for i, engine in enumerate(engines):
-            for j, (part, fill, title) in enumerate(COLUMNS):
-                own = among(rows, part, engine)
-                axes = figure.add_subplot(grid[i, j])
-                axes.set_title(f"{engine}: {title}", color=METHODS.get(engine, UNNAMED).colour)
-                if own and not (part == "held" and engine == "direct"):
-                    fill(axes, own)
-                else:
-                    axes.set_axis_off()
-                    words = "solved to its end:\nno sweeps to allow" if own else "not run"
-                    axes.text(0.5, 0.5, words, ha="center", transform=axes.transAxes)
-        for columns, fill, title in (
-            (slice(0, 2), lasting, "what stands, for a hundred times as long"),
-            (slice(2, 4), energy, "energy of collapses, 10 % below"),
+        for engine in engines:
+            paths.append(folder / f"stability_{engine}.png")
+            draw_engine(rows, engine).savefig(paths[-1], dpi=110)
+        paths.append(folder / "stability_long.png")
+        figure = Figure(figsize=SIZE, layout="constrained")
+        for place, (fill, title) in enumerate(
+            (
+                (lasting, "what stands, for a hundred times as long"),
+                (energy, "energy of collapses, 10 % below"),
+            )
         ):
-            axes = figure.add_subplot(grid[len(engines), columns])
+            axes = figure.add_subplot(2, 1, place + 1)
             axes.set_title(title)
             fill(axes, rows)
-        marks = [
-            Line2D([], [], ls="", ms=5, label=state, **style) for state, style in STATES.items()
-        ]
-        frames = [
-            Rectangle((0, 0), 1, 1, fc="none", ec=INK, lw=2, label="the rule's settings"),
-            Rectangle((0, 0), 1, 1, fc="none", ec=INK, ls="--", label="others that are sure"),
-        ]
-        figure.legend(
-            handles=[*marks, *frames], loc="outside upper center", ncols=5, frameon=False
-        )
-        figure.savefig(path, dpi=110)
+        figure.savefig(paths[-1], dpi=110)
+    return paths
+
+
+@mpl.rc_context(FONT)
+def draw_engine(rows: Sequence[Row], engine: str) -> Figure:
+    """Draw the four panels of an engine, two by two: wide enough to be read."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1))
+    for place, (part, fill, title) in enumerate(COLUMNS):
+        own = among(rows, part, engine)
+        axes = figure.add_subplot(grid[place // 2, place % 2])
+        axes.set_title(f"{engine}: {title}", color=METHODS.get(engine, UNNAMED).colour)
+        if own and not (part == "held" and engine == "direct"):
+            fill(axes, own)
+        else:
+            axes.set_axis_off()
+            words = "solved to its end:\nno sweeps to allow" if own else "not run"
+            axes.text(0.5, 0.5, words, ha="center", transform=axes.transAxes)
+    marks = [
+        Line2D([], [], ls="", ms=5, label=state, **style) for state, style in STATES.items()
+    ]
+    frames = [
+        Rectangle((0, 0), 1, 1, fc="none", ec=INK, lw=2, label="the rule's settings"),
+        Rectangle((0, 0), 1, 1, fc="none", ec=INK, ls="--", label="others that are sure"),
+    ]
+    figure.legend(handles=[*marks, *frames], loc="outside upper center", ncols=5, frameon=False)
+    return figure

@@ -74,7 +74,12 @@ def test_where_engines_stop_working(tmp_path: Path) -> None:
     assert {row.outcome for row in ruled} == {"right"}
     few = [row for row in rows if row.engine == "pymunk" and row.at.get("allowed") == 3]
     assert {row.outcome for row in few} == {"undecided"}
-    assert (tmp_path / "stability.png").stat().st_size > 0
+    for engine in ("direct", "pymunk"):
+        axes = study("stability_figure").draw_engine(rows, engine).axes
+        assert [each.get_title("left").split(":")[0] for each in axes] == [engine] * 4
+    assert {path.stem for path in tmp_path.glob("*.png")} == {
+        "stability_direct", "stability_pymunk", "stability_long",
+    }  # fmt: skip
 
 
 def test_every_study_is_listed_with_its_claim() -> None:

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.collapse import collapse_of_mode
@@ -42,7 +43,8 @@ def test_figure_is_reproducible(kind: str) -> None:
         standing = picture_of_arch(Arch(half_angle=1.5, eta=0.3, voussoirs=12), math.inf)
         falling = picture_of_arch(Arch(half_angle=2.18, eta=0.35, voussoirs=14), 0.9)
         assert standing.title.startswith("stands")
-        assert falling.title.startswith("mode ")
+        assert falling.title.startswith("collapses, mode ")
+        assert "14 voussoirs as built" in falling.subtitle
         file = io.BytesIO()
         save_figure(arch_figure([standing, falling]), file, kind)
         files.append(file.getvalue())
@@ -55,3 +57,64 @@ def test_picture_of_overturning() -> None:
     picture = picture_of_theory(critical, Mode.R, 2.7, math.inf)
     arch_figure([picture])
     assert picture.thrust < 1e-20
+
+
+def legend(figure: Figure) -> set[str]:
+    return {text.get_text() for text in figure.legends[0].get_texts()}
+
+
+def lines(figure: Figure, name: str) -> list[np.ndarray]:
+    return [
+        np.column_stack(line.get_data())
+        for line in figure.axes[0].lines
+        if str(line.get_label()).startswith(name)
+    ]
+
+
+def test_legend_names_what_is_there_only() -> None:
+    """Where it stands there is no mechanism; where it slides and turns, both are named."""
+    stands = arch_figure([picture_of_arch(Arch(half_angle=1.5, eta=0.3, voussoirs=12), 0.9)])
+    assert legend(stands) == {
+        "support", "line of thrust with most strength to spare", "line of friction",
+    }  # fmt: skip
+    slides = math.radians(110)
+    critical = least_thickness(slides, 0.6)
+    falls = arch_figure([picture_of_theory(critical, Mode.SRR, slides, 0.6)])
+    assert legend(falls) == {
+        "support", "line of thrust, the only one left", "line of friction", "mechanism",
+        "hinge", "sliding joint",
+    }  # fmt: skip
+    assert any(text.get_text() == "0.5 r" for text in falls.axes[0].texts)
+    assert any("continuous arch" in text.get_text() for text in falls.axes[0].texts)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "mu", "eta", "whole"), [(90, 0.3, 0.1, True), (150, 2.0, 0.9, False)]
+)
+def test_line_of_thrust_is_whole_or_said_to_be_missing(
+    alpha: float, mu: float, eta: float, whole: bool
+) -> None:
+    """Below the least thickness it leaves the arch: a little, or out of the picture."""
+    arch = Arch(half_angle=math.radians(alpha), eta=eta, voussoirs=27)
+    figure = arch_figure([picture_of_arch(arch, mu)])
+    (line,) = lines(figure, "line of thrust")
+    missing = any("too far out to be drawn" in words for words in legend(figure))
+    assert missing is not whole
+    assert bool(line.size) is whole
+    if whole:
+        assert np.isfinite(line).all()
+        ends = np.arctan2(line[:, 0], line[:, 1])[[0, -1]]
+        assert ends == pytest.approx([-arch.half_angle, arch.half_angle], abs=1e-9)
+
+
+def test_supports_are_where_the_springings_are() -> None:
+    arch = Arch(half_angle=2.0, eta=0.3, voussoirs=12)
+    axes = arch_figure([picture_of_arch(arch, 0.9)]).axes[0]
+    supports = [patch for patch in axes.patches if patch.get_label() == "support"]
+    assert len(supports) == 2
+    for patch in supports:
+        corners = np.asarray(patch.get_path().vertices)
+        angle = np.abs(np.arctan2(corners[:, 0], corners[:, 1]))
+        assert angle.min() == pytest.approx(arch.half_angle, abs=1e-9)
+        assert np.hypot(*corners.T).min() < 1 - arch.eta / 2
+        assert np.hypot(*corners.T).max() > 1 + arch.eta / 2

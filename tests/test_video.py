@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.colors import to_rgb
 from PIL import Image
 from running import blocksim
 from scipy.spatial.transform import Rotation
@@ -28,9 +30,10 @@ from blocksim.evidence.recording import Recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
 from blocksim.view.film import Film
 from blocksim.view.order import painting_order
+from blocksim.view.planar import PlanarView
 from blocksim.view.spatial import SpatialView
-from blocksim.view.stage import SUNK, Stage
-from blocksim.view.style import JOINTS
+from blocksim.view.stage import SEEN, SUNK, Stage
+from blocksim.view.style import JOINTS, THRUST
 from blocksim.view.video import render
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=6, radius=2.0, depth=1.0)
@@ -394,6 +397,180 @@ def test_command_films_a_scenario(tmp_path: Path) -> None:
     assert "until a block reaches the ground" in done.stdout
     with av.open(str(out)) as container:
         assert 2.5 < float(container.duration or 0) / 1e6 < 3.5
+
+
+def drawn_words(film: Film, at: float | None = None) -> list[str]:
+    """Words of a frame: in an SVG each is a comment before its glyphs."""
+    file = io.BytesIO()
+    film.still(file, "svg", at)
+    return re.findall(r"<!-- (.*?) -->", file.getvalue().decode())
+
+
+def hinged() -> Recording:
+    """The left half turns about its springing's extrados, the right one about its intrados.
+
+    Slowly at first: the line of thrust still is there while the hinges are seen.
+    """
+    times = np.linspace(0, 1.6, 40)
+    ends = [ARCH.assembly().joints[0].outer / 2.0, ARCH.assembly().joints[-1].inner / 2.0]
+    moved = np.array(
+        [
+            turned_about(ends[0], 0.1 * t, [0, 1, 2])
+            + turned_about(ends[1], 0.1 * t, [3, 4, 5])
+            for t in times
+        ]
+    )
+    return recording(moved, times)
+
+
+def test_gif_keeps_the_colours_that_say_something(tmp_path: Path) -> None:
+    """Hinges at either end and the line of thrust: each its own colour in every frame.
+
+    In perspective: there hundreds of shades of stone and ground want a place, too.
+    """
+    render([hinged()], tmp_path / "film.gif", view="3d", slow=2, height=360)
+    told = {
+        "extrados": JOINTS[JointState.HINGE_EXTRADOS],
+        "intrados": JOINTS[JointState.HINGE_INTRADOS],
+        "thrust": THRUST,
+    }
+    seen = dict.fromkeys(told, 0)
+    with Image.open(tmp_path / "film.gif") as picture:
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            decoded = np.asarray(picture.convert("RGB")).astype(int)
+            legend = decoded[-24:]
+            for name, tone in told.items():
+                wanted = np.array(to_rgb(tone)) * 255
+                off = np.abs(legend - wanted).max(axis=-1)
+                seen[name] += int((off <= 6).sum() >= 20)
+    assert set(seen.values()) == {picture.n_frames}
+
+
+def test_lengths_and_times_have_units_where_a_radius_was_given() -> None:
+    """One of 1 m stands for none given: then lengths are in r, times in sqrt(r/g)."""
+    metric = drawn_words(Film([falling()], slow=10), 0.3)
+    assert "t = 0.300 s" in metric
+    assert "1 m" in metric
+    assert "10 times slower" in metric
+    free = replace(falling(), arch=replace(ARCH, radius=1.0, depth=0.5))
+    film = Film([free], slow=10)
+    words = drawn_words(film, 0.3)
+    assert "t = 0.30 √(r/g)" in words
+    assert "0.5 r" in words
+    assert "10 times slower if r = 1 m" in words
+    assert not any(word.endswith((" s", " m")) and "=" not in word for word in words)
+
+
+def test_a_still_has_a_legend_of_what_is_in_it() -> None:
+    at_rest = drawn_words(Film([hinged()]), 0.0)
+    moving = drawn_words(Film([hinged()]))
+    assert "line of thrust at rest, by limit analysis" in at_rest
+    assert not any(word.startswith(("hinge", "slides", "open")) for word in at_rest)
+    assert {"hinge extrados", "hinge intrados"} <= set(moving)
+    assert not any(word.startswith("line of thrust") for word in moving)
+
+
+def test_the_title_says_what_the_motion_shows() -> None:
+    still = recording(np.zeros((2, ARCH.voussoirs, 3)), np.array([0.0, 10.0]))
+    titles = [
+        next(word for word in drawn_words(Film([each])) if "least thickness" in word)
+        for each in (falling(), still)
+    ]
+    assert titles[0].startswith("collapses, ")
+    assert titles[1].startswith("at rest, ")
+    assert all("least thickness as built" in title for title in titles)
+
+
+def test_rubble_on_the_floor_is_no_hinge() -> None:
+    """A block that fell beside another, touching it at a corner, is no joint with it.
+
+    The two at the crown fall by DEPTH and more and come to lie side by side, turned a little.
+    """
+    times = np.linspace(0, 4, 81)
+    lowest = ARCH.assembly().blocks[2].vertices[:, 1].min() / 2.0
+    way = np.minimum(times**2 / 2, lowest + DEPTH - 1e-3)
+    moved = np.zeros((81, ARCH.voussoirs, 3))
+    moved[:, [2, 3], 1] = -way[:, None]
+    moved[:, 2, 2] = np.minimum(0.02 * times, 0.05)
+    run = recording(moved, times)
+    states = classify(ARCH.assembly(), run.poses[-1], least=SEEN)
+    assert "hinge" in states[3].state  # taken for itself it looks like one
+    stage = Stage(run)
+    assert stage.end == times[-1]
+    assert set(stage.at(0.5).joints[2:5]) != {JointState.CLOSED}
+    assert set(stage.at(4.0).joints) == {JointState.CLOSED}
+
+
+def test_the_line_of_thrust_is_whole_or_not_there() -> None:
+    """From springing to springing, however thin the arch; none where it goes far out."""
+    for degrees, eta, whole in ((90, 0.3, True), (90, 0.005, True), (150, 0.9, False)):
+        arch = replace(ARCH, half_angle=math.radians(degrees), eta=eta, voussoirs=27)
+        stage = Stage(recording(np.zeros((2, 27, 3)), np.array([0.0, 1.0]), arch))
+        assert len(stage.thrust) == whole
+        for line in stage.thrust:
+            assert line[0] == pytest.approx(line[-1] * [-1, 1], abs=1e-9)
+            assert abs(line[0, 1]) < 1e-9
+            assert np.hypot(*np.diff(line, axis=0).T).max() < 0.02
+
+
+def test_an_arch_that_leans_stands_on_its_piers_in_the_plane() -> None:
+    """It turns about the lower edge of its face: seen from the front it stays on the piers."""
+    times = np.array([0.0, 1.0])
+    angle, half = 0.3, ARCH.depth / 2 / 2.0
+    poses = np.zeros((2, ARCH.voussoirs, 6))
+    poses[:, :, :2] = rest()[:, :2]
+    # About the axis x through the near edge of the springings.
+    up, near = rest()[:, 1], -half
+    poses[1, :, 1] = up * math.cos(angle) - near * math.sin(angle)
+    poses[1, :, 3] = half + up * math.sin(angle) + near * math.cos(angle)
+    poses[1, :, 4] = angle
+    run = replace(recording(np.zeros((2, ARCH.voussoirs, 3)), times), poses=poses)
+    stage = Stage(run)
+    stage.end = 1.0
+    panel = Panel(0, 0, 640, 360)
+    view = PlanarView(stage, panel, stage.swept)
+    level = min(float(s.points[:, 1].min()) for s in view.shapes(stage.at(0.0)))
+    leaning = min(float(s.points[:, 1].min()) for s in view.shapes(stage.at(1.0)))
+    assert leaning == pytest.approx(level, abs=0.01)
+
+
+def test_command_draws_a_leaning_arch_as_check_answers(tmp_path: Path) -> None:
+    """tan(lean) > (d/2)/(2r/pi): it overturns, and nothing may say that it stands."""
+    pytest.importorskip("pybullet", exc_type=ImportError)
+    out = tmp_path / "lean.svg"
+    done = blocksim("render", "semicircle_tilted_overturns", "--out", str(out))
+    assert (done.returncode, done.stderr) == (0, "")
+    words = re.findall(r"<!-- (.*?) -->", out.read_text(encoding="utf-8"))
+    title = next(word for word in words if "gravity leans" in word)
+    assert title.startswith("collapses, gravity leans 38.4° out of the plane")
+    assert "collapses, gravity leans 38.4 deg out of the plane" in done.stdout
+    assert not any("stands" in word for word in [*words, done.stdout])
+
+
+def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -> None:
+    """As README has it: recordings that go on show the fall; those until a verdict say so."""
+    for name, eta in (("below", "0.1055"), ("above", "0.108")):
+        for way, more in (("short", ()), ("long", ("--seconds", "0.9"))):
+            out = f"{tmp_path}/{way}_{name}.npz"
+            asked = ("semicircle", "--eta", eta, "--method", "direct", *more)
+            assert blocksim("simulate", *asked, "--out", out).returncode == 0
+    said = {}
+    for way in ("short", "long"):
+        pair = (f"{tmp_path}/{way}_below.npz", "--beside", f"{tmp_path}/{way}_above.npz")
+        small = ("--height", "180", "--slow", "1", "--out", f"{tmp_path}/{way}.gif")
+        said[way] = blocksim("render", *pair, *small).stdout
+    assert "simulate --seconds 2 records how it falls" in said["short"]
+    assert "simulate --seconds" not in said["long"]
+    assert "(eta 0.108, direct): the arch is at rest" in said["long"]
+    with Image.open(tmp_path / "long.gif") as picture:
+        first = np.asarray(picture.convert("RGB")).astype(int)
+        picture.seek(picture.n_frames - 1)
+        last = np.asarray(picture.convert("RGB")).astype(int)
+    changed = (np.abs(last - first).max(axis=-1) > 40)[20:160]
+    left, right = np.split(changed, 2, axis=1)
+    assert left.sum() > 300
+    assert right.sum() == 0
 
 
 @pytest.mark.parametrize(

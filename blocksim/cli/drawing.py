@@ -6,6 +6,7 @@ from pathlib import Path
 
 from blocksim.arch.theory import least_thickness
 from blocksim.cli.console import picture_kind, save_picture, say
+from blocksim.cli.filming import Given, picture_of_leaning
 from blocksim.cli.options import Given, arch_of, named_options, question
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
@@ -44,11 +45,18 @@ def _map_page(out: Path, results: Path | None) -> None:
 
 
 def write_arch(out: Path, kind: str, scene: str | None, given: Given) -> None:
-    """Draw the voussoirs as built, or the continuous arch at its least thickness."""
+    """Draw the voussoirs as built, or the continuous arch at its least thickness.
+
+    Where gravity leans out of the plane, statics in the plane say nothing: the arch is put
+    into the engine that sees it, and drawn in perspective.
+    """
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
 
     asked = question(scene, given)
+    if asked.lean:
+        picture_of_leaning(out, kind, arch_of(asked, given.ratio), asked)
+        return
     with named_options():
         if asked.eta is not None or given.ratio is not None:
             pictures = [picture_of_arch(arch_of(asked, given.ratio), asked.mu)]

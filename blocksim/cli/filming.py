@@ -10,18 +10,29 @@ from typing import Annotated, Literal
 
 import typer
 
+from blocksim.arch.circular import Arch
 from blocksim.arch.motion import load_recording, simulate
+from blocksim.arch.scenario import Scenario
+from blocksim.ask.methods import SPATIAL
 from blocksim.cli.console import progress, say
 from blocksim.cli.options import Given, arch_of, named_options, question
 from blocksim.common.checks import require
+from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES
+from blocksim.evidence.motion import MOVED
 from blocksim.evidence.recording import Recording
+from blocksim.evidence.trial import conclude, hold
+from blocksim.evidence.verdict import Verdict
 
 FALL = 6.0
 """Time recorded of a scenario, enough for a collapse to reach the ground [sqrt(r/g)]."""
 HEIGHT = 720
 HEIGHTS = (180, 2160)
 SLOWEST = 1000.0
+STILL = 1e-3
+"""Time recorded of an arch of which only a picture is wanted [sqrt(r/g)]."""
+SHOWN = 0.2
+"""Largest motion in the picture of an arch that overturns [r]."""
 
 Beside = Annotated[
     Path | None, typer.Option(help="A second recording, .npz, to show side by side.")
@@ -32,7 +43,10 @@ Slow = Annotated[
     typer.Option(help="Times slower than it happened (by default it takes about 6 s)."),
 ]
 At = Annotated[
-    float | None, typer.Option(help="For .png, .svg: seconds since the release (the end).")
+    float | None,
+    typer.Option(
+        help="For .png, .svg: time since the release, as the clock shows it (the end)."
+    ),
 ]
 Height = Annotated[
     int | None, typer.Option(help="Of a frame in pixels, 720 if left out; frames are 16:9.")
@@ -113,7 +127,43 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
         say(f"wrote {out}")
         return
     why = ", until a block reaches the ground or a footing" if made.on_ground else ""
+    radius = "" if made.metric else " if r = 1 m"
     say(
         f"wrote {out}: {made.count / made.rate:.1f} s, {made.slow:g} times slower than the "
-        f"{made.seconds:.3g} s it shows{why}"
+        f"{made.seconds:.3g} s it shows{radius}{why}"
     )
+    for recording, moves in zip(shown, made.moves, strict=True):
+        if not moves:
+            say(_motionless(recording))
+
+
+def _motionless(recording: Recording) -> str:
+    """Say that nothing is seen to move in a recording, and what to do where it falls."""
+    moved = float(recording.displacement.max())
+    arch = f"eta {recording.arch.eta:g}, {recording.engine}"
+    if moved > MOVED:
+        return (
+            f"nothing is seen to move in one recording ({arch}): it ends when the arch has "
+            f"moved {moved:.2g} r; simulate --seconds 2 records how it falls"
+        )
+    return f"nothing is seen to move in one recording ({arch}): the arch is at rest"
+
+
+def picture_of_leaning(out: Path, kind: str, arch: Arch, asked: Scenario) -> None:
+    """Draw an arch in gravity that leans out of its plane, in perspective, with its verdict.
+
+    The motion is that by which a check decides, drawn larger.
+    """
+    # Drawing takes a second to import, which other commands need not wait for.
+    from blocksim.view.film import Film
+
+    with named_options(), progress() as report:
+        held = hold(arch, asked.mu, SPATIAL, lean=asked.lean, progress=report)
+        seen = conclude(held, moving=True, progress=report)
+    run = seen.motion.recording if seen.motion else held.release(STILL).recording
+    falls = seen.verdict is Verdict.COLLAPSES
+    enlarge = SHOWN / float(run.displacement.max()) if falls else 1.0
+    made = Film([run], verdict=seen.verdict, enlarge=enlarge, view="3d")
+    write_whole(out, lambda file: made.still(file, kind))
+    lean = math.degrees(asked.lean)
+    say(f"wrote {out}: {seen.verdict}, gravity leans {lean:.4g} deg out of the plane")

@@ -26,7 +26,7 @@ from blocksim.studies.validate import (
     installed,
     numbered,
 )
-from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure, save_figure
+from blocksim.view.mapfigure import MapPoint, map_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,7 +128,7 @@ def write_contents(folder: Path, contents: dict[str, bytes]) -> list[Path]:
 
 
 def _points(rows: Sequence[Row]) -> list[MapPoint]:
-    """Place each arch at its bracket; what never stands, at the divide's side, eta = 2."""
+    """Place each arch at the middle of its bracket; what never stands, at eta = 2."""
     points: list[MapPoint] = []
     numbers = numbered(rows)
     first = next((row.engine for row in rows), "")
@@ -138,7 +138,7 @@ def _points(rows: Sequence[Row]) -> list[MapPoint]:
             continue
         points.append(
             MapPoint(
-                mu=min(row.mu, LARGEST_MU),
+                mu=row.mu,
                 eta=(row.eta_low + high) / 2,
                 mode=row.mode_observed,
                 label=str(numbers[row.scenario]) if row.engine == first else "",
@@ -146,6 +146,7 @@ def _points(rows: Sequence[Row]) -> list[MapPoint]:
                 outline=row.engine != first,
                 miss=bool(row.miss),
                 note=row.scenario,
+                none_stands=row.eta_high is None,
             )
         )
     return points

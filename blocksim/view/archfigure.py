@@ -11,10 +11,11 @@ from itertools import pairwise
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Polygon
 
 from blocksim.arch.circular import Arch, Weight
@@ -25,14 +26,17 @@ from blocksim.arch.theory.critical import Critical, inner_sliding
 from blocksim.arch.theory.equations import normal_force
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.blocks.assembly import Array
-from blocksim.view.style import FONT, FRICTION, INK, MECHANISM, THRUST
+from blocksim.view.style import FONT, FRICTION, GROUND, INK, MECHANISM, QUIET, THRUST
 
 MOVED = 0.16
 """Largest displacement drawn, in mean radii."""
 FINE = 400
+ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
+SUPPORT, WIDER = 0.06, 0.25
+"""Angle over which a support is drawn [rad]; how much it is wider than the springing."""
 FORCELESS = 1e-9
-FARTHEST = 1.6
-"""Largest eccentricity at which a line is drawn; 1 is the edge of the arch."""
+FARTHEST = 0.3
+"""Distance from the arch beyond which a line that leaves it is not drawn [r]."""
 FAINT = 1e-7
 """Share of the largest rate below which a joint counts as closed."""
 
@@ -43,7 +47,10 @@ class ArchPicture:
 
     Parameters
     ----------
-    title : str
+    title, subtitle : str
+        Outcome and figures; which arch it is.
+    line : str
+        Which of its lines of thrust is drawn: words after "line of thrust".
     half_angle, eta, mu : float
     weight : {"centreline", "sector"}
     thrust, crown_moment : float
@@ -58,6 +65,8 @@ class ArchPicture:
     """
 
     title: str
+    subtitle: str
+    line: str
     half_angle: float
     eta: float
     mu: float
@@ -77,11 +86,15 @@ def picture_of_arch(arch: Arch, mu: float) -> ArchPicture:
     strength, and leave the arch.
     """
     found = mechanism(arch, mu)
+    stands = not found.rates.any()
     state = (
-        "stands" if not found.rates.any() else f"mode {found.mode}" if found.mode else "falls"
+        "stands" if stands else f"collapses, mode {found.mode}" if found.mode else "collapses"
     )
+    weight = "" if arch.weight == "centreline" else f", weight {arch.weight}"
     return ArchPicture(
-        title=f"{state}: {_figures(arch.half_angle, arch.eta, mu)}, n = {arch.voussoirs}",
+        title=f"{state}: {_figures(arch.half_angle, arch.eta, mu)}",
+        subtitle=f"{arch.voussoirs} voussoirs as built, by limit analysis{weight}",
+        line=" with most strength to spare" if stands else " that lacks least strength",
         half_angle=arch.half_angle,
         eta=arch.eta,
         mu=mu,
@@ -115,8 +128,11 @@ def picture_of_theory(
         beta_r=critical.beta_r, beta_s=inner_sliding(mu)[1], weight=weight,
     )  # fmt: skip
     name = mode.description.split(" (")[0]
+    acting = "" if weight == "centreline" else f", weight {weight}"
     return ArchPicture(
         title=f"{name} [{mode.value}]: {_figures(half_angle, eta, mu)}",
+        subtitle=f"the continuous arch at its least thickness{acting}",
+        line=", the only one left",
         half_angle=half_angle,
         eta=eta,
         mu=mu,
@@ -143,40 +159,85 @@ def arch_figure(pictures: Sequence[ArchPicture]) -> Figure:
     Figure
     """
     with mpl.rc_context(FONT):
-        figure = Figure(figsize=(7.6, 0.5 + 5.4 * len(pictures)), layout="constrained")
+        heights = [1.0 + min(5.0, 6.6 * _slenderness(picture)) for picture in pictures]
+        layout = ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08)
+        figure = Figure(figsize=(7.6, 0.5 + sum(heights)), layout=layout)
         FigureCanvasAgg(figure)
+        grid = figure.add_gridspec(len(pictures), 1, height_ratios=heights)
+        entries: dict[str, Artist] = {}
         for place, picture in enumerate(pictures):
-            draw_arch(figure.add_subplot(len(pictures), 1, place + 1), picture)
-        figure.legend(handles=_handles(), loc="outside lower center", ncols=3, frameon=False)
+            axes = figure.add_subplot(grid[place])
+            draw_arch(axes, picture)
+            # Of what is drawn only, each once.
+            handles, names = axes.get_legend_handles_labels()
+            entries |= dict(zip(names, handles, strict=True))
+        figure.legend(
+            entries.values(), entries.keys(), loc="outside lower center", ncols=3, frameon=False
+        )
     return figure
 
 
 def draw_arch(axes: Axes, picture: ArchPicture) -> None:
     """Draw one arch into axes."""
     inner, outer = 1 - picture.eta / 2, 1 + picture.eta / 2
-    axes.set_title(picture.title, fontsize=9.5, pad=8)
+    axes.set_title(picture.title, fontsize=10.5, pad=20)
+    axes.annotate(picture.subtitle, (0, 1), xytext=(0, 8), xycoords="axes fraction",
+                  textcoords="offset points", color=QUIET, va="baseline")  # fmt: skip
     axes.set_aspect("equal")
     axes.axis("off")
+    _draw_supports(axes, picture)
     _draw_mechanism(axes, picture, inner, outer)
     whole = _ring(-picture.half_angle, picture.half_angle, inner, outer)
     axes.add_patch(Polygon(whole, fill=False, ec=INK, lw=1.5, zorder=3))
     for angle in picture.joints[1:-1]:
         axes.plot(*_radius(float(angle), inner, outer), color=INK, lw=0.5, zorder=2)
     pressure, shear = lines_of(picture)
-    for line, colour, style, width in (
-        (pressure, THRUST, "-", 2.0),
-        (shear, FRICTION, (0, (5, 1.6)), 1.5),
+    for line, name, colour, dashes, width in (
+        (pressure, f"line of thrust{picture.line}", THRUST, "-", 2.0),
+        (shear, "line of friction", FRICTION, (0, (5, 1.6)), 1.5),
     ):
-        axes.plot(*line.T, color=colour, ls=style, lw=width, zorder=5)
+        if line is None:
+            axes.plot([], [], ls="", label=f"{name}: too far out to be drawn")
+        else:
+            axes.plot(*line.T, zorder=5, label=name, color=colour, ls=dashes, lw=width)
     _mark_joints(axes, picture, inner, outer)
     axes.margins(0.03)
+    _draw_scale(axes)
 
 
-def lines_of(picture: ArchPicture) -> tuple[Array, Array]:
+def _slenderness(picture: ArchPicture) -> float:
+    """Height of an arch over its width."""
+    inner, outer = 1 - picture.eta / 2, 1 + picture.eta / 2
+    ring = _ring(-picture.half_angle, picture.half_angle, inner, outer)
+    across, up = np.ptp(ring, axis=0).tolist()
+    return (up + 0.2) / (across + 0.3)
+
+
+def _draw_supports(axes: Axes, picture: ArchPicture) -> None:
+    """Draw what the springings stand on, a little wider than they are."""
+    half = picture.eta / 2 * (1 + WIDER)
+    wider = max(0.0, 1 - half), 1 + half
+    deep = min(SUPPORT, 0.8 * (math.pi - picture.half_angle))
+    for side in (-1, 1):
+        low, high = sorted((side * picture.half_angle, side * (picture.half_angle + deep)))
+        axes.add_patch(Polygon(_ring(low, high, *wider), fc=GROUND, ec="none", zorder=0.5,
+                               label="support"))  # fmt: skip
+
+
+def _draw_scale(axes: Axes) -> None:
+    """Draw a bar of half a radius in the lower left corner."""
+    left, low = axes.get_xlim()[0], axes.get_ylim()[0]
+    level = low - 0.04 * (axes.get_ylim()[1] - low)
+    axes.plot([left, left + 0.5], [level, level], color=INK, lw=1.5, marker="|", ms=7)
+    axes.annotate("0.5 r", (left + 0.25, level), xytext=(0, -12), ha="center",
+                  textcoords="offset points", annotation_clip=False)  # fmt: skip
+
+
+def lines_of(picture: ArchPicture) -> tuple[Array | None, Array | None]:
     """Lines of thrust and of friction from the left springing to the right, each (k, 2).
 
-    NaN where they leave the arch by more than 0.3 of its thickness, and where no force
-    passes: an overturning arch has no thrust, and at its crown no lines.
+    Whole or None: a line that leaves the arch by more than `FARTHEST` is not drawn. NaN
+    where no force passes: an overturning arch has no thrust, and at its crown no lines.
     """
     size = np.linspace(-picture.half_angle, picture.half_angle, 2 * FINE + 1)
     across = np.abs(size)
@@ -187,11 +248,11 @@ def lines_of(picture: ArchPicture) -> tuple[Array, Array]:
         )
         shear = friction_line(across, picture.thrust, picture.mu)
     rays = np.column_stack([np.sin(size), np.cos(size)])
-    drawn: list[Array] = []
+    drawn: list[Array | None] = []
     for line in (pressure, shear):
-        radius = 1 - np.asarray(line) * picture.eta / 2
-        radius[forceless | (np.abs(line) > FARTHEST)] = np.nan
-        drawn.append(radius[:, None] * rays)
+        off = np.where(forceless, np.nan, np.asarray(line)) * picture.eta / 2
+        leaves = float(np.nanmax(np.abs(off))) - picture.eta / 2
+        drawn.append(None if leaves > FARTHEST else (1 - off)[:, None] * rays)
     return drawn[0], drawn[1]
 
 
@@ -217,8 +278,9 @@ def _draw_mechanism(axes: Axes, picture: ArchPicture, inner: float, outer: float
             Polygon(moved, fc=MECHANISM, alpha=0.13, ec="none", zorder=1),
         )
         axes.add_patch(
-            Polygon(moved, fill=False, ec=MECHANISM, lw=1.3, ls=(0, (6, 1.5, 1, 1.5)), zorder=4)
-        )
+            Polygon(moved, fill=False, ec=MECHANISM, lw=1.3, ls=(0, (6, 1.5, 1, 1.5)), zorder=4,
+                    label="mechanism")
+        )  # fmt: skip
 
 
 def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -> None:
@@ -230,29 +292,17 @@ def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -
             # A joint that opens at both ends parts: no hinge is left.
             if turns and not (out and into):
                 axes.plot(radius * math.sin(angle), radius * math.cos(angle), "o", ms=7,
-                          mfc="white", mec=INK, mew=1.5, zorder=7)  # fmt: skip
+                          mfc="white", mec=INK, mew=1.5, zorder=7, label="hinge")  # fmt: skip
         if any(slides):
             axes.plot(*_radius(angle, inner, outer), color=INK, lw=3.2, zorder=6,
-                      solid_capstyle="butt")  # fmt: skip
+                      solid_capstyle="butt", label="sliding joint")  # fmt: skip
             axes.plot(*_radius(angle, inner, outer), color="white", lw=1.2, ls=(0, (2, 1)),
                       zorder=6)  # fmt: skip
 
 
-def _handles() -> list[Line2D]:
-    return [
-        Line2D([], [], color=INK, lw=1.5, label="arch"),
-        Line2D([], [], color=THRUST, lw=2.0, label="line of thrust"),
-        Line2D([], [], color=FRICTION, lw=1.5, ls=(0, (5, 1.6)), label="line of friction"),
-        Line2D([], [], color=MECHANISM, lw=1.3, ls=(0, (6, 1.5, 1, 1.5)), label="mechanism"),
-        Line2D([], [], ls="", marker="o", ms=7, mfc="white", mec=INK, mew=1.5, label="hinge"),
-        Line2D([], [], color=INK, lw=3.2, label="sliding joint"),
-    ]
-
-
 def _figures(half_angle: float, eta: float, mu: float) -> str:
-    friction = r"\infty" if math.isinf(mu) else f"{mu:.4g}"
-    degrees = f"{math.degrees(half_angle):.4g}"
-    return rf"$\alpha$ = {degrees}°, $\mu$ = ${friction}$, $\eta$ = {eta:.4g}"
+    friction = "∞" if math.isinf(mu) else f"{mu:.4g}"
+    return f"{ALPHA} = {math.degrees(half_angle):.6g}°, μ = {friction}, η = {eta:.4g}"
 
 
 def _ring(start: float, stop: float, inner: float, outer: float) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import BinaryIO, Literal, Protocol
 
 import numpy as np
@@ -12,7 +13,9 @@ from numpy.typing import NDArray
 from blocksim.arch import limit
 from blocksim.arch.circular import GRAVITY, arch_of
 from blocksim.blocks.joints import JointState
+from blocksim.evidence.motion import MOVED, UNMOVED
 from blocksim.evidence.recording import Recording
+from blocksim.evidence.verdict import Verdict
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.planar import PlanarView
 from blocksim.view.spatial import SpatialView
@@ -63,6 +66,10 @@ class Film:
     ----------
     recordings : sequence of Recording
         One, or two to show side by side on one clock.
+    verdict : Verdict, optional
+        What a check says of all of them; by default what the motion tells is said.
+    enlarge : float
+        How many times larger than it was the motion is drawn.
     view : {"2d", "3d"}
     slow : float, optional
         How many times slower than it happened; by default such that the motion takes
@@ -82,12 +89,19 @@ class Film:
         Whether it ends because a block has reached the ground or a footing.
     count : int
         Number of frames.
+    metric : bool
+        Whether lengths and times are shown in metres and seconds: where an arch has another
+        radius than 1, which stands for none given. Else they are in r and sqrt(r/g).
+    moves : list of bool
+        Whether each recording is seen to move.
     """
 
     def __init__(
         self,
         recordings: Sequence[Recording],
         *,
+        verdict: Verdict | None = None,
+        enlarge: float = 1.0,
         view: ViewName = "2d",
         slow: float | None = None,
         height: int = TALL,
@@ -96,7 +110,12 @@ class Film:
         self.height = 2 * (height // 2)
         self.width = 2 * round(height * 8 / 9)
         self.rate = rate
-        self._stages = [Stage(recording) for recording in recordings]
+        self._words = [verdict_words(recording, verdict) for recording in recordings]
+        self._enlarge = enlarge
+        self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
+        # Lengths and times are in metres and seconds only where a radius was given.
+        self.metric = any(recording.arch.radius != 1 for recording in recordings)
+        self.moves = [stage.moves for stage in self._stages]
         self.seconds = self._duration()
         self.on_ground = any(stage.end < stage.recording.times[-1] for stage in self._stages)
         self.slow = _slowness(self.seconds) if slow is None else slow
@@ -113,7 +132,8 @@ class Film:
             for stage, panel in zip(self._stages, self._panels, strict=True)
         ]
         self._canvas = Canvas(self.width, self.height)
-        self._canvas.keep(*self._still())
+        states = {state for stage in self._stages for state in stage.states}
+        self._canvas.keep(*self._still(states, thrust=True))
         self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
 
     def frame(self, number: int) -> NDArray[np.uint8]:
@@ -129,9 +149,14 @@ class Film:
         file : BinaryIO
         kind : {"png", "svg"}
         at : float, optional
-            Seconds since the release; by default the end.
+            Time since the release in the unit of the clock; by default the end.
         """
-        self._draw(self.seconds if at is None else at)
+        seconds = min(self.seconds, self.seconds if at is None else at * self._tick)
+        moments = [stage.at(seconds / _unit(stage.recording)) for stage in self._stages]
+        seen = {state for moment in moments for state in moment.joints}
+        at_rest = any(moment.statics > 0 for moment in moments)
+        self._canvas.keep(*self._still(seen, thrust=at_rest))
+        self._draw(seconds)
         self._canvas.save(file, kind)
 
     def _draw(self, seconds: float) -> None:
@@ -156,27 +181,31 @@ class Film:
         tall = self.height - head - foot
         return [Panel(i * wide, foot, wide, tall) for i in range(len(self._stages))]
 
-    def _still(self) -> tuple[list[Part], list[Label]]:
-        """All that stays the same: surroundings, scale bars, words, legend."""
+    def _still(
+        self, states: set[JointState], *, thrust: bool
+    ) -> tuple[list[Part], list[Label]]:
+        """All that stays the same: surroundings, scale bars, words, legend of what is seen."""
         parts: list[Part] = []
         labels: list[Label] = []
-        for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
+        each = zip(self._stages, self._views, self._panels, self._words, strict=True)
+        for stage, view, panel, verdict in each:
             radius = stage.recording.assembly.size
             length = _round_length(0.5 * radius)
-            bar, words = view.scale_bar(length / radius, f"{length:g} m")
+            unit = "m" if self.metric else "r"
+            bar, words = view.scale_bar(length / radius, f"{length:g} {unit}")
             parts.append((panel, [*view.still, *bar]))
-            labels += words + self._title(stage, panel)
+            labels += words + self._title(stage, panel, verdict)
         whole = Panel(0, 0, self.width, self.height)
         rules = [
             np.array([[panel.x, FOOT * self._size], [panel.x, self.height]])
             for panel in self._panels[1:]
         ]
         lines = [Shape(r, edge=colour(INK, 0.25), width=1, closed=False) for r in rules]
-        legend, words = self._legend()
+        legend, words = self._legend(states, thrust=thrust)
         return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
 
-    def _title(self, stage: Stage, panel: Panel) -> list[Label]:
-        """Arch, engine and ratio to the least thickness, above a panel."""
+    def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
+        """Arch, outcome, ratio to the least thickness and engine, above a panel."""
         size, arch = self._size, arch_of(stage.recording.problem)
         friction = "∞" if math.isinf(stage.recording.mu) else f"{stage.recording.mu:.4g}"
         blocks = len(stage.assembly.blocks)
@@ -186,27 +215,40 @@ class Film:
                 f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
                 f"μ = {friction}   n = {arch.voussoirs}"
             )
-        below = f"{stage.recording.engine} {stage.recording.engine_version}   {_load(stage)}"
+        engine = f"{stage.recording.engine} {stage.recording.engine_version}"
+        below = f"{verdict}, {_load(stage)}   {engine}"
         x, top = panel.x + 24 * size, self.height
         return [
             Label(x, top - 36 * size, head, size=20 * size, bold=True),
             Label(x, top - 61 * size, below, size=15 * size, colour=QUIET),
         ]
 
+    @property
+    def _tick(self) -> float:
+        """Unit of the clock [s]."""
+        return 1.0 if self.metric else math.sqrt(1 / GRAVITY)
+
     def _clock(self, seconds: float) -> str:
-        return f"t = {seconds:.{_digits(self.seconds)}f} s"
+        digits = _digits(self.seconds / self._tick)
+        unit = "s" if self.metric else "√(r/g)"
+        return f"t = {seconds / self._tick:.{digits}f} {unit}"
 
     def _pace(self) -> Label:
         words = "real time" if self.slow == 1 else f"{self.slow:g} times slower"
+        if not self.metric:
+            words += " if r = 1 m"
+        if self._enlarge != 1:
+            words = f"motion drawn {self._enlarge:.2g} times larger"
         x = 48 * self._size + width_of(self._clock(self.seconds), 19 * self._size, bold=True)
         return Label(x, 15 * self._size, words, size=14 * self._size, colour=QUIET)
 
-    def _legend(self) -> tuple[list[Shape], list[Label]]:
+    def _legend(
+        self, states: set[JointState], *, thrust: bool
+    ) -> tuple[list[Shape], list[Label]]:
         """Explain the colours that occur, from the lower right corner."""
-        states = {state for stage in self._stages for state in stage.states}
         entries = [(WORDS[state], JOINTS[state]) for state in WORDS if state in states]
-        if any(stage.thrust for stage in self._stages):
-            entries.append(("line of thrust at rest", THRUST))
+        if thrust and any(stage.thrust for stage in self._stages):
+            entries.append(("line of thrust at rest, by limit analysis", THRUST))
         shapes, labels = list[Shape](), list[Label]()
         size = self._size
         x, y = self.width - 24 * size, 15 * size
@@ -217,6 +259,23 @@ class Film:
             shapes.append(Shape(line, edge=colour(tone), width=5 * size, closed=False))
             x -= 54 * size
         return shapes, labels
+
+
+def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
+    """Say whether an arch falls: as a check does, or by how far it has moved."""
+    if verdict is not None:
+        return verdict.value
+    moved = float(recording.displacement.max())
+    if moved > MOVED:
+        return Verdict.COLLAPSES.value
+    return f"has moved {moved:.1g} r" if moved > UNMOVED else "at rest"
+
+
+def _enlarged(recording: Recording, times: float) -> Recording:
+    if times == 1:
+        return recording
+    rest = recording.poses[0]
+    return replace(recording, poses=rest + times * (recording.poses - rest))
 
 
 def _unit(recording: Recording) -> float:
@@ -258,9 +317,9 @@ def _load(stage: Stage) -> str:
 
 
 def _share(ratio: float) -> str:
-    """Say how thick the arch is compared with the thinnest that stands."""
+    """Say how thick the arch is compared with the thinnest of these voussoirs that stands."""
     if ratio >= 2:
-        return f"{ratio:.3g} times the least thickness"
+        return f"{ratio:.3g} times the least thickness as built"
     off = abs(ratio - 1) * 100
     shown = f"{off:.2g}" if off < 10 else f"{off:.0f}"
-    return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness"
+    return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness as built"

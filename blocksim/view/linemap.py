@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import matplotlib as mpl
 import numpy as np
@@ -14,10 +15,12 @@ from matplotlib.figure import Figure
 
 from blocksim.arch.theory import equations, landmarks, least_thicknesses, regions
 from blocksim.arch.theory.critical import rotational_thrust
-from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line
-from blocksim.view.style import FONT, INK, ISO, QUIET
+from blocksim.view.mapshapes import LARGEST_MU, iso_angles, iso_continued, iso_line
+from blocksim.view.style import FONT, INK, ISO
 
 DASHED = (0, (5, 2))
+SPACE, BESIDE = 0.024, 0.07
+"""Height of a label, as a share of the picture, and its distance from the frame [mu]."""
 LABELS = {"S": (6, -12), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
 
 
@@ -38,31 +41,93 @@ def line_map_figure(span: tuple[float, float] = (0.0, 2.0)) -> Figure:
 
 
 def _line_map(span: tuple[float, float]) -> Figure:
-    figure = Figure(figsize=(8.6, 7.0), layout="constrained")
+    figure = Figure(figsize=(8.6, 7.2), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     marks = landmarks()
-    for degrees in ISO_DEGREES:
-        line = iso_line(math.radians(degrees))
-        if not line.mu.size:
-            continue
-            axes.plot(line.mu, line.eta, color=ISO, lw=0.8)
-        if span[0] < line.eta[-1] < span[1]:
-            axes.annotate(f"{degrees:g}°", (LARGEST_MU, line.eta[-1]), xytext=(3, 0),
-                          va="center", textcoords="offset points", color=ISO,
-                          fontsize=8)  # fmt: skip
+    axes.set(xlim=(0, LARGEST_MU), ylim=span, xlabel=r"friction coefficient $\mu$",
+             ylabel=r"thickness-to-radius ratio $\eta = t/r$")  # fmt: skip
+    _iso_lines(axes, span)
     _dividing_lines(axes)
-    axes.axhline(1.0, color=QUIET, lw=0.8, ls=DASHED)
     for mark in marks.values():
         if span[0] <= mark.eta <= span[1]:
-            axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4)
+            axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4,
+                      clip_on=False)  # fmt: skip
             axes.annotate(mark.name, (mark.mu, mark.eta), xytext=LABELS[mark.name],
                           fontweight="bold", textcoords="offset points",
                           annotation_clip=False)  # fmt: skip
-    axes.set(xlim=(0, LARGEST_MU), ylim=span, xlabel=r"friction coefficient $\mu$",
-             ylabel=r"thickness-to-radius ratio $\eta = t/r$")  # fmt: skip
-    figure.legend(loc="outside upper center", ncols=5, frameon=False, fontsize=8.5)
+    figure.legend(loc="outside upper center", ncols=4, frameon=False, fontsize=8.5)
     return figure
+
+
+def _iso_lines(axes: Axes, span: tuple[float, float]) -> None:
+    """Draw lines of equal half-angle, each named where it leaves the picture."""
+    beside: dict[str, float] = {}
+    names = {
+        "feasible": r"equal $\alpha$",
+        "infeasible": r"equal $\alpha$, not feasible",
+    }
+    for half_angle in iso_angles():
+        name = angle_name(half_angle)
+        continued = iso_continued(half_angle)
+        line = iso_line(half_angle)
+        for kind, curve, dashes, width in (
+            ("feasible", line, "-", 1.0),
+            ("infeasible", continued, DASHED, 0.7),
+        ):
+            if curve.mu.size and curve.eta.min() <= span[1]:
+                # Along the frame a line would be cut in half.
+                along = bool((curve.eta == span[1]).all())
+                axes.plot(curve.mu, curve.eta, color=ISO, gid=f"{kind} {name}",
+                          label=names.pop(kind, None), zorder=1.5,
+                          clip_on=not along, ls=dashes,
+                          lw=width)  # fmt: skip
+        end = float((line if line.mu.size else continued).eta[-1])
+        if span[0] < end <= span[1]:
+            beside[name] = end
+        elif end <= span[0]:
+            _name_upright(axes, name, float(continued.mu[0]), span[1])
+    for (name, end), place in zip(
+        beside.items(), apart(list(beside.values()), SPACE * (span[1] - span[0])), strict=True
+    ):
+        axes.annotate(name, (LARGEST_MU, end), xytext=(LARGEST_MU + BESIDE, place),
+                      va="center", color=ISO, fontsize=8, annotation_clip=False,
+                      arrowprops={"arrowstyle": "-", "color": ISO, "lw": 0.5, "shrinkA": 0,
+                                  "shrinkB": 0, "relpos": (0, 0.5)})  # fmt: skip
+
+
+def _name_upright(axes: Axes, name: str, mu: float, top: float) -> None:
+    """Name a line above the picture, which it leaves upright."""
+    axes.annotate(name, (mu, top), xytext=(0, 3), textcoords="offset points", ha="center",
+                  va="bottom", rotation=90, color=ISO, fontsize=8,
+                  annotation_clip=False)  # fmt: skip
+
+
+def angle_name(half_angle: float) -> str:
+    """Write a half-angle: round ones as they are, special ones with three decimals."""
+    degrees = math.degrees(half_angle)
+    return f"{degrees:.0f}°" if abs(degrees - round(degrees)) < 1e-9 else f"{degrees:.3f}°"
+
+
+def apart(heights: Sequence[float], space: float) -> list[float]:
+    """Move heights, which grow, as little as needed to be apart by a space."""
+    groups: list[list[float]] = []
+    for height in heights:
+        groups.append([height])
+        # Neighbours that are too close become one group about their middle.
+        while len(groups) > 1 and _ends(groups[-2], space)[1] > _ends(groups[-1], space)[0]:
+            groups[-2:] = [groups[-2] + groups[-1]]
+    return [
+        _ends(group, space)[0] + space * (place + 0.5)
+        for group in groups
+        for place in range(len(group))
+    ]
+
+
+def _ends(group: Sequence[float], space: float) -> tuple[float, float]:
+    """Lower and upper end of labels stacked about the middle of what they name."""
+    middle = sum(group) / len(group)
+    return middle - space * len(group) / 2, middle + space * len(group) / 2
 
 
 def _dividing_lines(axes: Axes) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,9 +20,12 @@ from blocksim.blocks.assembly import Array
 SMALLEST_MU, LARGEST_MU = 0.002, 4.0
 POINTS = 160
 """Points on each line."""
-ISO_DEGREES = (60, 90, 110, 125, 135, 142.5, 145, 149.2, 155, 159)
-"""Half-angles of which lines are drawn: those of the paper."""
+ISO_DEGREES = (60, 90, 110, 125, 135, 142.504, 145, 149.156, 155, 158.949)
+"""Half-angles of which the page draws lines; `iso_angles` has them to their last digit."""
+ROUND_DEGREES = (60, 90, 110, 125, 135, 145, 155)
 ISO_POINTS = 1200
+LEVEL = 1e-9
+"""Thickness ratios closer than this to that of unbounded friction are the same."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -105,6 +109,24 @@ def map_shapes(weight: Weight = "centreline") -> MapShapes:
     )
 
 
+def iso_angles(weight: Weight = "centreline") -> tuple[float, ...]:
+    """Half-angles of which the map has lines: round ones and special ones, in order [rad].
+
+    The special ones are those of T, J and B, that at which eta is 1 on the divide (Fig. 23),
+    alpha_l and alpha_L: 142.504, 149.156, 158.949, 149.646, 151.742 and 159.655 deg.
+    """
+    marks, special = theory.landmarks(weight), special_angles(weight)
+
+    def above_one(mu: float) -> float:
+        return regions.at_inner_sliding(mu, regions.divide_half_angle(mu), weight)[0] - 1
+
+    unit = float(brentq(above_one, marks["T"].mu, marks["B"].mu, xtol=1e-15))
+    found = {math.radians(degrees) for degrees in ROUND_DEGREES}
+    found |= {marks[name].half_angle for name in "TJB"}
+    found |= {regions.divide_half_angle(unit), special.zero_thrust, special.limit}
+    return tuple(sorted(found))
+
+
 def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
     """Line of equal half-angle, with its upright part on the divide.
 
@@ -130,6 +152,38 @@ def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
     return Curve(
         mu=np.concatenate([[divide, divide], line.mu]),
         eta=np.concatenate([[ETA_MAX, foot], line.eta]),
+    )
+
+
+def iso_continued(half_angle: float, weight: Weight = "centreline") -> Curve:
+    """Continue a line of equal half-angle to where its equations rule no more.
+
+    Without sliding the least thickness would be that of unbounded friction, and without
+    turning the line would be upright: both go on to the corner where they meet.
+
+    Parameters
+    ----------
+    half_angle : float
+        From 0.01 to alpha_L [rad].
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    Curve
+        From the foot of the upright part down, and to the right to the first sliding.
+    """
+    level = theory.least_thickness(half_angle, math.inf, weight).eta
+    if level is None:
+        return Curve(mu=np.empty(0), eta=np.empty(0))
+    divide = divide_friction(half_angle)
+    foot, _ = regions.at_inner_sliding(divide, half_angle, weight)
+    line = iso_half_angle(half_angle, np.linspace(divide, LARGEST_MU, ISO_POINTS), weight)
+    slides = line.mu[line.eta > level + LEVEL]
+    if line.mu.size and not slides.size:
+        return Curve(mu=np.empty(0), eta=np.empty(0))  # at T the corner is on the line
+    last = float(slides[-1]) if slides.size else LARGEST_MU
+    return Curve(
+        mu=np.array([divide, divide, last]), eta=np.array([min(foot, ETA_MAX), level, level])
     )
 
 

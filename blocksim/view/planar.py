@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.joints import JointState
@@ -60,11 +61,17 @@ class PlanarView:
 
     def shapes(self, moment: Moment) -> list[Shape]:
         """Draw a moment."""
-        corners = self._to_pixels(moment.corners.mean(axis=1)[..., :2])
         edge = mixed(colour(STONE), colour(INK), 0.75)
+        # What has turned out of the plane shows its sides, too; the nearest comes last.
+        order = np.argsort(moment.corners[..., 2].max(axis=(1, 2)), kind="stable").tolist()
         blocks = [
-            Shape(outline, fill=tone, edge=edge, width=self._line)
-            for outline, tone in zip(corners, self._tones, strict=True)
+            Shape(
+                self._to_pixels(_outline(moment.corners[block])),
+                fill=self._tones[block],
+                edge=edge,
+                width=self._line,
+            )
+            for block in order
         ]
         return [*blocks, *self._joints(moment), *self._thrust(moment)]
 
@@ -129,6 +136,21 @@ class PlanarView:
 
 HINGES = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
 """End of the joint that stays closed: inner or outer."""
+
+
+def _outline(corners: Array) -> Array:
+    """Outline of a block as seen from the front, (k, 2).
+
+    Parameters
+    ----------
+    corners : (2, sides, 3) float
+        Of its near and its far face.
+    """
+    near, far = corners[..., :2]
+    if np.allclose(near, far, rtol=0, atol=1e-9):
+        return near
+    both = corners[..., :2].reshape(-1, 2)
+    return both[ConvexHull(both).vertices]
 
 
 def _circle(centre: Array, radius: float) -> Array:

@@ -26,8 +26,6 @@ SUNK = 0.02
 """Depth of a corner in the ground or in a footing that passes for touching it [r]."""
 SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
-WITHIN = 0.95
-"""Share of the line of thrust in or near the arch below which it is not drawn."""
 FARTHEST = 1.0
 """Blocks are followed up to this far beyond the arch at rest [r]."""
 SAMPLES = 500
@@ -122,21 +120,23 @@ class Stage:
 
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
-        """Line of thrust of the arch at rest, by limit analysis, in pieces (k, 2)."""
+        """Line of thrust of the arch at rest, by limit analysis, (k, 2); none if not whole."""
         arch = arch_of(self.recording.problem)
         if arch is None or not self.recording.problem.is_planar:
             return ()
         line, _ = lines_of(picture_of_arch(arch, self.recording.mu))
-        drawn = np.isfinite(line).all(axis=1)
-        pieces = np.split(line, np.flatnonzero(np.diff(drawn)) + 1)
-        within = drawn.mean() > WITHIN
-        return tuple(piece for piece in pieces if within and np.isfinite(piece[0]).all())
+        return () if line is None else (line[np.isfinite(line).all(axis=1)],)
 
     @cached_property
     def states(self) -> tuple[JointState, ...]:
         """Joint states that are ever seen, in the order of `JointState`, closed left out."""
         poses = self.recording.poses
-        seen = {state for frame in self._shown for state in self._joints(poses[frame])}
+        times = self.recording.times
+        seen = {
+            state
+            for frame in self._shown
+            for state in self._joints(poses[frame], float(times[frame]))
+        }
         return tuple(state for state in JointState if state in seen - {JointState.CLOSED})
 
     @cached_property
@@ -180,7 +180,7 @@ class Stage:
         return Moment(
             time=time,
             corners=self._corners(earlier, later, share),
-            joints=self._joints(one + (two - one) * share),
+            joints=self._joints(one + (two - one) * share, time),
             statics=float(np.interp(moved, (STILL, GONE), (1.0, 0.0))),
         )
 
@@ -210,11 +210,42 @@ class Stage:
         last = int(np.searchsorted(self.recording.times, self.end, "right")) - 1
         return sorted({*range(0, last, 1 + last // SAMPLES), last})
 
-    def _joints(self, poses: Array) -> tuple[JointState, ...]:
+    def _joints(self, poses: Array, time: float) -> tuple[JointState, ...]:
         # Joint states are those of motion in the plane.
         if not self.recording.problem.is_planar:
             return (JointState.CLOSED,) * len(self.assembly.joints)
-        return tuple(joint.state for joint in classify(self.assembly, poses, least=SEEN))
+        parted, gone = self._fates
+        states: list[JointState] = []
+        for joint in classify(self.assembly, poses, least=SEEN):
+            place = len(states)
+            open_by_now = time >= parted[place]
+            state = JointState.OPEN if open_by_now else joint.state
+            states.append(JointState.CLOSED if time >= gone[place] else state)
+        return tuple(states)
+
+    @cached_property
+    def _fates(self) -> tuple[Array, Array]:
+        """Times from which each joint has parted, and is none any more, (joints,) each.
+
+        What has parted and meets again is no hinge, and a block that lies on the ground, or
+        has come loose of both its neighbours, is rubble: it has no joints.
+        """
+        before, after, *_ = self.assembly.joint_arrays
+        blocks = len(self.assembly.blocks)
+        parted = np.full(len(before), np.inf)
+        rubble = np.full(blocks + 1, np.inf)  # the last stands for the support
+        for frame in self._shown if self.moves else ():
+            time = float(self.recording.times[frame])
+            seen = classify(self.assembly, self.recording.poses[frame], least=SEEN)
+            apart = np.array([joint.state is JointState.OPEN for joint in seen])
+            parted = np.minimum(parted, np.where(apart, time, np.inf))
+            held = np.zeros(blocks + 1, dtype=bool)
+            for side in (before, after):
+                held[side[parted > time]] = True
+            lowest = self._corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
+            loose = ~held[:blocks] | (lowest < self.ground + SUNK)
+            rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
+        return parted, np.minimum(rubble[before], rubble[after])
 
     def _corners(self, earlier: int, later: int, share: float) -> Array:
         """Corners in space between two frames."""

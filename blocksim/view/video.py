@@ -19,6 +19,7 @@ from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.recording import Recording
 from blocksim.view.film import TALL, Film, ViewName
+from blocksim.view.style import GROUND, INK, JOINTS, PAPER, QUIET, THRUST
 
 RATES = {"mp4": 30, "gif": 20}
 """Frames in a second; a gif counts in hundredths."""
@@ -28,7 +29,10 @@ QUALITY = "19"
 """Constant rate factor of x264: lines stay crisp."""
 THREADS = 2
 """Fixed, because x264's output depends on it."""
-COLOURS = 255
+COLOURS, SAMPLES = 255, 9
+"""Of a gif: colours, and frames they are chosen from."""
+DRAWN = (*JOINTS.values(), THRUST, INK, QUIET, PAPER, GROUND)
+"""Colours that say something, whatever their share of a frame."""
 
 
 def render(
@@ -53,7 +57,8 @@ def render(
     slow : float, optional
         How many times slower than it happened.
     at : float, optional
-        For a single frame: seconds since the release, by default the end.
+        For a single frame: time since the release, in the unit of the film's clock; by
+        default the end.
     height : int
         In pixels; frames are 16:9.
     progress : Progress, optional
@@ -107,13 +112,34 @@ def _mp4(film: Film, file: BinaryIO, progress: Progress) -> None:
         container.mux(stream.encode(None))
 
 
+def _palette(film: Film) -> Image.Image:
+    """Make one palette for all frames, so that colours do not flicker.
+
+    Lines are few pixels among many of stone and ground: their colours are given, and only
+    the rest is chosen from frames.
+    """
+    given = list(dict.fromkeys(to_bytes(name) for name in DRAWN))
+    numbers = np.unique(np.linspace(0, film.count - 1, SAMPLES).astype(int)).tolist()
+    samples = np.concatenate([film.frame(number)[::2, ::2, :3] for number in numbers])
+    chosen = Image.fromarray(samples).quantize(COLOURS - len(given)).getpalette() or []
+    rest = [tuple(chosen[place : place + 3]) for place in range(0, len(chosen), 3)]
+    colours = list(dict.fromkeys([*given, *rest]))[:COLOURS]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([part for each in colours for part in each])
+    return palette
+
+
+def to_bytes(name: str) -> tuple[int, int, int]:
+    """Red, green and blue of a colour given as #rrggbb, 0 to 255."""
+    red, green, blue = bytes.fromhex(name.removeprefix("#"))
+    return red, green, blue
+
+
 def _gif(film: Film, file: BinaryIO, progress: Progress) -> None:
     def picture(number: int) -> Image.Image:
         return Image.fromarray(film.frame(number)[..., :3])
 
-    # One palette for all frames, from three of them, so that colours do not flicker.
-    samples = [np.asarray(picture(n)) for n in (0, film.count // 2, film.count - 1)]
-    palette = Image.fromarray(np.concatenate(samples)).quantize(COLOURS)
+    palette = _palette(film)
 
     def frames() -> Iterator[Image.Image]:
         for number in range(film.count):

@@ -1,0 +1,143 @@
+"""The mode map with arches on it: where marks are, which are named, what the legend says."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from blocksim.arch.modes import Mode
+from blocksim.arch.theory import landmarks
+from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure
+from blocksim.view.style import MISS, MODES
+
+# As published: figures 20 to 25, Table 1, and an arch that slides at any thickness.
+ARCHES = {
+    "8": (1.7772, 0.9652, Mode.RS),
+    "9": (1.833, 0.9563, Mode.RRS),
+    "10": (1.79, 0.9631, Mode.RSR),
+    "12": (1.8096, 0.9999, Mode.RS),
+    "13": (2.69, 1.964, Mode.RS),
+    "14": (math.inf, 1.0, Mode.R),
+    "15": (math.inf, 2.0, Mode.R),
+    "19": (0.7, 0.107, Mode.RRR),
+    "20": (0.3, 2.0, Mode.SS),
+    "24": (1.7659, 0.9533, Mode.RRS),
+}
+CROWD = {"8", "9", "10", "12", "24"}
+
+
+@pytest.fixture(scope="module")
+def drawn() -> Figure:
+    points = [
+        MapPoint(
+            mu=mu,
+            eta=eta,
+            mode=mode,
+            label=label,
+            miss=label in {"10", "15"},
+            note=f"arch {label}",
+            engine="pymunk",
+            none_stands=label == "20",
+        )
+        for label, (mu, eta, mode) in ARCHES.items()
+    ]
+    figure = map_figure(points)
+    figure.draw_without_rendering()
+    return figure
+
+
+def labels(axes: Axes) -> dict[str, Text]:
+    return {text.get_text(): text for text in axes.texts if text.get_text().isdigit()}
+
+
+def marks(axes: Axes, mode: Mode) -> list[tuple[float, float]]:
+    return [
+        (float(line.get_xdata()[0]), float(line.get_ydata()[0]))
+        for line in axes.lines
+        if line.get_marker() == MODES[mode].marker and len(line.get_xdata()) == 1
+        and to_hex(line.get_markerfacecolor()) == MODES[mode].colour.lower()
+    ]  # fmt: skip
+
+
+def parts(figure: Figure) -> tuple[Axes, Axes]:
+    """The map, and its enlarged part."""
+    (axes,) = figure.axes
+    (near,) = axes.child_axes
+    return axes, near
+
+
+def test_arches_near_j_are_named_where_they_are_enlarged(drawn: Figure) -> None:
+    axes, near = parts(drawn)
+    assert set(labels(near)) == CROWD
+    assert set(labels(axes)) == set(ARCHES) - CROWD
+
+
+def test_labels_are_beside_their_marks_and_hide_none(drawn: Figure) -> None:
+    for axes in parts(drawn):
+        boxes = {name: text.get_window_extent() for name, text in labels(axes).items()}
+        for one, two in combinations(boxes.values(), 2):
+            assert not one.overlaps(two)
+        places = {name: axes.transData.transform(labels(axes)[name].xy) for name in boxes}
+        for name, box in boxes.items():
+            middle = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
+            near = {other: math.dist(middle, place) for other, place in places.items()}
+            assert min(near, key=near.__getitem__) == name
+
+
+def test_rsr_can_be_read(drawn: Figure) -> None:
+    """Its name lies within the region, which is higher there than the name."""
+    _, near = parts(drawn)
+    (name,) = [text for text in near.texts if text.get_text() == "rsr"]
+    box = near.transData.inverted().transform(name.get_window_extent())
+    mark = landmarks()["S"]
+    assert mark.eta < box[0][1] < box[1][1] < 0.9705
+
+
+def test_no_mark_is_cut_at_the_frame(drawn: Figure) -> None:
+    axes, _ = parts(drawn)
+    single = [line for line in axes.lines if len(line.get_xdata()) == 1]
+    assert len(single) > len(ARCHES)
+    assert not any(line.get_clip_on() for line in single)
+
+
+def test_unbounded_friction_has_its_own_place(drawn: Figure) -> None:
+    axes, _ = parts(drawn)
+    ticks = {tick.get_text(): x for tick, x in zip(axes.get_xticklabels(), axes.get_xticks(),
+                                                   strict=True)}  # fmt: skip
+    assert ticks["∞"] > LARGEST_MU
+    assert marks(axes, Mode.R) == [(ticks["∞"], 1.0), (ticks["∞"], 2.0)]
+
+
+def test_what_never_stands_is_said_to(drawn: Figure) -> None:
+    """An arrow upwards from the frame, and a word in the legend."""
+    axes, _ = parts(drawn)
+    arrows = [text for text in axes.texts if text.get_text() == "" and text.arrow_patch]
+    assert [tuple(arrow.xy) for arrow in arrows] == [(0.3, 2.0)]
+    words = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert "20  arch 20: no thickness stands" in words
+    assert sum("no thickness" in word for word in words) == 1
+    assert "bracket" not in drawn.legends[0].get_title().get_text()
+
+
+def test_misses_are_ringed(drawn: Figure) -> None:
+    rings = {
+        (round(float(line.get_xdata()[0]), 3), float(line.get_ydata()[0]))
+        for axes in parts(drawn)
+        for line in axes.lines
+        if to_hex(line.get_markeredgecolor()) == MISS and line.get_markersize() > 15
+    }
+    assert {eta for _, eta in rings} == {0.9631, 2.0}
+
+
+def test_the_legend_names_modes_that_are_there() -> None:
+    point = MapPoint(mu=1.0, eta=0.3, mode=Mode.RRR, label="1", miss=False, note="one")
+    figure = map_figure([point])
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert [word.split()[0] for word in words] == ["rrr", "1"]
+    assert not figure.axes[0].child_axes
