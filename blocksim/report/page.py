@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from blocksim.arch import GRAVITY
 from blocksim.joints import JointState
 from blocksim.modes import Mode
 from blocksim.report.answers import ratio
+from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import Drawing, drawing
 from blocksim.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, numbered
 from blocksim.verdict import Verdict
@@ -31,10 +31,11 @@ STATES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """A row as the page shows it."""
+    """A row as the page shows it; `thickest` where only the thickest arch there is was tried."""
 
     row: Row
     anchor: str
+    thickest: bool
     found: str
     bracket: str
     error: str
@@ -87,6 +88,7 @@ def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str])
     }
     template = environment.get_template("report.html")
     engines = list(dict.fromkeys(row.engine for row in rows))
+    drawn_map, dark = inline_map(map_svg, {n: name for name, n in numbered(rows).items()})
     return template.render(
         cases=_cases(rows),
         misses=[row for row in rows if row.miss],
@@ -95,7 +97,8 @@ def report_page(rows: Sequence[Row], map_svg: bytes, machine: Mapping[str, str])
         apart=disagreements(rows) if len(engines) > 1 else None,
         sentence=summary(rows),
         numbers=numbered(rows),
-        map_data=base64.b64encode(map_svg).decode(),
+        map=drawn_map,
+        map_colours=dark,
         machine=machine,
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         seconds=sum(row.wall_s for row in rows),
@@ -160,6 +163,8 @@ def _result(row: Row, anchor: str) -> Result:
     return Result(
         row=row,
         anchor=anchor,
+        # Nothing stands: there is no least thickness to be aside of.
+        thickest=low is not None and high is None,
         found=bracket if row.verdict else "none" if nothing else ratio(fmean(ends)),
         bracket=bracket,
         error="-" if row.error is None else _percent(row.error, "+.3f"),
@@ -168,7 +173,9 @@ def _result(row: Row, anchor: str) -> Result:
 
 
 def _percent(share: float, digits: str = "g") -> str:
-    return f"{share * 100:{digits}}\N{NO-BREAK SPACE}%"
+    written = f"{share * 100:{digits}}"
+    # Nobody writes -0.000.
+    return f"{written if float(written) else written.lstrip('+-')}\N{NO-BREAK SPACE}%"
 
 
 def _capitalised(words: str) -> str:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import blocksim
 from blocksim.files import make_folder, write_whole
 from blocksim.report.answers import plain
+from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.validate import ASIDE, ERROR_BOUND, TOLS, Row, disagreements, installed, numbered
 from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure, save_figure
@@ -80,7 +81,7 @@ def write_results(rows: Sequence[Row], folder: Path) -> list[Path]:
     figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
     drawn = pictures("map", figure)
     contents = {
-        "report.html": report_page(rows, drawn["map.svg"], machine()).encode(),
+        PAGE: report_page(rows, drawn["map.svg"], machine()).encode(),
         "validate.json": as_json(document),
         "validate.csv": sheet.getvalue().encode(),
     }
@@ -128,6 +129,7 @@ def _points(rows: Sequence[Row]) -> list[MapPoint]:
                 outline=row.engine != first,
                 miss=bool(row.miss),
                 note=row.scenario,
+                link=f"{PAGE}#row-{numbers[row.scenario]}",
             )
         )
     return points

@@ -61,6 +61,8 @@ class MapPoint:
         Which one observed it.
     outline : bool
         Drawn as an outline, around the point of another engine; without a label.
+    link : str
+        Where a click on it leads, in SVG; nowhere if empty.
     """
 
     mu: float
@@ -71,6 +73,7 @@ class MapPoint:
     note: str
     engine: str = ""
     outline: bool = False
+    link: str = ""
 
 
 def map_figure(
@@ -175,6 +178,7 @@ def _draw_points(axes: Axes, points: Sequence[MapPoint]) -> None:
             mew=1.8 if point.miss else 0.8,
             zorder=5,
             clip_on=False,
+            url=point.link or None,
         )
         if point.miss:
             axes.plot(point.mu, point.eta, "o", ms=16, mfc="none", mec=MISS, mew=1.4, zorder=5)
@@ -190,6 +194,7 @@ def _draw_points(axes: Axes, points: Sequence[MapPoint]) -> None:
             fontsize=8,
             zorder=6,
             annotation_clip=False,
+            url=point.link or None,
         )
 
 
