@@ -13,7 +13,7 @@ OPENING = re.compile(r"<svg\b[^>]*>")
 BOX = re.compile(r'viewBox="[^"]*"')
 STYLE = re.compile(r'style="[^"]*"')
 COLOUR = re.compile(r"#([0-9a-f]{6})\b")
-LINK = re.compile(rf'<a xlink:href="(?:{re.escape(PAGE)})?#row-(\d+)"')
+LINK = re.compile(rf'<a xlink:href="(?:{re.escape(PAGE)})?#row-(\d+)"(?: target="_blank")?')
 DARKEST, LIGHTEST = 0.12, 0.93
 """Lightness of what is white and black by day, in the dark."""
 

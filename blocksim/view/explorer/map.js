@@ -170,7 +170,7 @@ const mapPicture = (() => {
     if (!frame.shows(state.mu, state.eta)) {
       // Out of view: an arrow at the edge, towards it.
       const beyond = (value, [least, most]) => (value < least ? -1 : value > most && value < Infinity ? 1 : 0);
-      const towards = Math.atan2(-beyond(state.eta, frame.eta), beyond(state.mu, frame.mu)) * (180 / Math.PI);
+      const towards = Math.atan2(-beyond(state.eta, frame.eta) || 0, beyond(state.mu, frame.mu)) * (180 / Math.PI);
       add(handle, "path", { d: "M9 0L-7 -8V8Z", transform: `translate(${cx} ${cy}) rotate(${towards})`, class: "off" });
       return;
     }

@@ -77,8 +77,8 @@
     put("simulated", found.join(" "));
     find("simulated").hidden = !found.length;
     for (const [arch, known] of Object.entries(both)) showFigures(arch, known);
-    showControls();
     if (drawn.weight !== state.weight || drawn.view !== state.view) drawMap();
+    showControls();
     drawMapPoint(verdict);
     const reach = MOVED * Math.min(1, 1.2 * Math.sin(Math.min(state.halfAngle, Math.PI / 2)));
     amount = moves ? mechanism.amountFor(seen.joints, state.eta, reach) : 0;
