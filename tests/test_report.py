@@ -21,10 +21,10 @@ from blocksim.report.tables import write_results
 from blocksim.verdict import Verdict
 from blocksim.view import style
 
-
 MAP = (
     b'<?xml version="1.0"?><svg width="9pt" viewBox="0 0 90 60"><style>*{fill:red}</style>'
-    b'<a xlink:href="report.html#row-2" target="_blank"><path style="fill: #cfe3f0; stroke: #222222"/></a>'
+    b'<a xlink:href="report.html#row-2" target="_blank">'
+    b'<path style="fill: #cfe3f0; stroke: #222222"/></a>'
     b'<a xlink:href="report.html#row-2"><path style="fill: #ffffff"/></a></svg>'
 )
 

@@ -133,7 +133,8 @@ def test_a_phone_is_told_what_scrolls(page) -> None:
 
 
 LIGHTNESS = """(selector) => [...document.querySelectorAll(selector)].map((element) =>
-  getComputedStyle(element).fill.match(/\\d+/g).slice(0, 3).reduce((sum, v) => sum + +v, 0) / 765)"""
+  getComputedStyle(element).fill.match(/\\d+/g).slice(0, 3)
+    .reduce((sum, v) => sum + +v, 0) / 765)"""
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -31,7 +31,7 @@ STATES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """A row as the page shows it; `thickest` where only the thickest arch there is was tried."""
+    """A row as the page shows it; `thickest` where nothing thinner than eta = 2 was tried."""
 
     row: Row
     anchor: str

@@ -202,7 +202,8 @@ FALL = """((n) => {
   const critical = built.leastThickness(a, m, n, weight);
   if (critical.eta === null || !critical.joints.length) return null;
   const { joints, eta } = critical;
-  return { ...critical, pieces: mechanism.pieces(joints), small: mechanism.pose(joints, eta, 1e-6) };
+  const [pieces, small] = [mechanism.pieces(joints), mechanism.pose(joints, eta, 1e-6)];
+  return { ...critical, pieces, small };
 })(e)"""
 
 
