@@ -278,6 +278,12 @@
       map.setPointerCapture(event.pointerId);
       pick(event);
     });
+    // On the map a finger moves the point, up and down, too; beside it, it scrolls the page. CSS cannot
+    // say that of a part of a picture.
+    map.addEventListener("touchstart", (event) => {
+      const point = pointAt(event.touches[0]);
+      if (event.touches.length === 1 && point.inside && !resultsNear(point).length) event.preventDefault();
+    }, { passive: false });
     map.addEventListener("pointermove", (event) => {
       if (dragging) pick(event);
       if (dragging || event.pointerType !== "touch") tell(event);
