@@ -21,6 +21,13 @@ from blocksim.report.page import numbered, report_page, summary
 from blocksim.report.tables import write_results
 from blocksim.view import style
 
+MAP = (
+    b'<?xml version="1.0"?><svg width="9pt" viewBox="0 0 90 60"><style>*{fill:red}</style>'
+    b'<a xlink:href="report.html#row-2" target="_blank">'
+    b'<path style="fill: #cfe3f0; stroke: #222222"/></a>'
+    b'<a xlink:href="report.html#row-2"><path style="fill: #ffffff"/></a></svg>'
+)
+
 
 class Page(HTMLParser):
     """Elements with their attributes, and the words in between."""
@@ -53,7 +60,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def text() -> str:
-    return report_page(rows(), b"<svg/>", {"blocksim": "0.1", "python": "3.11"})
+    return report_page(rows(), MAP, {"blocksim": "0.1", "python": "3.11"})
 
 
 def test_nothing_is_loaded(text: str) -> None:
@@ -61,14 +68,14 @@ def test_nothing_is_loaded(text: str) -> None:
     assert not page.all("link")
     assert not page.all("iframe")
     assert all("src" not in attributes for attributes in page.all("script"))
-    assert [image["src"][:5] for image in page.all("img")] == ["data:"]
+    assert page.all("img") == []
     assert not re.search(r"url\(|@import|https?://", text)
 
 
 def test_input_is_escaped(text: str) -> None:
     page = Page(text)
     assert len(page.all("script")) == 1
-    assert len(page.all("img")) == 1
+    assert page.all("img") == []
     assert all(not name.startswith("on") for _, a in page.elements for name in a)
     words = "".join(page.words)
     assert '<img src=x onerror="alert(1)"> & co' in words
@@ -91,22 +98,23 @@ def test_every_row_is_told(text: str) -> None:
     ):
         assert told in words
     assert len(page.all("article")) == 2
-    assert len(page.all("svg")) == 3
+    assert len(page.all("svg")) == 4
     # Cells that engines share span their rows; with them, all rows are equally wide.
-    body = text[text.index("<tbody>") : text.index("</table>")]
+    body = text[text.index('<tbody id="row-1">') : text.index("</table>")]
     lines = re.findall(r"<tr>.*?</tr>", body, re.DOTALL)
-    assert [len(re.findall("<t[dh]", line)) for line in lines] == [15, 7, 15, 7]
+    # One cell for both sides where there is no least thickness to be aside of.
+    assert [len(re.findall("<t[dh]", line)) for line in lines] == [15, 7, 14, 7]
     assert body.count('rowspan="2"') == 16
 
 
 def test_page_can_be_read_without_seeing_it(text: str) -> None:
     page = Page(text)
     assert page.all("html")[0]["lang"] == "en"
-    assert page.all("img")[0]["alt"]
+    assert page.all("svg")[0]["aria-labelledby"] == "map-words"
     ids = Counter(attributes["id"] for _, attributes in page.elements if "id" in attributes)
     assert max(ids.values()) == 1
     for picture in page.all("svg"):
-        assert picture["role"] == "img"
+        assert picture["role"] == ("group" if picture.get("class") == "map" else "img")
         assert all(name in ids for name in (picture["aria-labelledby"] or "").split())
     assert all(slider["aria-label"] for slider in page.all("input"))
     targets = [(a["href"] or "")[1:] for a in page.all("a")]
@@ -150,13 +158,54 @@ def test_drawing_enlarges_the_motion_recorded() -> None:
     assert [(round(angle), state) for angle, state in made.joints] == [(0, "slides")]
 
 
+def test_the_map_is_part_of_the_page(text: str) -> None:
+    """Its colours are the page's to change, its style touches nothing else, its links work."""
+    drawn = text[text.index('<svg class="map"') : text.index("</svg>")]
+    assert "fill:red" not in text
+    assert 'style="fill: var(--map-cfe3f0); stroke: var(--map-222222)"' in drawn
+    assert "--map-cfe3f0: #cfe3f0;" in text
+    links = Page(drawn).all("a")
+    assert "target" not in drawn
+    assert [link["href"] for link in links] == ["#row-2", "#row-2"]
+    assert links[0]["aria-label"] == "2, second<script>alert(1)</script>"
+    assert [link.get("tabindex") for link in links] == [None, "-1"]
+
+
+def test_what_has_no_least_thickness_is_given_none(text: str) -> None:
+    """Where nothing stands no verdict is said to be aside of a least thickness."""
+    page = text[text.index('<tbody id="row-2"') :]
+    row = page[: page.index("</tr>")]
+    assert re.sub(r"<[^>]+>|\s+", " ", row[row.index("pymunk") :]).split() == [
+        "pymunk", "ss", "none", "-", "collapses", "at", "η", "=", "2", "yes"]  # fmt: skip
+    card = text[text.index('<article id="case-2"') :]
+    words = " ".join(re.sub(r"<[^>]+>", " ", card).split())
+    assert "η = 0.105, the thickest arch there is; motion enlarged" in words
+    assert "none up to 2, nor by limit analysis" in words
+    first = text[text.index('<article id="case-1"') : text.index('<article id="case-2"')]
+    assert "η = 0.105, 1\xa0% below the bracket&#39;s centre" in first
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (-4e-7, "0.000\xa0%"),
+        (4e-7, "0.000\xa0%"),
+        (-0.0005, "-0.050\xa0%"),
+        (0.004, "+0.400\xa0%"),
+    ],
+)
+def test_no_number_is_minus_nothing(error: float, said: str) -> None:
+    page = report_page([replace(ROW, error=error)], MAP, {"blocksim": "0.1"})
+    assert f'<td class="number">{said}</td>' in page
+
+
 def test_drawing_of_what_stands() -> None:
     still = replace(sliding(), poses=np.repeat(sliding().poses[:1], 11, axis=0))
     made = drawing(still, 9.81)
     assert made.enlarged is None
     assert made.joints == ()
     assert np.abs(np.array(json.loads(made.frames))).max() == 0
-    text = report_page([replace(ROW, recording=still)], b"<svg/>", {"blocksim": "0.1"})
+    text = report_page([replace(ROW, recording=still)], MAP, {"blocksim": "0.1"})
     assert "nothing moved in" in text
     assert "<button" not in text
 
@@ -164,7 +213,10 @@ def test_drawing_of_what_stands() -> None:
 def test_written_with_the_rest(tmp_path: Path) -> None:
     write_results([ROW], tmp_path)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "data:image/svg+xml;base64," in page
+    links = re.findall(r'<a href="#row-1" aria-label="1, semicircle"', page)
+    assert len(links) == 2  # the point and its label
+    alone = (tmp_path / "map.svg").read_text(encoding="utf-8")
+    assert alone.count('xlink:href="report.html#row-1"') == 2
     assert len(page) < 1_500_000
     record = json.loads((tmp_path / "validate.json").read_text())["rows"][0]
     assert "recording" not in record

@@ -3,21 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from dataclasses import replace
 
 import pytest
-from report_rows import rows
+from report_rows import ROW, rows
 
-from blocksim.report.page import report_page
+from blocksim.arch.modes import Mode
+from blocksim.report.tables import write_results
 
 playwright = pytest.importorskip("playwright.sync_api")
-MAP = b'<svg xmlns="http://www.w3.org/2000/svg" width="90" height="60"/>'
+
+LONG = replace(
+    ROW,
+    scenario="fig17_low_sliding_rotational_125",
+    modes_published=(Mode.RRR, Mode.SRR, Mode.RRS, Mode.SS),
+    eta_published=0.0310704,
+    eta_limit=0.0309421,
+    eta_low=0.03092123,
+    eta_high=0.03095212,
+)
+"""As wide as rows of the shipped scenarios are."""
 
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
-    path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(report_page(rows(), MAP, {"blocksim": "0.1"}), encoding="utf-8")
-    return path.as_uri()
+    folder = tmp_path_factory.mktemp("report")
+    write_results([*rows(), LONG, replace(LONG, engine="pybullet")], folder)
+    return (folder / "report.html").as_uri()
 
 
 @pytest.fixture
@@ -97,3 +109,69 @@ def test_it_is_light_on_paper(page) -> None:
     look = "getComputedStyle(document.body).backgroundColor"
     assert page.evaluate(look) == "rgb(255, 255, 255)"
     assert not page.locator(".controls").first.is_visible()
+
+
+@pytest.mark.parametrize("width", [1280, 1440])
+def test_no_column_is_clipped(page, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 900})
+    frame = page.locator(".wide").nth(1).bounding_box()
+    last = page.locator("thead th").last
+    assert last.inner_text() == "agrees"
+    box = last.bounding_box()
+    assert box["x"] + box["width"] <= frame["x"] + frame["width"]
+    assert page.locator(".sideways:visible").count() == 0
+
+
+def test_a_phone_is_told_what_scrolls(page) -> None:
+    page.set_viewport_size({"width": 375, "height": 812})
+    hints = page.locator(".sideways")
+    for index in range(2):
+        playwright.expect(hints.nth(index)).to_be_visible()
+        assert "sideways" in hints.nth(index).inner_text()
+    page.emulate_media(media="print")
+    assert page.locator(".sideways:visible").count() == 0
+
+
+LIGHTNESS = """(selector) => [...document.querySelectorAll(selector)].map((element) =>
+  getComputedStyle(element).fill.match(/\\d+/g).slice(0, 3)
+    .reduce((sum, v) => sum + +v, 0) / 765)"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_map_is_dark_in_the_dark(page, scheme: str) -> None:
+    """Paper and regions, and the words on them, by their colours in the browser."""
+    page.emulate_media(color_scheme=scheme)
+    grounds = page.evaluate(LIGHTNESS, "#patch_1 path, #patch_2 path, [id^=FillBetween] use")
+    assert len(grounds) == 8
+    words = page.evaluate(LIGHTNESS, '[id^="matplotlib.axis"] [id^=text_] use')
+    assert len(words) > 10
+    if scheme == "light":
+        assert min(grounds) > 0.8
+        assert max(words) < 0.2
+    else:
+        assert max(grounds) < 0.35
+        assert min(words) > 0.8
+    page.emulate_media(media="print")
+    assert min(page.evaluate(LIGHTNESS, "#patch_1 path, #patch_2 path")) == 1
+
+
+def test_points_of_the_map_lead_to_their_rows(page, complaints: list[str]) -> None:
+    page.locator('.map a[href="#row-3"]').last.click()
+    assert page.url.endswith("report.html#row-3")
+    assert len(page.context.pages) == 1
+    row = page.locator("#row-3")
+    assert "fig17_low_sliding_rotational_125" in row.inner_text()
+    playwright.expect(row).to_be_in_viewport()
+    assert complaints == []
+
+
+def test_the_line_of_thrust_is_gone_when_blocks_have_moved(page) -> None:
+    """It belongs to the arch at rest."""
+    figure = page.locator(".motion").first
+    shown = "e => Number(getComputedStyle(e).opacity)"
+    statics, slider = figure.locator(".statics"), figure.locator("input")
+    assert statics.locator("polyline").count() > 0
+    assert statics.evaluate(shown) == 0
+    for share, opacity in (("0", 1), ("0.05", 0.5), ("0.2", 0), ("1", 0)):
+        slider.fill(share)
+        assert statics.evaluate(shown) == pytest.approx(opacity)

@@ -158,7 +158,7 @@ def picture_of_leaning(out: Path, kind: str, arch: Arch, asked: Scenario) -> Non
     from blocksim.view.film import Film
 
     with named_options(), progress() as report:
-        held = hold(arch, asked.mu, SPATIAL, lean=asked.lean, progress=report)
+        held = hold(arch.problem(asked.mu, asked.lean), SPATIAL, progress=report)
         seen = conclude(held, moving=True, progress=report)
     run = seen.motion.recording if seen.motion else held.release(STILL).recording
     falls = seen.verdict is Verdict.COLLAPSES

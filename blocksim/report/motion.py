@@ -87,6 +87,8 @@ class Drawing:
         How many times larger than recorded the motion is drawn; None where none is.
     seconds : float
         Length of the motion, in seconds of the arch.
+    eta, radius : float
+        Of the arch; its radius in metres.
     joints : tuple of (float, str)
         Angle [deg] and state of each joint that takes part.
     """
@@ -102,6 +104,8 @@ class Drawing:
     frames: str
     enlarged: float | None
     seconds: float
+    eta: float
+    radius: float
     joints: tuple[tuple[float, str], ...]
 
 
@@ -150,6 +154,8 @@ def drawing(recording: Recording, gravity: float) -> Drawing:
         frames=json.dumps(frames, separators=(",", ":")),
         enlarged=enlarged,
         seconds=float(recording.seconds(gravity)[-1]),
+        eta=recording.arch.eta,
+        radius=recording.arch.radius,
         joints=tuple(
             (math.degrees(joint.angle), joint.state.value)
             for joint in states

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from blocksim.arch.modes import Mode
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import ratio
+from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import Drawing, drawing
 from blocksim.studies.validate import (
     ASIDE,
@@ -39,10 +39,11 @@ STATES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """A row as the page shows it."""
+    """A row as the page shows it; `thickest` where nothing thinner than eta = 2 was tried."""
 
     row: Row
     anchor: str
+    thickest: bool
     found: str
     bracket: str
     error: str
@@ -101,6 +102,7 @@ def report_page(
     }
     template = environment.get_template("report.html")
     engines = list(dict.fromkeys(row.engine for row in rows))
+    drawn_map, dark = inline_map(map_svg, {n: name for name, n in numbered(rows).items()})
     return template.render(
         cases=_cases(rows),
         unasked=unasked,
@@ -110,7 +112,8 @@ def report_page(
         apart=disagreements(rows) if len(engines) > 1 else None,
         sentence=summary(rows),
         numbers=numbered(rows),
-        map_data=base64.b64encode(map_svg).decode(),
+        map=drawn_map,
+        map_colours=dark,
         machine=machine,
         made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         seconds=sum(row.wall_s for row in rows),
@@ -175,6 +178,8 @@ def _result(row: Row, anchor: str) -> Result:
     return Result(
         row=row,
         anchor=anchor,
+        # Nothing stands: there is no least thickness to be aside of.
+        thickest=low is not None and high is None,
         found=bracket if row.verdict else "none" if nothing else ratio(fmean(ends)),
         bracket=bracket,
         error="-" if row.error is None else _percent(row.error, "+.3f"),

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import blocksim
 from blocksim.common.files import AnyPath, json_text, make_folder, write_whole
+from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.studies.validate import (
     ASIDE,
@@ -98,7 +99,7 @@ def write_results(
     figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
     drawn = pictures("map", figure)
     contents = {
-        "report.html": report_page(rows, drawn["map.svg"], machine(), unasked).encode(),
+        PAGE: report_page(rows, drawn["map.svg"], machine(), unasked).encode(),
         "validate.json": as_json(document),
         "validate.csv": sheet.getvalue().encode(),
     }
@@ -147,6 +148,7 @@ def _points(rows: Sequence[Row]) -> list[MapPoint]:
                 miss=bool(row.miss),
                 note=row.scenario,
                 none_stands=row.eta_high is None,
+                link=f"{PAGE}#row-{numbers[row.scenario]}",
             )
         )
     return points

@@ -117,6 +117,8 @@ class MapPoint:
         Drawn as an outline, around the point of another engine; without a label.
     none_stands : bool
         Whether no thickness stands: then it is drawn at the upper frame, with an arrow.
+    link : str
+        Where a click on it leads, in SVG; nowhere if empty.
     """
 
     mu: float
@@ -128,6 +130,7 @@ class MapPoint:
     engine: str = ""
     outline: bool = False
     none_stands: bool = False
+    link: str = ""
 
 
 def map_figure(
@@ -287,6 +290,7 @@ def _draw_points(
             mew=1.8 * size if point.miss else 0.8,
             zorder=5,
             clip_on=False,
+            url=point.link or None,
         )
         if point.miss:
             axes.plot(x, y, "o", ms=16 * size, mfc="none", mec=MISS, mew=1.4 * size, zorder=5,
@@ -309,6 +313,7 @@ def _draw_points(
             fontsize=8,
             zorder=6,
             annotation_clip=False,
+            url=point.link or None,
         )
 
 

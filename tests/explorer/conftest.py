@@ -21,6 +21,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     rows = [
         {**row, "scenario": "semicircle"},
         {**row, "scenario": "unbounded", "mu": "inf", "mode_observed": None, "miss": "mode"},
+        {**row, "scenario": "much", "mu": 10.0, "eta_low": 0.85, "eta_high": 0.86},
         {**row, "scenario": "sector", "weight": "sector", "half_angle_deg": 120.0,
          "eta_low": 0.3, "eta_high": 0.31, "mu": 1.5},
     ]  # fmt: skip

@@ -7,12 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from blocksim.arch import theory
-from blocksim.arch.circular import centroid_factor
+from blocksim.arch import limit, theory
+from blocksim.arch.circular import Arch, centroid_factor
 from blocksim.arch.limit.mechanism import least_thickness_by_program
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.arch.theory.map import at_points, divide_friction
+from blocksim.limit import statics
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
@@ -152,6 +153,102 @@ def test_share_against_limit_analysis(page: playwright.Page) -> None:
             assert (built is not None and built <= share * ratio) == stands
 
 
+# --- voussoirs as built --------------------------------------------------------------------
+
+BUILT = """((n) => ({ ...built.leastThickness(a, m, n, weight),
+  ...Object.fromEntries([["share", built.equilibrium(a, m, 0.4, n, weight)?.share ?? null]]),
+  grip: built.leastFriction(a, 0.4, n, weight) }))(e)"""
+
+
+def as_built(seed: int) -> np.ndarray:
+    """Half-angle, friction and number of voussoirs; flatter, Python's differences cancel."""
+    random = np.random.default_rng(seed)
+    alpha, mu, _ = sample(seed)
+    drawn = np.column_stack([0.3 + 0.9 * alpha, mu, random.integers(4, 60, COUNT)])[:300]
+    return np.concatenate([drawn, [[2.53, 1.62, 41], [2.5, 1.6, 30]]])
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_voussoirs_as_built_are_those_of_limit_analysis(
+    page: playwright.Page, weight: str
+) -> None:
+    rows = as_built(7)
+    found = evaluate(page, BUILT, rows, weight)
+    seen = set()
+    for (half_angle, friction, count), row in zip(rows.tolist(), found, strict=True):
+        exact = limit.least_thickness(half_angle, friction, int(count), weight)
+        assert row["mode"] == exact.mode
+        assert (row["eta"] is None) == (exact.eta is None)
+        seen.add(row["mode"])
+        if exact.eta is not None:
+            assert row["eta"] == pytest.approx(exact.eta, rel=1e-12)
+            assert row["thrust"] == pytest.approx(exact.thrust, rel=1e-9, abs=1e-9)
+            inner = [j["angle"] for j in row["joints"] if j["kind"] == "intrados"]
+            if row["mode"] not in {"r", "rs"}:
+                assert inner == pytest.approx(list(exact.hinges_intrados))
+        arch = Arch(half_angle=half_angle, eta=0.4, voussoirs=int(count), weight=weight)
+        slack = statics.slack(arch, friction)
+        assert (row["share"] is None) == math.isinf(slack)
+        if row["share"] is not None:
+            assert 1 - row["share"] == pytest.approx(slack, abs=1e-11 * row["share"])
+        if math.isfinite(row["grip"]):
+            assert statics.stands(arch, row["grip"] * (1 + 1e-9))
+            assert not statics.stands(arch, row["grip"] * (1 - 1e-9))
+        else:
+            assert not statics.stands(arch, 1e6)
+    assert seen >= {"rrr", "ss", "srr", "rrs", "rs", "r"}
+
+
+FALL = """((n) => {
+  const critical = built.leastThickness(a, m, n, weight);
+  if (critical.eta === null || !critical.joints.length) return null;
+  const { joints, eta } = critical;
+  const [pieces, small] = [mechanism.pieces(joints), mechanism.pose(joints, eta, 1e-6)];
+  return { ...critical, pieces, small };
+})(e)"""
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_mechanisms_of_voussoirs_balance_weight_and_friction(
+    page: playwright.Page, weight: str
+) -> None:
+    """Odd numbers, too, with a keystone that goes straight down."""
+    rows = as_built(8)
+    seen = set()
+    for row, friction in zip(evaluate(page, FALL, rows, weight), rows[:, 1], strict=True):
+        if row is None or row["mode"] == "r":
+            continue
+        seen.add(row["mode"])
+        assert row["small"]["closed"]
+        # The last piece reaches the crown: symmetry asks that it does not lean out.
+        if row["pieces"][-1][1] == 0 and row["joints"][-1]["angle"] > 0:
+            last = row["small"]["motions"][-1]
+            assert abs(last["turn"]) < 1e-15
+            assert abs(last["x"]) < 1e-11
+        power, drop = spent(row, friction, weight)
+        assert abs(power) < 2e-5 * drop
+    assert seen >= {"rrr", "srr", "rrs", "rs"}
+
+
+def spent(row: dict, friction: float, weight: str) -> tuple[float, float]:
+    """Power of the weight less that of friction, and the farthest fall."""
+    lever, power, drop = centroid_factor(row["eta"], weight), 0.0, 0.0
+    for (lower, upper), motion in zip(row["pieces"], row["small"]["motions"], strict=True):
+        nodes, weights = np.polynomial.legendre.leggauss(20)
+        angles = (lower + upper) / 2 + (lower - upper) / 2 * nodes
+        points = lever * np.column_stack([np.sin(angles), np.cos(angles)])
+        fall = points[:, 1] - moved(motion, points)[:, 1]
+        power += (lower - upper) / 2 * weights @ fall
+        drop = max(drop, float(np.abs(fall).max()))
+    active = [joint for joint in row["joints"] if joint["angle"] > 0]
+    for joint, amount in zip(active, row["small"]["amounts"], strict=True):
+        if joint["kind"] in {"in", "out"}:
+            angle, thrust = joint["angle"], row["thrust"]
+            force = thrust * math.cos(angle) + angle * math.sin(angle)
+            power -= friction * force * amount
+    return power, drop
+
+
 # --- mechanisms ----------------------------------------------------------------------------
 
 MOVE = """(() => {
@@ -185,20 +282,7 @@ def test_mechanisms_balance_weight_and_friction(page: playwright.Page, weight: s
         assert min(row["small"]["amounts"]) >= 0
         assert min(row["large"]["amounts"]) >= 0
         assert row["large"]["closed"]
-        lever, power, drop = centroid_factor(row["eta"], weight), 0.0, 0.0
-        for (lower, upper), motion in zip(row["pieces"], row["small"]["motions"], strict=True):
-            nodes, weights = np.polynomial.legendre.leggauss(20)
-            angles = (lower + upper) / 2 + (lower - upper) / 2 * nodes
-            points = lever * np.column_stack([np.sin(angles), np.cos(angles)])
-            fall = points[:, 1] - moved(motion, points)[:, 1]
-            power += (lower - upper) / 2 * weights @ fall
-            drop = max(drop, float(np.abs(fall).max()))
-        active = [joint for joint in row["joints"] if joint["angle"] > 0]
-        for joint, amount in zip(active, row["small"]["amounts"], strict=True):
-            if joint["kind"] in {"in", "out"}:
-                angle, thrust = joint["angle"], row["thrust"]
-                force = thrust * math.cos(angle) + angle * math.sin(angle)
-                power -= friction * force * amount
+        power, drop = spent(row, friction, weight)
         assert abs(power) < 2e-5 * drop
     assert seen >= {"rrr", "srr", "rrs", "rs", "r"}
 

@@ -1,6 +1,16 @@
 "use strict";
 // Each drawing holds poses of its blocks at even shares of the motion.
 const SECONDS = 3;
+const FADED = 0.1; // share of the motion at which the line of thrust is gone
+
+/** Say of what is wider than the window that it scrolls. */
+const tellSideways = () => {
+  for (const wide of document.querySelectorAll(".wide")) {
+    wide.previousElementSibling.hidden = wide.scrollWidth <= wide.clientWidth;
+  }
+};
+tellSideways();
+addEventListener("resize", tellSideways);
 
 for (const figure of document.querySelectorAll(".motion")) {
   const slider = figure.querySelector("input");
@@ -10,7 +20,11 @@ for (const figure of document.querySelectorAll(".motion")) {
   const pieces = [...figure.querySelectorAll(".piece")];
   let started = null;
 
+  const statics = figure.querySelector(".statics");
+
   const show = (share) => {
+    // The line of thrust is that of the arch at rest.
+    statics.style.opacity = Math.max(0, 1 - share / FADED);
     const place = share * (frames.length - 1);
     const index = Math.min(Math.floor(place), frames.length - 2);
     const rest = place - index;

@@ -10,6 +10,7 @@ const archPicture = (() => {
   const OUTSIDE = 2.4; // how far out of the arch, in half thicknesses, lines are drawn
   const FORCELESS = 1e-9;
   const SAMPLES = 240;
+  const SLIVER = 1e-9; // angle that no voussoir is thinner than
 
   const at = (angle, radius) => [SCALE * radius * Math.sin(angle), -SCALE * radius * Math.cos(angle)];
 
@@ -21,8 +22,9 @@ const archPicture = (() => {
 
   /** Draw an arch. Returns a function that moves its pieces, by a share of `amount` at the
       springing, 0 for one that stands. */
-  function draw(picture, { state, balance, joints, amount, reach }) {
+  function draw(picture, { state, voussoirs, balance, joints, amount, reach }) {
     const { halfAngle, eta, mu, weight } = state;
+    const faces = amount ? mechanism.pieces(joints) : [[halfAngle, 0]];
     const [inner, outer] = [1 - eta / 2, 1 + eta / 2];
     picture.replaceChildren();
     const pixel = fit(picture, halfAngle, inner, outer, reach);
@@ -33,12 +35,12 @@ const archPicture = (() => {
       add(half, "path", { d: abutment, class: "abutment" });
     }
     if (amount) add(picture, "path", { d: ring(halfAngle, -halfAngle, inner, outer), class: "ghost" });
-    const groups = halves.map((half) =>
-      mechanism.pieces(joints).map((faces) => stones(add(half, "g"), faces, halfAngle, inner, outer)));
+    const groups = halves.map((half, side) => faces.map((piece) =>
+      stones(add(half, "g"), voussoirs ? cut(piece, halfAngle, voussoirs, side) : forTheEye(piece, halfAngle), inner, outer)));
     const lines = add(picture, "g");
-    forces(lines, { halfAngle, eta, mu, weight, balance });
+    forces(lines, { halfAngle, eta, mu, weight, voussoirs, balance });
     const marks = halves.map((_, side) =>
-      mechanism.pieces(joints).map(() => add(picture, "g", { class: "marks", "data-side": side })));
+      faces.map(() => add(picture, "g", { class: "marks", "data-side": side })));
     const still = halves.map((_, side) => add(picture, "g", { transform: `scale(${side ? -1 : 1} 1)` }));
     if (amount) {
       joints.forEach((joint, i) => {
@@ -51,7 +53,7 @@ const archPicture = (() => {
     return (share) => {
       // The lines belong to the arch at rest.
       lines.setAttribute("opacity", amount ? 1 - 0.6 * share : 1);
-      const { motions } = mechanism.pose(joints, eta, share * amount);
+      const { motions } = amount ? mechanism.pose(joints, eta, share * amount) : { motions: [] };
       motions.forEach((motion, i) => {
         const [c, s] = [Math.cos(motion.turn), Math.sin(motion.turn)];
         const matrix = `matrix(${c} ${s} ${-s} ${c} ${SCALE * motion.x} ${-SCALE * motion.y})`;
@@ -75,11 +77,29 @@ const archPicture = (() => {
   }
 
   /** Voussoirs for the eye: the theory has a joint at every angle. */
-  function stones(group, [lower, upper], halfAngle, inner, outer) {
+  function forTheEye([lower, upper], halfAngle) {
     const count = Math.max(1, Math.round((lower - upper) / SPACING));
-    for (let i = 0; i < count; i++) {
+    return Array.from({ length: count }, (_, i) => {
       const [from, to] = [lower - ((lower - upper) * i) / count, lower - ((lower - upper) * (i + 1)) / count];
-      const shade = Math.round((from / halfAngle) * 37) % 3;
+      return { from, to, shade: Math.round((from / halfAngle) * 37) % 3 };
+    });
+  }
+
+  /** Voussoirs as built; the keystone of an odd number is whole, on the right half. */
+  function cut([lower, upper], halfAngle, voussoirs, side) {
+    const joints = theory.jointAngles(halfAngle, voussoirs).reverse();
+    if (voussoirs % 2) joints.push(-joints.at(-1));
+    const found = [];
+    for (let i = 0; i + 1 < joints.length; i++) {
+      const [from, to] = [joints[i], joints[i + 1]];
+      const within = from <= lower + SLIVER && (from + to) / 2 >= upper - SLIVER;
+      if (within && !(side && to < 0)) found.push({ from, to, shade: i % 3 });
+    }
+    return found;
+  }
+
+  function stones(group, voussoirs, inner, outer) {
+    for (const { from, to, shade } of voussoirs) {
       add(group, "path", { d: ring(from, to, inner, outer), class: `stone shade-${shade}` });
     }
     return group;
@@ -97,14 +117,18 @@ const archPicture = (() => {
     }
   }
 
-  function forces(lines, { halfAngle, eta, mu, weight, balance }) {
+  /** Lines of thrust and friction: anywhere, or from joint to joint of voussoirs as built. */
+  function forces(lines, { halfAngle, eta, mu, weight, voussoirs, balance }) {
     if (!balance) return;
     const { thrust, crownMoment } = balance;
     const level = theory.levelOf(eta, weight);
+    const half = voussoirs
+      ? theory.jointAngles(halfAngle, voussoirs)
+      : Array.from({ length: SAMPLES + 1 }, (_, i) => (halfAngle * i) / SAMPLES);
+    const angles = [...half.map((angle) => -angle).reverse(), ...(half[0] === 0 ? half.slice(1) : half)];
     const shown = (line) => {
       const points = [];
-      for (let i = -SAMPLES; i <= SAMPLES; i++) {
-        const angle = (halfAngle * i) / SAMPLES;
+      for (const angle of angles) {
         // An overturning arch has no thrust: at its crown the lines have no place.
         if (theory.normalForce(Math.abs(angle), thrust) < FORCELESS) continue;
         const place = Math.min(OUTSIDE, Math.max(-OUTSIDE, line(Math.abs(angle))));

@@ -14,9 +14,9 @@ const mapPicture = (() => {
   };
 
   /** Places on a picture of this width, and what lies there. */
-  function frameOf(width, view) {
+  function frameOf(width, view, tallest) {
     const narrow = width < 480;
-    const height = Math.round(Math.min(width * (narrow ? 1.05 : 0.8), 560));
+    const height = Math.round(Math.min(width * (narrow ? 1.05 : 0.8), tallest));
     const [left, top, bottom, gap, strip, right] = [narrow ? 48 : 52, 10, 46, 8, narrow ? 22 : 32, 36];
     const across = width - left - gap - strip - right;
     const up = height - top - bottom;
@@ -160,20 +160,28 @@ const mapPicture = (() => {
       const [cx, cy] = [x(row.place), y(row.eta)];
       if (row.miss) add(layer.over, "circle", { cx, cy, r: 9, class: "miss" });
       marker(layer.over, row.mode ? modes[row.mode] : unnamed, cx, cy, 4.5);
+      if (row.beyond) add(layer.over, "path", { d: `M${cx + 7} ${cy - 4}l5 4l-5 4`, class: "beyond" });
     }
-    // What is out of view is shown at its edge.
     const within = (least, most, value) => Math.min(most, Math.max(least, value));
     const cx = state.mu === Infinity ? x(state.mu) : within(left, left + across, x(state.mu));
     const level = (eta) => within(top, top + up, y(eta));
     const cy = level(state.eta);
-    if (critical.eta !== null) {
-      add(layer.over, "path", { d: `M${cx} ${cy}V${level(critical.eta)}`, class: "reserve" });
-    }
     const handle = add(layer.over, "g", { class: `handle ${verdict}` });
+    if (!frame.shows(state.mu, state.eta)) {
+      // Out of view: an arrow at the edge, towards it.
+      const beyond = (value, [least, most]) => (value < least ? -1 : value > most && value < Infinity ? 1 : 0);
+      const towards = Math.atan2(-beyond(state.eta, frame.eta) || 0, beyond(state.mu, frame.mu)) * (180 / Math.PI);
+      add(handle, "path", { d: "M9 0L-7 -8V8Z", transform: `translate(${cx} ${cy}) rotate(${towards})`, class: "off" });
+      return;
+    }
+    if (critical.eta !== null) {
+      const reserve = add(layer.over, "path", { d: `M${cx} ${cy}V${level(critical.eta)}`, class: "reserve" });
+      layer.over.insertBefore(reserve, handle);
+    }
     for (const [r, name] of [[20, "grip"], [8, "halo"], [8, "ring"], [2, "dot"]]) {
       add(handle, "circle", { cx, cy, r, class: name });
     }
   }
 
-  return { frameOf, drawBase, drawPoint };
+  return { VIEWS, frameOf, drawBase, drawPoint };
 })();

@@ -1,5 +1,5 @@
 "use strict";
-/* Collapse mechanisms of the continuous arch as finite motions of rigid pieces.
+/* Collapse mechanisms as finite motions of rigid pieces: joints anywhere, or those of voussoirs.
 
    Only the right half is moved, the left one mirrors it. Hinges turn about the edge that stays
    closed, sliding joints slide as Coulomb friction has it, without opening. */
@@ -61,19 +61,37 @@ const mechanism = (() => {
     return motions;
   }
 
+  const turnOf = ({ kind }) => (kind === "extrados" ? 1 : kind === "intrados" ? -1 : 0);
+
+  /** Which joint turns back what the others turn, where the crown has no hinge; -1 where none. */
+  function turningBack(free) {
+    const against = free.findIndex((joint, i) => i > 0 && turnOf(joint) * turnOf(free[0]) < 0);
+    return against > 0 ? against : free.findLastIndex((joint, i) => i > 0 && turnOf(joint) !== 0);
+  }
+
   /** Move the mechanism by an amount at the springing (a turn, or a slip over r).
 
       Every other amount follows from symmetry: the crown stays on the axis, and where nothing
       turns there it does not turn. `closed` is false where so large a motion is not possible. */
   function pose(joints, eta, amount) {
     const atCrown = joints.find((joint) => joint.angle === 0);
-    const free = joints.filter((joint) => joint.angle > 0);
+    const free = joints.filter((joint) => joint.angle > 0 && joint.kind !== "parts");
     if (free.length === 1) {
-      return { closed: true, amounts: [amount], motions: chain(free, [amount], eta) };
+      const motions = chain(free, [amount], eta);
+      const last = joints.at(-1);
+      // Between halves that part, a keystone goes down with their faces.
+      if (last.angle > 0) motions.push({ ...IDENTITY, y: move(motions[0], Math.sin(last.angle), Math.cos(last.angle))[1] - Math.cos(last.angle) });
+      return { closed: true, amounts: [amount], motions };
     }
-    const unknown = free.findIndex((joint, i) => i > 0 && (atCrown || joint.kind === "in"));
+    const back = atCrown ? -1 : turningBack(free);
+    const unknown = free.findIndex((joint, i) => i > 0 && i !== back);
     const radius = atCrown && atCrown.kind === "intrados" ? 1 - eta / 2 : 1 + eta / 2;
-    const amountsAt = (first, value) => free.map((_, i) => (i === unknown ? value : first));
+    const amountsAt = (first, value) => {
+      const amounts = free.map((_, i) => (i === 0 ? first : i === unknown ? value : 0));
+      const turn = free.reduce((sum, joint, i) => sum + turnOf(joint) * amounts[i], 0);
+      if (back > 0) amounts[back] = -turnOf(free[back]) * turn;
+      return amounts;
+    };
     const aside = (first, value) => move(chain(free, amountsAt(first, value), eta).at(-1), 0, radius)[0];
     // At small amounts they are proportional; from there on by the secant method.
     const ratio = -aside(STEP, 0) / (aside(STEP, STEP) - aside(STEP, 0));
@@ -85,7 +103,7 @@ const mechanism = (() => {
       asideNow = aside(amount, value);
     }
     const amounts = amountsAt(amount, value);
-    const closed = Math.abs(asideNow) < CLOSED && value >= 0 && value < 3 * ratio * amount + CLOSED;
+    const closed = Math.abs(asideNow) < CLOSED && Math.min(...amounts) >= 0 && value < 3 * ratio * amount + CLOSED;
     return { closed, amounts, motions: chain(free, amounts, eta) };
   }
 

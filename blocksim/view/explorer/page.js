@@ -10,14 +10,17 @@
   const MOVED = 0.16; // largest displacement drawn, over r
   const FALLING = 2200, RESTING = 700, RETURNING = 500; // the motion shown, again and again [ms]
   const LINE_POINTS = 120;
+  const TALLEST = 560, LOW = 520; // of the map, and a window called low [pixels]
   const STRIDES = 200; // of an arrow key across the map
   const NEAR = 12; // pixels within which a result is meant
-  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2] }; // of arches
+  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 1000] }; // of arches
   const ON_MAP = { mu: [0.01, data.largestMu], eta: [1e-4, 2] };
 
   const find = (id) => document.getElementById(id);
-  const state = { halfAngle: 120 * DEGREE, mu: 1.2, eta: 0.3, weight: "centreline" };
-  let frame, layer, drawnWeight, seen, setPose;
+  const FIRST = { halfAngle: null, mu: 1.2, eta: 0.3, weight: "centreline", voussoirs: 27, asBuilt: false, view: "whole" };
+  const state = { ...FIRST };
+  let lastFriction = data.largestMu; // that was not infinite
+  let frame, layer, drawn, seen, setPose;
   let [amount, drawing] = [0, false];
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   let playing = !still.matches;
@@ -25,24 +28,34 @@
 
   /* What is known of the arch looked at. */
 
-  function assess({ halfAngle, mu, eta, weight }) {
-    const critical = theory.leastThickness(halfAngle, mu, weight);
-    const balance = theory.equilibrium(halfAngle, mu, eta, weight);
+  /** Of the continuous arch, or of its voussoirs as built. */
+  function assess({ halfAngle, mu, eta, weight, voussoirs }, asBuilt) {
+    const critical = asBuilt
+      ? built.leastThickness(halfAngle, mu, voussoirs, weight)
+      : theory.leastThickness(halfAngle, mu, weight);
+    const balance = asBuilt
+      ? built.equilibrium(halfAngle, mu, eta, voussoirs, weight)
+      : theory.equilibrium(halfAngle, mu, eta, weight);
     const verge = balance !== null && Math.abs(balance.share - 1) < ON_THE_VERGE;
     const stands = verge || (critical.eta !== null && eta >= critical.eta);
     // Thick enough and yet on the verge: it is friction that has nothing to spare.
     const slides = verge && critical.eta !== null && eta > critical.eta * (1 + 1e-6);
     const mode = slides ? "ss" : critical.mode;
-    const betaS = slides ? theory.innerSliding(mu).betaS : critical.betaS;
-    const joints = mechanism.activeJoints(mode, halfAngle, critical.betaR ?? 0, betaS ?? 0);
-    const friction = theory.leastFriction(halfAngle, eta, weight);
-    return { critical, balance, verge, stands, slides, mode, betaS, joints, friction };
+    const betaS = slides && !asBuilt ? theory.innerSliding(mu).betaS : critical.betaS;
+    let joints = slides ? balance.joints : critical.joints;
+    if (!asBuilt) joints = mechanism.activeJoints(mode, halfAngle, critical.betaR ?? 0, betaS ?? 0);
+    const friction = asBuilt
+      ? built.leastFriction(halfAngle, eta, voussoirs, weight)
+      : theory.leastFriction(halfAngle, eta, weight);
+    return { voussoirs: asBuilt ? voussoirs : null, critical, balance, verge, stands, slides, mode, betaS, joints, friction };
   }
 
   /* Showing it. */
 
   function update(change) {
     Object.assign(state, change);
+    if (state.mu < Infinity) lastFriction = state.mu;
+    address.write(state);
     if (drawing) return;
     drawing = true;
     requestAnimationFrame(() => {
@@ -52,26 +65,32 @@
   }
 
   function show() {
-    seen = assess(state);
+    const both = { continuous: assess(state, false), built: assess(state, true) };
+    seen = state.asBuilt ? both.built : both.continuous;
     const verdict = seen.stands ? "stands" : "collapses";
-    const moves = !seen.stands || seen.verge;
+    const moves = (!seen.stands || seen.verge) && seen.joints.length > 0;
     put("verdict", words.headline(state, seen));
     find("verdict").className = `verdict ${verdict}`;
     put("because", words.because(state, seen));
-    put("joints", `${moves ? "As it falls" : "As it would fall at its least thickness"}: ${words.ofJoints(state, seen)}.`);
-    showFigures();
+    put("joints", words.ofJoints(state, seen));
+    const found = results().filter(isHere).map(words.ofResult);
+    put("simulated", found.join(" "));
+    find("simulated").hidden = !found.length;
+    for (const [arch, known] of Object.entries(both)) showFigures(arch, known);
+    if (drawn.weight !== state.weight || drawn.view !== state.view) drawMap();
     showControls();
-    if (drawnWeight !== state.weight) drawMap();
     drawMapPoint(verdict);
     const reach = MOVED * Math.min(1, 1.2 * Math.sin(Math.min(state.halfAngle, Math.PI / 2)));
     amount = moves ? mechanism.amountFor(seen.joints, state.eta, reach) : 0;
     setPose = archPicture.draw(find("arch"), { state, ...seen, amount, reach });
     setPose(moved);
     find("play").disabled = !moves;
-    find("arch").setAttribute("aria-label",
-      `Arch of half-angle ${degrees(state.halfAngle)}, friction ${number(state.mu)}, ` +
-      `thickness ${number(state.eta)}. ${words.headline(state, seen)}. ${words.ofJoints(state, seen)}.`);
+    find("arch").setAttribute("aria-label", `${parameters()}. ${words.headline(state, seen)}. ${words.ofJoints(state, seen)}`);
   }
+
+  const parameters = () =>
+    `α = ${degrees(state.halfAngle)}, μ = ${number(state.mu)}, η = ${number(state.eta)}, ` +
+    `${words.which(seen.voussoirs)}, weight ${state.weight === "sector" ? "of true sectors" : "along the centreline"}`;
 
   function put(id, text) {
     const line = text.replace(/\s+/g, " ");
@@ -79,15 +98,16 @@
     if (find(id).textContent !== line) find(id).textContent = line;
   }
 
-  function showFigures() {
-    const { critical, friction, mode } = seen;
-    const uses = (kind) => seen.joints.some((joint) => kind.includes(joint.kind));
-    put("figure-eta", number(critical.eta, 6));
-    put("figure-mu", number(friction === Infinity ? null : friction, 6));
-    put("figure-h", number(critical.thrust, 6));
-    put("figure-r", degrees(uses(["intrados"]) ? critical.betaR : null));
-    put("figure-s", degrees(uses(["in"]) ? seen.betaS : null));
-    find("figure-mode").replaceChildren(modeName(mode), ` ${data.modes[mode].description}`);
+  function showFigures(arch, known) {
+    const { critical, friction, joints, betaS, mode } = known;
+    const uses = (kind) => joints.some((joint) => joint.kind === kind);
+    put(`${arch}-verdict`, words.shortVerdict(state, known));
+    put(`${arch}-eta`, critical.eta === 0 ? "any" : critical.eta === null ? "none up to 2" : number(critical.eta, 6));
+    put(`${arch}-mu`, number(friction === Infinity ? null : friction, 6));
+    put(`${arch}-h`, number(critical.eta === null ? null : critical.thrust, 6));
+    put(`${arch}-r`, degrees(uses("intrados") ? critical.betaR : null));
+    put(`${arch}-s`, degrees(uses("in") ? betaS : null));
+    find(`${arch}-mode`).replaceChildren(mode === null ? "–" : modeName(mode));
   }
 
   function modeName(mode) {
@@ -109,11 +129,29 @@
       if (document.activeElement !== box) box.value = value === Infinity ? "" : +finite.toPrecision(5);
     }
     find("unbounded").checked = state.mu === Infinity;
+    find(state.asBuilt ? "built" : "continuous").checked = true;
+    if (document.activeElement !== find("voussoirs")) find("voussoirs").value = state.voussoirs;
+    find("view").value = state.view;
     find("weight").value = state.weight;
-    find("least").disabled = seen.critical.eta === null;
+    find("least").disabled = !seen.critical.eta;
+    const off = !frame.shows(state.mu, state.eta);
+    find("off-view").hidden = !off;
+    if (off) {
+      find("off-view").firstElementChild.textContent =
+        `The arch shown, at μ = ${number(state.mu)} and η = ${number(state.eta)}, lies outside ` +
+        `${state.view === "whole" ? "the map" : "this part of the map"}: the arrow points to it.`;
+      find("whole").hidden = state.view === "whole";
+    }
   }
 
   const results = () => data.results.filter((row) => row.weight === state.weight);
+
+  /** Whether the arch looked at is that of a result. */
+  function isHere(row) {
+    const near = (one, other) => one === other || Math.abs(one - other) < 1e-9 * Math.abs(other);
+    return state.asBuilt && row.voussoirs === state.voussoirs && near(row.mu ?? Infinity, state.mu) &&
+      near(row.eta, state.eta) && near(row.alpha * DEGREE, state.halfAngle);
+  }
 
   function drawMapPoint(verdict) {
     const { halfAngle, weight } = state;
@@ -133,8 +171,10 @@
 
   function drawMap() {
     const box = find("map-box");
-    frame = mapPicture.frameOf(box.clientWidth, find("view").value);
-    drawnWeight = state.weight;
+    // Where the window is low, the whole map is to be seen at once.
+    const tallest = innerHeight < LOW ? Math.max(220, innerHeight - 60) : TALLEST;
+    frame = mapPicture.frameOf(box.clientWidth, state.view, tallest);
+    drawn = { weight: state.weight, view: state.view };
     layer = mapPicture.drawBase(find("map"), frame, data.maps[state.weight], data.modes, results());
   }
 
@@ -182,20 +222,35 @@
     update({ mu, eta, halfAngle: theory.atPoint(eta, mu, state.weight).halfAngle });
   }
 
-  const resultNear = ({ x, y }) =>
-    results().find((row) => frame.shows(row.place, row.eta) && Math.hypot(frame.x(row.place) - x, frame.y(row.eta) - y) < NEAR);
+  /** Results under the pointer, the nearest first. */
+  function resultsNear({ x, y }) {
+    const far = (row) => Math.hypot(frame.x(row.place) - x, frame.y(row.eta) - y);
+    return results().filter((row) => frame.shows(row.place, row.eta) && far(row) < NEAR).sort((a, b) => far(a) - far(b));
+  }
 
-  const chooseResult = (row) =>
-    update({ mu: row.mu ?? Infinity, eta: row.eta, halfAngle: row.alpha * DEGREE, weight: row.weight });
+  const chooseResult = (row) => update({
+    mu: row.mu ?? Infinity, eta: row.eta, halfAngle: row.alpha * DEGREE, weight: row.weight,
+    voussoirs: row.voussoirs, asBuilt: true,
+  });
+
+  /** Choose a result from the table, and bring it into view. */
+  function showResult(row) {
+    if (!frame.shows(row.place, row.eta)) update({ view: "whole" });
+    chooseResult(row);
+    find("map-box").scrollIntoView({ block: "center", behavior: still.matches ? "auto" : "smooth" });
+  }
 
   function tell(event) {
     const point = pointAt(event);
     const tip = find("tip");
     tip.hidden = !point.inside;
     if (!point.inside) return;
-    const row = resultNear(point);
-    if (row) tip.replaceChildren(row.scenario, document.createElement("br"), row.said);
-    else {
+    const rows = resultsNear(point);
+    if (rows.length) {
+      tip.replaceChildren(...rows.flatMap((row, i) => [
+        ...(i ? [document.createElement("br")] : []), `${row.scenario}, ${row.engine}, n = ${row.voussoirs}`, document.createElement("br"),
+        `${row.found}${row.beyond ? `; beyond the map, at μ = ${number(row.mu)}` : ""}`]));
+    } else {
       const { halfAngle, modes, critical } = theory.atPoint(point.eta, point.mu, state.weight);
       const names = modes.flatMap((mode, i) => [i ? ", " : "", modeName(mode)]);
       tip.replaceChildren(
@@ -218,22 +273,31 @@
     };
     map.addEventListener("pointerdown", (event) => {
       const point = pointAt(event);
-      // A finger scrolls the page unless it takes hold of the point; taps are clicks.
-      const scrolls = event.pointerType === "touch" && !event.target.closest(".handle");
-      dragging = dragged = !scrolls && event.button === 0 && point.inside && !resultNear(point);
+      dragging = dragged = event.button === 0 && point.inside && !resultsNear(point).length;
       if (!dragging) return;
       map.setPointerCapture(event.pointerId);
       pick(event);
     });
+    // On the map a finger moves the point, up and down, too; beside it, it scrolls the page. CSS cannot
+    // say that of a part of a picture.
+    map.addEventListener("touchstart", (event) => {
+      const point = pointAt(event.touches[0]);
+      if (event.touches.length === 1 && point.inside && !resultsNear(point).length) event.preventDefault();
+    }, { passive: false });
     map.addEventListener("pointermove", (event) => {
       if (dragging) pick(event);
-      if (event.pointerType !== "touch") tell(event);
+      if (dragging || event.pointerType !== "touch") tell(event);
     });
-    for (const end of ["pointerup", "pointercancel"]) map.addEventListener(end, () => (dragging = false));
+    for (const end of ["pointerup", "pointercancel"]) {
+      map.addEventListener(end, (event) => {
+        dragging = false;
+        if (event.pointerType === "touch") find("tip").hidden = true;
+      });
+    }
     map.addEventListener("pointerleave", () => (find("tip").hidden = true));
     map.addEventListener("click", (event) => {
       const point = pointAt(event);
-      const row = resultNear(point);
+      const [row] = resultsNear(point);
       if (dragged || !point.inside) return;
       if (row) chooseResult(row);
       else pick(event);
@@ -254,6 +318,14 @@
     const set = {
       alpha: (value) => ({ halfAngle: value * DEGREE }), mu: (mu) => ({ mu }), eta: (eta) => ({ eta }),
     };
+    const voussoirs = find("voussoirs");
+    [voussoirs.min, voussoirs.max] = RANGES.voussoirs;
+    voussoirs.title = `a whole number from ${voussoirs.min} to ${voussoirs.max}`;
+    voussoirs.addEventListener("input", () => voussoirs.validity.valid && voussoirs.value && update({ voussoirs: voussoirs.valueAsNumber, asBuilt: true }));
+    voussoirs.addEventListener("blur", () => update({}));
+    for (const name of ["continuous", "built"]) {
+      find(name).addEventListener("change", () => update({ asBuilt: name === "built" }));
+    }
     for (const name of Object.keys(set)) {
       find(name).addEventListener("input", (event) => update(set[name](+event.target.value)));
       const box = find(`${name}-number`);
@@ -266,13 +338,16 @@
       box.addEventListener("blur", () => update({}));
     }
     find("unbounded").addEventListener("change", (event) =>
-      update({ mu: event.target.checked ? Infinity : data.largestMu }));
+      update({ mu: event.target.checked ? Infinity : lastFriction }));
     find("least").addEventListener("click", () => update({ eta: seen.critical.eta }));
     find("weight").addEventListener("change", (event) => update({ weight: event.target.value }));
-    find("view").addEventListener("change", () => {
-      drawMap();
-      update({});
-    });
+    find("view").addEventListener("change", (event) => update({ view: event.target.value }));
+    find("whole").addEventListener("click", () => update({ view: "whole" }));
+    for (const button of document.querySelectorAll("[data-save]")) {
+      const picture = button.dataset.save;
+      button.addEventListener("click", () =>
+        exporting.save(find(picture), [words.headline(state, seen), parameters()], picture, button.dataset.kind));
+    }
     find("play").addEventListener("click", () => setPlaying(!playing));
     still.addEventListener("change", () => {
       moved = 1;
@@ -280,14 +355,25 @@
       update({});
     });
     for (const button of document.querySelectorAll("[data-row]")) {
-      button.addEventListener("click", () => chooseResult(data.results[+button.dataset.row]));
+      button.addEventListener("click", () => showResult(data.results[+button.dataset.row]));
     }
   }
 
   for (const [mode, style] of Object.entries(data.modes)) svg.marker(find(`legend-${mode}`), style, 0, 0, 6);
-  for (const row of data.results) row.place = row.mu === null ? Infinity : Math.min(row.mu, data.largestMu);
+  for (const row of data.results) {
+    row.beyond = row.mu !== null && row.mu > data.largestMu;
+    row.place = row.mu === null ? Infinity : Math.min(row.mu, data.largestMu);
+  }
+
+  /** Take the arch from the page's address; without one, the widest that stands at the point. */
+  function arrive() {
+    Object.assign(state, FIRST, address.read(location.hash, RANGES, Object.keys(mapPicture.VIEWS)));
+    state.halfAngle ??= theory.atPoint(state.eta, state.mu, state.weight).halfAngle;
+    if (state.mu < Infinity) lastFriction = state.mu;
+  }
+
+  arrive();
   drawMap();
-  state.halfAngle = theory.atPoint(state.eta, state.mu, state.weight).halfAngle;
   show();
   listenToMap();
   listenToControls();
@@ -298,4 +384,9 @@
     drawMap();
     show();
   }).observe(find("map-box"));
+  addEventListener("hashchange", () => {
+    arrive();
+    show();
+  });
+  addEventListener("pagehide", () => address.flush(state));
 })();

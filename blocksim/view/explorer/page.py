@@ -23,7 +23,8 @@ from blocksim.view.style import FRICTION, MISS, MODES, THRUST, UNNAMED, VERDICTS
 
 HERE = Path(__file__).parent
 SCRIPTS = (
-    "theory.js", "mechanism.js", "svg.js", "map.js", "arch.js", "words.js", "page.js",
+    "theory.js", "built.js", "mechanism.js", "svg.js", "map.js", "arch.js", "words.js",
+    "address.js", "export.js", "page.js",
 )  # fmt: skip
 LETTERS = {"T": (-10, -2), "S": (-11, -9), "J": (-7, 9), "B": (11, -11)}
 """Where the letter of each landmark stands, in pixels from it, up and to the right."""

@@ -40,8 +40,8 @@ class Result:
         As observed.
     miss : str
         What disagrees with limit analysis.
-    said : str
-        All of it in a few words.
+    found : str
+        What the engine found, in a few words.
     """
 
     scenario: str
@@ -54,7 +54,7 @@ class Result:
     nothing_stands: bool
     mode: str | None
     miss: str
-    said: str
+    found: str
 
 
 def read_results(path: AnyPath) -> list[Result]:
@@ -103,7 +103,8 @@ def _result(row: dict[str, Any]) -> Result | None:
     )
     if not sound:
         raise ValueError
-    shown = "none stands" if high is None else f"η {eta:.4g}"
+    name = "a mode without a name" if mode is None else f"mode {mode}"
+    least = "no thickness stands" if high is None else f"least η from {low:.6g} to {high:.6g}"
     return Result(
         scenario=str(row["scenario"]),
         engine=str(row["engine"]),
@@ -115,5 +116,5 @@ def _result(row: dict[str, Any]) -> Result | None:
         nothing_stands=high is None,
         mode=mode,
         miss=str(row["miss"]),
-        said=f"{row['engine']}: {shown}, mode {mode or 'unnamed'}, n = {row['voussoirs']}",
+        found=f"{least}, {name}",
     )

@@ -48,6 +48,24 @@ const theory = (() => {
   }
   const series = (terms, y) => terms.reduceRight((sum, term) => sum * y + term);
 
+  /** Joints of n voussoirs from the crown to the springing; the first is the crown where n is even. */
+  const jointAngles = (halfAngle, voussoirs) =>
+    Array.from({ length: (voussoirs >> 1) + 1 }, (_, i) => (halfAngle * (2 * i + (voussoirs % 2))) / voussoirs);
+
+  /** What the resultant of a thrust 1 - s is made of at a joint, without cancellation where arches
+      are flat: N = 1 + gain + s (fall - 1) and T = shear - s sin x; bend = fall - gain. */
+  function section(angle) {
+    const y = angle * angle;
+    const [r, p] = [series(R, y), series(P, y)];
+    const [c, s] = [0.5 - y * r, 1 - y * (2 * r + p)];
+    return {
+      fall: y * c, // 1 - cos x
+      gain: y * (s - c), // x sin x + cos x - 1
+      bend: y * y * p, // 2 (1 - cos x) - x sin x
+      shear: angle * y * (c - 2 * r - p), // sin x - x cos x
+    };
+  }
+
   const levelOf = (eta, weight) =>
     weight === "centreline" ? 1 : weight === "sector" ? 1 + (eta * eta) / 12 : weight;
 
@@ -235,7 +253,7 @@ const theory = (() => {
   }
 
   return {
-    leastThickness, atPoint, leastFriction, equilibrium, innerSliding,
+    leastThickness, atPoint, leastFriction, equilibrium, innerSliding, jointAngles, section,
     levelOf, normalForce, sectionMoment, thrustLine, frictionLine,
   };
 })();

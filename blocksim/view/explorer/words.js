@@ -1,5 +1,5 @@
 "use strict";
-/* What is said of an arch: numbers, whether it stands, and why. */
+/* What is said of an arch: numbers, whether it stands, and why; always of which arch. */
 
 const wordsWith = (modes) => {
   const DEGREE = Math.PI / 180;
@@ -10,54 +10,79 @@ const wordsWith = (modes) => {
   const degrees = (angle) => (angle === null ? "–" : `${(angle / DEGREE).toFixed(2)}°`);
   const percent = (share) => {
     const value = Math.abs(share) * 100;
-    return `${value < 10 ? value.toPrecision(2) : value.toFixed(0)} %`;
+    return `${value < 1e-3 ? "under 0.001" : value < 10 ? value.toPrecision(2) : value.toFixed(0)} %`;
   };
 
   const shortly = (mode) => modes[mode].description.split(" (")[0];
+  const named = (mode) => (mode === null ? "a mode without a name" : `mode ${mode}, ${shortly(mode)}`);
   const share = (balance) => {
-    const near = Math.abs(balance.share - 1) < 0.02;
-    return `${(balance.share * 100).toFixed(near ? 2 : 0)} %`;
+    const apart = Math.abs(balance.share - 1);
+    return `${(balance.share * 100).toFixed(apart > 0.02 ? 0 : apart > 2e-4 ? 2 : 5)} %`;
   };
 
-  function headline(state, { critical, verge, stands, slides, mode }) {
-    if (slides) return "Just stands: no friction to spare";
-    if (verge) return "Just stands: this is the least thickness";
+  /** Which arch: the continuous one, or its voussoirs. */
+  const which = (voussoirs) => (voussoirs ? `${voussoirs} voussoirs as built` : "the continuous arch");
+
+  function headline(state, seen) {
+    const { critical, verge, stands, slides, mode, voussoirs } = seen;
+    const arch = which(voussoirs);
+    if (critical.eta === 0) return `Stands: ${arch} stand at any thickness`;
+    if (slides) return `On the verge: ${arch} ${voussoirs ? "have" : "has"} no friction to spare`;
+    if (verge) return `On the verge: the least thickness of ${arch}`;
     if (critical.eta === null) {
       return mode === "ss"
-        ? "Collapses: too little friction for any thickness"
-        : "Collapses: no thickness up to η = 2 will do";
+        ? `Collapses: too little friction for any thickness of ${arch}`
+        : `Collapses: no thickness of ${arch} will do, up to η = 2`;
     }
-    const margin = state.eta / critical.eta - 1;
-    if (stands) {
-      return margin > 1
-        ? `Stands: ${decimals(margin + 1, 2)} times the least thickness`
-        : `Stands: thickness ${percent(margin)} above the least`;
-    }
-    return `Collapses: thickness ${percent(margin)} below the least`;
+    const over = state.eta / critical.eta - 1;
+    const margin = over > 1 ? `${decimals(over + 1, 2)} times` : `${percent(over)} ${stands ? "above" : "below"}`;
+    return `${stands ? "Stands" : "Collapses"}: ${margin} the least thickness of ${arch}`;
   }
 
-  function because(state, { critical, balance, verge, stands, slides, mode, friction }) {
-    const name = `${mode}, ${shortly(mode)}`;
+  /** The verdict on an arch named elsewhere. */
+  function shortVerdict(state, { critical, verge, stands }) {
+    const verdict = stands ? "stands" : "collapses";
+    if (verge) return "on the verge";
+    if (!critical.eta) return verdict;
+    const over = state.eta / critical.eta - 1;
+    if (over > 1) return `${verdict}, ${decimals(over + 1, 2)} times the least`;
+    return `${verdict}, ${percent(over)} ${stands ? "to spare" : "short"}`;
+  }
+
+  function because(state, seen) {
+    const { critical, balance, verge, stands, slides, mode, friction, voussoirs } = seen;
     if (slides) {
-      return `Springings and inner joints are about to slide, mode ${name}. With less friction, or
-        opened wider, it falls, however thick.`;
+      return `Springings and inner joints are about to slide, ${named(mode)}. With less friction, or
+        opened wider, it falls as shown, however thick.`;
     }
-    if (verge) return `The lines touch wherever a joint is about to move: any thinner, it falls in mode ${name}.`;
+    if (verge) {
+      return `The lines of thrust and friction touch wherever a joint is about to move: it just stands.
+        Any thinner, it falls as shown, in ${named(mode)}.`;
+    }
+    if (critical.eta === 0) return "No joint lies where it could turn.";
     if (stands) {
       return `Lines of thrust and friction fit inside it: ${share(balance)} of its thickness and friction
-        would do. At its least thickness, η = ${number(critical.eta)}, it falls in mode ${name}.`;
+        would do. At its least thickness, η = ${number(critical.eta)}, it falls in ${named(mode)}.`;
     }
     const needs = balance
       ? `No lines of thrust and friction fit inside it: that takes ${share(balance)} of its thickness and
          friction.`
       : "No thrust holds it up: its halves overturn by themselves.";
+    const falls = critical.eta === null
+      ? `It falls in ${named(mode)}.`
+      : `At its least thickness, η = ${number(critical.eta)}, it falls in ${named(mode)}.`;
     let remedy = "";
     if (friction === Infinity) {
-      const grip = theory.leastFriction(state.halfAngle, Infinity, state.weight);
-      remedy = grip > state.mu ? ` Opened so wide, nothing stands below μ = ${number(grip)}.` : "";
+      const grip = voussoirs
+        ? built.leastFriction(state.halfAngle, 2, voussoirs, state.weight)
+        : theory.leastFriction(state.halfAngle, Infinity, state.weight);
+      remedy = grip > state.mu && grip < Infinity ? ` Opened so wide, nothing stands below μ = ${number(grip)}.` : "";
       remedy += " At this thickness no friction would do.";
-    } else if (friction > state.mu) remedy = ` At this thickness it stands from μ = ${number(friction)} on.`;
-    return `${needs} It falls in mode ${name}.${remedy}`;
+    } else if (friction > state.mu) {
+      // In as many digits as tell it from what it has.
+      remedy = ` At this thickness it stands from μ = ${number(friction, friction / state.mu < 1.001 ? 7 : 4)} on.`;
+    }
+    return `${needs} ${falls}${remedy}`;
   }
 
   const KINDS = {
@@ -65,13 +90,19 @@ const wordsWith = (modes) => {
     out: "slides outwards", in: "slides inwards", parts: "parts",
   };
 
-  function ofJoints(state, { joints }) {
-    return joints.map(({ angle, kind }) => {
-      const where = angle === 0 ? "the crown" : angle === state.halfAngle
+  function ofJoints(state, { joints, critical, voussoirs }) {
+    if (!joints.length) return "No mechanism to show: the joints that act form none of the seven modes.";
+    const told = joints.map(({ angle, kind }) => {
+      const where = angle === 0 ? "the crown" : Math.abs(angle - state.halfAngle) < 1e-12
         ? "each springing" : `the joint at ${(angle / DEGREE).toFixed(1)}°`;
       return `${where} ${KINDS[kind]}`;
-    }).join(", ");
+    });
+    const when = critical.eta === null ? "" : " at the least thickness";
+    return `Mechanism of ${which(voussoirs)}${when}: ${told.join(", ")}.`;
   }
 
-  return { number, degrees, shortly, headline, because, ofJoints };
+  /** What engines found at just this point. */
+  const ofResult = (row) => `Simulated: ${row.scenario}, by ${row.engine}, n = ${row.voussoirs}: ${row.found}.`;
+
+  return { number, degrees, shortly, which, headline, shortVerdict, because, ofJoints, ofResult };
 };

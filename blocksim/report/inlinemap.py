@@ -1,0 +1,67 @@
+"""The map as a part of the page: its colours follow the page's, its points are links."""
+
+from __future__ import annotations
+
+import colorsys
+import re
+from collections.abc import Mapping
+
+PAGE = "report.html"
+"""What the links of map.svg lead to, beside it."""
+NOT_OURS = re.compile(r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", re.DOTALL)
+OPENING = re.compile(r"<svg\b[^>]*>")
+BOX = re.compile(r'viewBox="[^"]*"')
+STYLE = re.compile(r'style="[^"]*"')
+COLOUR = re.compile(r"#([0-9a-f]{6})\b")
+LINK = re.compile(rf'<a xlink:href="(?:{re.escape(PAGE)})?#row-(\d+)"(?: target="_blank")?')
+DARKEST, LIGHTEST = 0.12, 0.93
+"""Lightness of what is white and black by day, in the dark."""
+
+
+def inline_map(svg: bytes, names: Mapping[int, str]) -> tuple[str, dict[str, str]]:
+    """Turn a map drawn for paper into a part of the page.
+
+    Parameters
+    ----------
+    svg : bytes
+        A file of SVG with its colours as #rrggbb in `style` attributes. Its links lead to
+        rows of the table, `row-1` and so on.
+    names : mapping of int to str
+        Of the rows.
+
+    Returns
+    -------
+    text : str
+        An element, with each colour #rrggbb as the variable --map-rrggbb.
+    dark : dict of str to str
+        Each colour rrggbb, and what it is in the dark.
+    """
+    text = svg.decode()
+    text = NOT_OURS.sub("", text[text.index("<svg") :])
+    opening = OPENING.match(text)
+    box = BOX.search(opening[0]) if opening else None
+    head = f'<svg class="map" {box[0] if box else ""} role="group" aria-labelledby="map-words">'
+    text = OPENING.sub(head, text, count=1)
+    found = {colour for style in STYLE.findall(text) for colour in COLOUR.findall(style)}
+    text = STYLE.sub(lambda style: COLOUR.sub(r"var(--map-\1)", style[0]), text)
+    reached: set[str] = set()
+
+    def link(match: re.Match[str]) -> str:
+        number = match[1]
+        # By the keyboard a row is reached once, however many marks it has.
+        again = ' tabindex="-1" aria-hidden="true"' if number in reached else ""
+        reached.add(number)
+        name = f"{number}, {names.get(int(number), '')}".replace("&", "&amp;")
+        name = name.replace('"', "&quot;").replace("<", "&lt;")
+        return f'<a href="#row-{number}" aria-label="{name}"{again}'
+
+    return LINK.sub(link, text), {colour: _dark(colour) for colour in sorted(found)}
+
+
+def _dark(colour: str) -> str:
+    """Turn light into dark and dark into light, of the same hue."""
+    red, green, blue = (int(colour[place : place + 2], 16) / 255 for place in (0, 2, 4))
+    hue, light, saturation = colorsys.rgb_to_hls(red, green, blue)
+    light = LIGHTEST - (LIGHTEST - DARKEST) * light
+    shares = colorsys.hls_to_rgb(hue, light, saturation)
+    return "".join(f"{round(share * 255):02x}" for share in shares)

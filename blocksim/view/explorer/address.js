@@ -1,0 +1,50 @@
+"use strict";
+/* The point looked at, in the part of the page's address behind #, so that it can be reloaded and shared. */
+
+const address = (() => {
+  const DEGREE = Math.PI / 180;
+  const DIGITS = 12;
+  const PAUSE = 200; // between writings: browsers refuse more than a few a second [ms]
+  const plain = (value) => (value === Infinity ? "inf" : String(+value.toPrecision(DIGITS)));
+
+  const textOf = (state) =>
+    new URLSearchParams({
+      alpha: plain(state.halfAngle / DEGREE), mu: plain(state.mu), eta: plain(state.eta),
+      n: state.voussoirs, arch: state.asBuilt ? "built" : "continuous", weight: state.weight, view: state.view,
+    }).toString();
+
+  /** What an address says, as a change of the state; what it says wrongly is left out. */
+  function read(hash, ranges, views) {
+    const said = new URLSearchParams(hash.slice(1));
+    const change = {};
+    const take = (name, key, value) => {
+      const [least, most] = ranges[name === "n" ? "voussoirs" : name];
+      if (said.has(name) && value >= least && value <= most) change[key] = value;
+    };
+    take("alpha", "halfAngle", Number(said.get("alpha")));
+    if (change.halfAngle !== undefined) change.halfAngle *= DEGREE;
+    take("eta", "eta", Number(said.get("eta")));
+    take("n", "voussoirs", Math.round(Number(said.get("n"))));
+    if (said.get("mu") === "inf") change.mu = Infinity;
+    else take("mu", "mu", Number(said.get("mu")));
+    if (said.has("arch")) change.asBuilt = said.get("arch") === "built";
+    if (["centreline", "sector"].includes(said.get("weight"))) change.weight = said.get("weight");
+    if (views.includes(said.get("view"))) change.view = said.get("view");
+    return change;
+  }
+
+  let waiting = null;
+
+  function writeNow(state) {
+    clearTimeout(waiting);
+    waiting = null;
+    history.replaceState(null, "", `#${textOf(state)}`);
+  }
+
+  /** Write the state into the address soon. */
+  function write(state) {
+    waiting ??= setTimeout(() => writeNow(state), PAUSE);
+  }
+
+  return { read, write, flush: (state) => waiting !== null && writeNow(state) };
+})();
