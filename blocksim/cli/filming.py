@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 import typer
 
 from blocksim.arch.circular import Arch
+from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.arch.motion import load_recording, simulate
 from blocksim.arch.scenario import Scenario
 from blocksim.ask.methods import SPATIAL
@@ -140,13 +141,14 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
 def _motionless(recording: Recording) -> str:
     """Say that nothing is seen to move in a recording, and what to do where it falls."""
     moved = float(recording.displacement.max())
-    arch = f"eta {recording.arch.eta:g}, {recording.engine}"
+    built = arch_of_problem(recording.problem)
+    arch = f"eta {built.eta:g}, {recording.engine}" if built else recording.engine
     if moved > MOVED:
         return (
-            f"nothing is seen to move in one recording ({arch}): it ends when the arch has "
+            f"nothing is seen to move in one recording ({arch}): it ends when it has "
             f"moved {moved:.2g} r; simulate --seconds 2 records how it falls"
         )
-    return f"nothing is seen to move in one recording ({arch}): the arch is at rest"
+    return f"nothing is seen to move in one recording ({arch}): it is at rest"
 
 
 def picture_of_leaning(out: Path, kind: str, arch: Arch, asked: Scenario) -> None:

@@ -13,9 +13,10 @@ from __future__ import annotations
 import math
 from typing import TypeVar
 
-from blocksim.blocks.assembly import Array
+import numpy as np
+from numpy.typing import NDArray
 
-Value = TypeVar("Value", float, Array)
+Value = TypeVar("Value", float, NDArray[np.float64])
 
 TERMS = 14
 

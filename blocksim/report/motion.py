@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.joints import JointState, classify
 from blocksim.evidence.recording import Recording
@@ -87,7 +88,9 @@ class Drawing:
         How many times larger than recorded the motion is drawn; None where none is.
     seconds : float
         Length of the motion, in seconds of the arch.
-    eta, radius : float
+    eta : float or None
+        Of an arch.
+    radius : float
         Of the arch; its radius in metres.
     joints : tuple of (float, str)
         Angle [deg] and state of each joint that takes part.
@@ -104,7 +107,7 @@ class Drawing:
     frames: str
     enlarged: float | None
     seconds: float
-    eta: float
+    eta: float | None
     radius: float
     joints: tuple[tuple[float, str], ...]
 
@@ -132,6 +135,7 @@ def drawing(recording: Recording, gravity: float) -> Drawing:
     low[1] = stage.ground - MARGIN / 4
     size = (high - low) * UNIT
     last = frames[-1]
+    arch = arch_of(recording.problem)
     return Drawing(
         box=f"{low[0] * UNIT:.1f} {-high[1] * UNIT:.1f} {size[0]:.1f} {size[1]:.1f}",
         rest=_points(rest),
@@ -154,8 +158,8 @@ def drawing(recording: Recording, gravity: float) -> Drawing:
         frames=json.dumps(frames, separators=(",", ":")),
         enlarged=enlarged,
         seconds=float(recording.seconds(gravity)[-1]),
-        eta=recording.arch.eta,
-        radius=recording.arch.radius,
+        eta=arch.eta if arch else None,
+        radius=recording.assembly.size,
         joints=tuple(
             (math.degrees(joint.angle), joint.state.value)
             for joint in states

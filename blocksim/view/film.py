@@ -114,7 +114,7 @@ class Film:
         self._enlarge = enlarge
         self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
         # Lengths and times are in metres and seconds only where a radius was given.
-        self.metric = any(recording.arch.radius != 1 for recording in recordings)
+        self.metric = any(recording.assembly.size != 1 for recording in recordings)
         self.moves = [stage.moves for stage in self._stages]
         self.seconds = self._duration()
         self.on_ground = any(stage.end < stage.recording.times[-1] for stage in self._stages)
