@@ -222,7 +222,7 @@ def chosen_words(method: str, rung: Method) -> str:
     if rung.is_spatial:
         seen = "sees out of the plane"
     else:
-        seen = "tells of the voussoirs as built" if rung.is_static else "moves them"
+        seen = "tells of the blocks as built" if rung.is_static else "moves them"
     width = f"a width of {rung.finest:g}" if rung.finest else "any width"
     return f"; auto took {rung.name}: the cheapest that {seen}, good for {width}"
 

@@ -1,10 +1,11 @@
-"""Search for the threshold between ratios that collapse and ratios that stand.
+"""Search for the threshold between values that collapse and values that stand.
 
-Below the least thickness the acceleration an arch starts with falls with its thickness and
-vanishes there: in nearly a straight line, as long as the mechanism is the same. So two
-ratios that collapsed tell where the threshold lies, and a probe to either side of that
-place closes the bracket, to whatever width; what an engine answers is never replaced by
-the estimate. Where the estimate leads nowhere the bracket is halved.
+A value may be a thickness or anything else of which more is safer. Below the threshold the
+acceleration that blocks start with falls with the value and vanishes there: in nearly a
+straight line, as long as the mechanism is the same. So two ratios that collapsed tell where
+the threshold lies, and a probe to either side of that place closes the bracket, to whatever
+width; what an engine answers is never replaced by the estimate. Where the estimate leads
+nowhere the bracket is halved.
 """
 
 from __future__ import annotations
@@ -40,8 +41,12 @@ class Search:
     Parameters
     ----------
     judge : callable
-        Ratio to answer.
+        Value to answer.
     progress : Progress, optional
+    floor, ceiling : float
+        Values beyond which the search is given up.
+    name : str
+        What the value is.
 
     Attributes
     ----------
@@ -51,7 +56,16 @@ class Search:
         Ratios tried, and those without an answer.
     """
 
-    def __init__(self, judge: Callable[[float], Answer], progress: Progress = silent) -> None:
+    def __init__(
+        self,
+        judge: Callable[[float], Answer],
+        progress: Progress = silent,
+        *,
+        floor: float = THINNEST,
+        ceiling: float = ETA_MAX,
+        name: str = "eta",
+    ) -> None:
+        self._floor, self._most, self._name = floor, ceiling, name
         self._judge = judge
         self._progress = progress
         self._dark: list[float] = []
@@ -81,17 +95,17 @@ class Search:
     def expand(self, guess: float) -> None:
         """Step away from a guess, ever farther, until both answers have been had."""
         step = FIRST_STEP
-        eta = min(guess * (1 + step), ETA_MAX)
-        self._progress(0.0, f"trying eta = {eta:.6g}")
+        eta = min(guess * (1 + step), self._most)
+        self._progress(0.0, f"trying {self._name} = {eta:.6g}")
         self.probe(eta)
-        while self.high is None and eta < ETA_MAX:
+        while self.high is None and eta < self._most:
             step *= 2
-            eta = min(eta * (1 + step), ETA_MAX)
+            eta = min(eta * (1 + step), self._most)
             self.probe(eta)
         if self._ceiling() is None:
             return
         step, eta = FIRST_STEP, guess
-        while self.low is None and eta > THINNEST:
+        while self.low is None and eta > self._floor:
             eta *= 1 - min(step, 0.5)
             step *= 2
             self.probe(eta)
@@ -110,14 +124,14 @@ class Search:
                 etas = (middle,)
             for eta in etas:
                 if self.low is not None and self.low < eta:
-                    self._progress(share, f"trying eta = {eta:.6g}")
+                    self._progress(share, f"trying {self._name} = {eta:.6g}")
                     self.probe(eta)
             # An estimate that did worse than two halvings gives way to one.
             helped = halves or self._width() < width / 4
 
     def _ceiling(self) -> float | None:
         """Upper end of the search: what stood, or the thickest arch if it is undecided."""
-        return ETA_MAX if self.high is None and ETA_MAX in self._dark else self.high
+        return self._most if self.high is None and self._most in self._dark else self.high
 
     def _width(self) -> float:
         """Relative width of the bracket, 0 while there is none."""

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
-from blocksim.common.checks import is_number, require, require_friction, require_lean
+from blocksim.common.checks import is_number, require, require_lean
 
 STANDARD_GRAVITY = 9.81
 """To turn weight into mass [m/s^2]."""
@@ -156,7 +156,6 @@ class Problem:
 
     def with_friction(self, mu: float) -> Problem:
         """Return the same with another friction coefficient, but for joints with their own."""
-        require_friction(mu)
         return replace(self, mu=mu)
 
     def pull(self, poses: Array | None = None) -> Array:

@@ -191,6 +191,12 @@ def _problem(written: StructureFile) -> Problem:
         bodies, joints=joints, density=written.density, size=written.size
     )
     mu = _friction(written.friction)
+    own = {joint.friction for joint in assembly.joints}
+    if len(own) == 1 and own != {None}:
+        # All joints have the same friction of their own: it is that of the structure.
+        mu = own.pop()
+        joined = tuple(replace(joint, friction=None) for joint in assembly.joints)
+        assembly = replace(assembly, joints=joined)
     return Problem(
         assembly=assembly,
         mu=0.0 if mu is None else mu,

@@ -14,8 +14,6 @@ from rich.table import Table
 from blocksim import __version__
 from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.check import check as ask_check
-from blocksim.arch.circular import GRAVITY
-from blocksim.arch.motion import simulate as record_motion
 from blocksim.arch.scenario import load_scenario, shipped
 from blocksim.ask.doctor import examine, libraries
 from blocksim.cli.console import (
@@ -42,20 +40,25 @@ from blocksim.cli.filming import (
     recordings,
 )
 from blocksim.cli.options import (
+    EXIT_CODES,
     Alpha,
     Depth,
     Eta,
     Given,
     Json,
     Lean,
+    Load,
     MethodOption,
     Mu,
+    Over,
     Ratio,
     Reduce,
     Scene,
     Set,
+    Tilt,
     Voussoirs,
     WeightOption,
+    Within,
     arch_of,
     named_options,
     question,
@@ -63,12 +66,21 @@ from blocksim.cli.options import (
     settings_of,
     thickness_words,
 )
+from blocksim.cli.structures import (
+    Loading,
+    bracket_structure,
+    check_structure,
+    is_structure,
+    loaded,
+    say_recorded,
+    simulate_structure,
+    structure,
+)
 from blocksim.cli.sweeping import run_sweep
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import make_folder, require_place
 from blocksim.engines import ENGINES
-from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import (
     bracket_lines,
     bracket_record,
@@ -87,7 +99,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
+THICKNESS = "thickness"
+"""The parameter of `bracket` that is left out: of arches only."""
 FILMS = ("mp4", "gif")
 NUMBERS = {"alpha", "mu", "n", "eta"}
 LONGEST_RECORDING = 600.0
@@ -118,18 +131,29 @@ def check(
     weight: WeightOption = None,
     depth: Depth = None,
     method: MethodOption = "auto",
+    load: Load = None,
+    tilt: Tilt = None,
     lean: Lean = None,
     settings: Set = None,
     reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
-    """Tell whether an arch stands: exit code 0 stands, 1 collapses, 3 undecided."""
+    """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
     given = Given(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
         depth=depth, lean=lean,
     )  # fmt: skip
+    loading = Loading(load=load, tilt=tilt)
+    if scene is not None and is_structure(scene):
+        require(not reduce, "--reduce", reduce, "left out: it is for arches")
+        problem = structure(scene, given, loading)
+        check_structure(problem, method, settings, as_json=as_json)
     asked = question(scene, given, thick=True)
     arch = arch_of(asked, ratio)
+    if loading.given:
+        require(not reduce, "--reduce", reduce, "left out with a load or a tilt")
+        problem = loaded(arch.problem(asked.mu, asked.lean), Given(), loading)
+        check_structure(problem, method, settings, as_json=as_json)
     with named_options(), progress() as report:
         answer = ask_check(
             arch,
@@ -153,6 +177,12 @@ def bracket(
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
     depth: Depth = None,
+    over: Over = None,
+    within: Within = None,
+    eta: Eta = None,
+    ratio: Ratio = None,
+    load: Load = None,
+    tilt: Tilt = None,
     lean: Lean = None,
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
@@ -160,10 +190,25 @@ def bracket(
     reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
-    """Find how thin the arch can be."""
+    """Find the value of a parameter from which on it falls: how thin an arch can be."""
     given = Given(
-        alpha=alpha, mu=mu, voussoirs=voussoirs, weight=weight, depth=depth, lean=lean
-    )
+        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
+        depth=depth, lean=lean,
+    )  # fmt: skip
+    loading = Loading(load=load, tilt=tilt)
+    if is_structure(scene) or over not in {None, THICKNESS}:
+        require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
+        if scene is not None and is_structure(scene):
+            problem = structure(scene, given, loading)
+        else:
+            asked = question(scene, given, thick=True)
+            built = arch_of(asked, ratio).problem(asked.mu, asked.lean)
+            problem = loaded(built, Given(), loading)
+        bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
+        return
+    for name, value in (("eta", eta), ("ratio", ratio), ("load", load), ("tilt", tilt)):
+        require(value is None, f"--{name}", value, "left out over thickness")
+    require(within is None, "--within", within, "left out over thickness")
     asked = question(scene, given)
     with named_options(), progress() as report:
         answer = ask_bracket(
@@ -201,40 +246,33 @@ def simulate(
     seconds: Annotated[
         float | None, typer.Option(help="Seconds to record; until decided if left out.")
     ] = None,
+    load: Load = None,
+    tilt: Tilt = None,
     lean: Lean = None,
     settings: Set = None,
 ) -> None:
-    """Let an arch go and record its motion."""
+    """Let it go and record its motion."""
     given = Given(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
         depth=depth, lean=lean,
     )  # fmt: skip
-    asked = question(scene, given, thick=True, out=out)
-    arch = arch_of(asked, ratio)
+    loading = Loading(load=load, tilt=tilt)
+    if scene is not None and is_structure(scene):
+        require_given(out=out)
+        problem, size = structure(scene, given, loading), "sizes"
+    else:
+        asked = question(scene, given, thick=True, out=out)
+        built = arch_of(asked, ratio).problem(asked.mu, asked.lean)
+        problem, size = loaded(built, Given(), loading), "r"
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require_place(out)
-    duration = None
     if seconds is not None:
         ok = is_number(seconds, 0, LONGEST_RECORDING)
         require(ok, "--seconds", seconds, f"above 0 and at most {LONGEST_RECORDING:g}")
-        duration = seconds / math.sqrt(arch.radius / GRAVITY)
-    with named_options(), progress() as report:
-        recording = record_motion(
-            arch,
-            mu=asked.mu,
-            method=method,
-            duration=duration,
-            lean=asked.lean,
-            settings=settings_of(settings),
-            progress=report,
-        )
+    recording = simulate_structure(problem, method, seconds, settings)
     recording.save(out)
-    moved = recording.displacement[-1]
-    say(
-        f"{out}: {len(recording.times)} frames, {recording.seconds(GRAVITY)[-1]:.2f} s, "
-        f"moved {moved:.2g} r, state {recording.state_hash}"
-    )
+    say_recorded(out, recording, size)
 
 
 @app.command()
@@ -358,6 +396,8 @@ def render(
     voussoirs: Voussoirs = None,
     weight: WeightOption = None,
     depth: Depth = None,
+    load: Load = None,
+    tilt: Tilt = None,
     lean: Lean = None,
     beside: Beside = None,
     view: View = "2d",
@@ -378,6 +418,7 @@ def render(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
         depth=depth, lean=lean,
     )  # fmt: skip
+    loading = Loading(load=load, tilt=tilt)
     if scene is None:
         question(scene, given, out=out)
     require_given(out=out)
@@ -387,7 +428,7 @@ def render(
     if filmed or (scene is not None and scene.endswith(".npz")):
         shown = RenderOptions(view=view, slow=slow, at=at, height=height or HEIGHT)
         require(at is None or kind not in FILMS, "--at", at, "left out of a film")
-        film(out, recordings(scene, given, method, beside), shown)
+        film(out, recordings(scene, given, loading, method, beside), shown)
     else:
         shown = {"slow": slow, "at": at, "height": height, "method": method}
         for name, value in shown.items():

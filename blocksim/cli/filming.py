@@ -12,11 +12,13 @@ import typer
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.circular import arch_of as arch_of_problem
-from blocksim.arch.motion import load_recording, simulate
+from blocksim.arch.motion import load_recording
 from blocksim.arch.scenario import Scenario
 from blocksim.ask.methods import SPATIAL
+from blocksim.ask.simulate import simulate
 from blocksim.cli.console import progress, say
 from blocksim.cli.options import Given, arch_of, named_options, question
+from blocksim.cli.structures import Loading, is_structure, loaded, structure
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES
@@ -87,25 +89,23 @@ class RenderOptions:
 
 
 def recordings(
-    scene: str | None, given: Given, method: str | None, beside: Path | None
+    scene: str | None, given: Given, loading: Loading, method: str | None, beside: Path | None
 ) -> list[Recording]:
     """Read recordings, or simulate the scenario."""
     second = [] if beside is None else [load_recording(beside)]
     if scene is not None and scene.endswith(".npz"):
-        for name, value in {**asdict(given), "method": method}.items():
+        said = {**asdict(given), **asdict(loading), "method": method}
+        for name, value in said.items():
             require(value is None, f"--{name}", value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
-    asked = question(scene, given)
-    arch = arch_of(asked, given.ratio)
+    if scene is not None and is_structure(scene):
+        problem = structure(scene, given, loading)
+    else:
+        asked = question(scene, given)
+        built = arch_of(asked, given.ratio).problem(asked.mu, asked.lean)
+        problem = loaded(built, Given(), loading)
     with named_options(), progress() as report:
-        run = simulate(
-            arch,
-            mu=asked.mu,
-            method=method or "auto",
-            duration=FALL,
-            lean=asked.lean,
-            progress=report,
-        )
+        run = simulate(problem, method=method or "auto", duration=FALL, progress=report)
     return [run, *second]
 
 

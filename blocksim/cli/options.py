@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Annotated
 
 import typer
@@ -13,13 +13,21 @@ import typer
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.scenario import Scenario, load_scenario
+from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.ask.search import ETA_MAX
 from blocksim.common.checks import is_number, require, require_friction
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.evidence.setup import SETTINGS
+from blocksim.evidence.verdict import Verdict
 
-Scene = Annotated[str | None, typer.Argument(help="Scenario: a .toml file or a shipped name.")]
+Scene = Annotated[
+    str | None,
+    typer.Argument(
+        help="Scenario of an arch, a .toml file or a shipped name; or a file of blocks, .json."
+    ),
+]
+EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 Alpha = Annotated[
     float | None, typer.Option(help="Half-angle of embrace in degrees, 0 to 180.")
 ]
@@ -40,6 +48,21 @@ WeightOption = Annotated[
     str | None, typer.Option(help="Where weight acts: centreline (if left out) or sector.")
 ]
 MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
+Load = Annotated[float | None, typer.Option(help="Factor on the live loads of a structure.")]
+Tilt = Annotated[
+    float | None,
+    typer.Option(help="Tilt of the table in the plane, in degrees: its right side goes down."),
+]
+Over = Annotated[
+    str | None,
+    typer.Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
+]
+Within = Annotated[
+    tuple[float, float] | None,
+    typer.Option(
+        metavar="LOW HIGH", help="Where to search, instead of where limit analysis says."
+    ),
+]
 Lean = Annotated[
     float | None,
     typer.Option(help="Angle by which gravity leans out of the plane, in degrees."),
@@ -96,6 +119,12 @@ class Given:
     weight: str | None = None
     depth: float | None = None
     lean: float | None = None
+
+    @property
+    def of_arches(self) -> dict[str, object]:
+        """Those that say how an arch is built."""
+        others = {"mu", "lean"}
+        return {name: each for name, each in asdict(self).items() if name not in others}
 
 
 def require_given(**options: object) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
@@ -33,6 +35,14 @@ class Held:
     onset: Onset
     splits: int = 0
 
+    @property
+    def built(self) -> Array:
+        """Poses where the blocks were built."""
+        assembly = self.setup.assembly
+        built = np.zeros_like(self.onset.mechanism)
+        built[:, :2] = assembly.centres / assembly.size
+        return built
+
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
         """Let the blocks go; see `moving_run`."""
         repeat = self.onset.repeat
@@ -57,8 +67,8 @@ class Trial:
         moving run; closed where the blocks stand. Empty where gravity leans out of the
         plane and they collapse: their states are those of motion in the plane. The second
         is empty where there was no moving run, too.
-    mechanism : (blocks, 3 or 6) float or None
-        Poses after a small displacement along the onset mechanism, where they collapse.
+    rates : (blocks, 3 or 6) float or None
+        Velocities in proportion to those with which a collapse starts, columns as poses.
     blocks, splits : int
         Blocks that were simulated, and joints that a reduction had to split again.
     """
@@ -69,7 +79,7 @@ class Trial:
     motion: Motion | None
     joints: tuple[ObservedJoint, ...]
     joints_in_motion: tuple[ObservedJoint, ...]
-    mechanism: Array | None
+    rates: Array | None
     blocks: int
     splits: int
 
@@ -150,9 +160,9 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
     reason += _asides(held, motion) + given_words(setup.given)
     joints = closed_joints(setup.assembly)
     in_motion = joints if motion else ()
-    mechanism = None
+    rates = None
     if verdict is Verdict.COLLAPSES:
-        mechanism = first.mechanism
+        rates = first.mechanism - held.built
         planar = setup.problem.is_planar
         joints = classify(setup.assembly, first.mechanism) if planar else ()
         seen = planar and motion
@@ -164,7 +174,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         motion=motion,
         joints=joints,
         joints_in_motion=in_motion,
-        mechanism=mechanism,
+        rates=rates,
         blocks=setup.blocks,
         splits=held.splits,
     )

@@ -1,0 +1,170 @@
+"""Does it stand? One problem, asked of limit analysis or of an engine."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.ask.methods import choose, chosen_words
+from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.joints import JointState, classify, closed_joints
+from blocksim.blocks.problem import Problem
+from blocksim.common.progress import Progress, silent
+from blocksim.evidence.onset import PROBE
+from blocksim.evidence.setup import BY_RULE, Overrides
+from blocksim.evidence.trial import trial
+from blocksim.evidence.verdict import Verdict
+from blocksim.limit import Equilibrium, collapse, equilibrium
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Check:
+    """Answer to *does it stand*, with its evidence.
+
+    Parameters
+    ----------
+    method : str
+    verdict : Verdict
+        *Stands* means that it can rest.
+    reason : str
+        A sentence.
+    problem : Problem
+    load_factor : float or None
+        Largest factor on the live loads at which forces of equilibrium exist, by limit
+        analysis; inf where no live load is too much. None without live loads, or where
+        there is no equilibrium at any factor.
+    rest : str or None
+        What friction allows: `can` where forces of equilibrium exist and a motion was
+        found as well, `cannot` where there are no such forces; None where it was not found
+        out whether it must rest.
+    joints : tuple of JointState
+        What each joint does as a collapse starts; closed where the blocks stand.
+    forces : (joints, 2, 2) float or None
+        Forces of equilibrium at the ends of the joints, along their normals and tangents,
+        in units of the mean block's weight; None where there are none.
+    mechanism : (blocks, 3) float or None
+        Rates x, y [size] and rotation with which a collapse starts, the largest way of a
+        corner being 1.
+    simulated : float or None
+        Time simulated [sqrt(size/g)]; None for static methods.
+    state_hash : str or None
+        Fingerprint of the recorded motion.
+    wall_s : float
+        Seconds it took.
+    """
+
+    method: str
+    verdict: Verdict
+    reason: str
+    problem: Problem
+    load_factor: float | None
+    rest: str | None
+    joints: tuple[JointState, ...]
+    forces: Array | None
+    mechanism: Array | None
+    simulated: float | None
+    state_hash: str | None
+    wall_s: float
+
+
+def check(
+    problem: Problem,
+    *,
+    method: str = "auto",
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> Check:
+    """Tell whether blocks stand under their loads.
+
+    Parameters
+    ----------
+    problem : Problem
+    method : str
+        `auto`, `limit`, or the name of an engine.
+    settings : mapping of str to float
+        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Check
+
+    Raises
+    ------
+    InputError
+        If the method cannot do what the problem asks for.
+    MissingPart
+        If the engine's library is not installed.
+    """
+    started = time.perf_counter()
+    chosen = choose(method, problem=problem, settings=settings)
+    planar = problem.is_planar
+    static = equilibrium(problem) if planar else None
+    factor = collapse(problem).load_factor if planar and problem.live else None
+    joints = tuple(joint.state for joint in closed_joints(problem.assembly))
+    mechanism = simulated = state_hash = None
+    rest = None if static is None or static.exists else "cannot"
+    if static is not None and chosen.is_static:
+        verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
+        reason = _static_words(static, problem)
+        mechanism = static.mechanism
+    else:
+        seen = trial(problem, chosen.name, settings=settings, progress=progress)
+        verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
+        simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
+        state_hash = seen.motion.recording.state_hash if seen.motion else None
+        if seen.onset.may_rest or seen.onset.forces is not None:
+            rest = "can"
+    if mechanism is not None:
+        mechanism = _unit(mechanism, problem)
+        if planar:
+            joints = states_of(problem, mechanism)
+    return Check(
+        method=chosen.name,
+        verdict=verdict,
+        reason=reason + chosen_words(method, chosen) + _notes(problem),
+        problem=problem,
+        load_factor=factor,
+        rest=rest,
+        joints=joints,
+        forces=None if static is None else static.forces,
+        mechanism=mechanism,
+        simulated=simulated,
+        state_hash=state_hash,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def states_of(problem: Problem, rates: Array) -> tuple[JointState, ...]:
+    """Tell what each joint does as blocks begin to move at some rates, (blocks, 3)."""
+    assembly = problem.assembly
+    start = np.column_stack([assembly.centres / assembly.size, np.zeros(len(rates))])
+    moved = start + PROBE * rates[:, :3]
+    return tuple(joint.state for joint in classify(assembly, moved))
+
+
+def _unit(rates: Array, problem: Problem) -> Array:
+    """Scale rates so that the largest way of a corner is 1."""
+    largest = float(displacement(rates, problem.assembly))
+    return rates / largest if largest > 0 else rates
+
+
+def _static_words(static: Equilibrium, problem: Problem) -> str:
+    """Say what limit analysis found."""
+    if static.exists:
+        spare = max(0.0, static.margin) * problem.unit_force
+        return (
+            "forces of equilibrium exist, every contact pressing by "
+            f"{spare:.3g} N along both edges of its friction cone, or more"
+        )
+    if math.isinf(static.margin):
+        return "no forces of equilibrium exist, even if contacts could pull"
+    pull = -static.margin * problem.unit_force
+    return f"no forces of equilibrium exist: a contact would have to pull by {pull:.3g} N"
+
+
+def _notes(problem: Problem) -> str:
+    return "".join(f"; {note}" for note in problem.notes)

@@ -1,0 +1,153 @@
+"""Structures on the command line: files of blocks, asked the same questions as arches."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import typer
+
+from blocksim.ask.bracket import bracket
+from blocksim.ask.check import check
+from blocksim.ask.families import FAMILIES, family_of
+from blocksim.ask.simulate import simulate
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.structure import load_structure
+from blocksim.cli.console import answer_with, progress, say
+from blocksim.cli.options import EXIT_CODES, Given, named_options, settings_of
+from blocksim.common.checks import is_number, require
+from blocksim.common.errors import InputError
+from blocksim.evidence.recording import Recording
+from blocksim.report.structures import (
+    bracket_lines,
+    bracket_record,
+    check_lines,
+    check_record,
+)
+
+LARGEST_PEEK = 1 << 20
+"""Bytes of a TOML file that are looked at to tell a structure from a scenario."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loading:
+    """What acts on a structure, as given on the command line; None where it is not."""
+
+    load: float | None = None
+    tilt: float | None = None
+
+    @property
+    def given(self) -> bool:
+        """Whether there is any of it."""
+        return self.load is not None or self.tilt is not None
+
+
+def is_structure(scene: str | None) -> bool:
+    """Tell a file of blocks from a scenario of an arch: by its name, or by what is in it."""
+    if scene is None or not scene.endswith((".json", ".toml")):
+        return False
+    if scene.endswith(".json"):
+        return True
+    path = Path(scene)
+    try:
+        if not path.is_file() or path.stat().st_size > LARGEST_PEEK:
+            return False
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return False  # the reader of scenarios says what is wrong with it
+    return "blocks" in table or "kind" in table
+
+
+def structure(scene: str, given: Given, loading: Loading) -> Problem:
+    """Read a structure and put on it what the options say.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used, or an option is one of arches only.
+    """
+    for name, value in given.of_arches.items():
+        require(value is None, f"--{name}", value, "left out: the file says what is built")
+    return loaded(load_structure(scene), given, loading)
+
+
+def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
+    """Put on a problem what the options say: friction, load, tilt, lean."""
+    with named_options():
+        if given.mu is not None:
+            problem = problem.with_friction(given.mu)
+        if loading.load is not None:
+            require(bool(problem.live), "--load", loading.load, "left out: no live loads")
+            problem = problem.with_load(loading.load)
+        if loading.tilt is not None:
+            ok = is_number(loading.tilt, -180, 180)
+            require(ok, "--tilt", loading.tilt, "above -180 and at most 180 deg")
+            problem = problem.tilted(math.radians(loading.tilt))
+        if given.lean is not None:
+            ok = is_number(given.lean, -90, math.nextafter(90, 0))
+            require(ok, "--lean", given.lean, "above -90 and below 90 deg")
+            problem = problem.leaning(math.radians(given.lean))
+    return problem
+
+
+def check_structure(
+    problem: Problem, method: str, settings: list[str] | None, *, as_json: bool
+) -> None:
+    """Answer `check` and leave with its exit code."""
+    with named_options(), progress() as report:
+        answer = check(problem, method=method, settings=settings_of(settings), progress=report)
+    answer_with(check_record(answer), check_lines(answer), as_json=as_json)
+    raise typer.Exit(EXIT_CODES[answer.verdict])
+
+
+def bracket_structure(
+    problem: Problem,
+    over: str | None,
+    within: tuple[float, float] | None,
+    method: str,
+    tol: float,
+    settings: list[str] | None,
+    *,
+    as_json: bool,
+) -> None:
+    """Answer `bracket` over any parameter."""
+    if over is None:
+        raise InputError("--over", None, f"one of {', '.join(FAMILIES)}")
+    with named_options(), progress() as report:
+        answer = bracket(
+            family_of(problem, over),
+            method=method,
+            tol=tol,
+            within=within,
+            settings=settings_of(settings),
+            progress=report,
+        )
+    answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)
+
+
+def simulate_structure(
+    problem: Problem, method: str, seconds: float | None, settings: list[str] | None
+) -> Recording:
+    """Let a structure go and record it."""
+    duration = None
+    if seconds is not None:
+        duration = seconds / math.sqrt(problem.assembly.size / STANDARD_GRAVITY)
+    with named_options(), progress() as report:
+        return simulate(
+            problem,
+            method=method,
+            duration=duration,
+            settings=settings_of(settings),
+            progress=report,
+        )
+
+
+def say_recorded(out: Path, recording: Recording, unit: str) -> None:
+    """Say what was written."""
+    say(
+        f"{out}: {len(recording.times)} frames, "
+        f"{recording.seconds(STANDARD_GRAVITY)[-1]:.2f} s, "
+        f"moved {recording.displacement[-1]:.2g} {unit}, state {recording.state_hash}"
+    )

@@ -1,0 +1,211 @@
+"""Answers on structures as JSON objects and as text for people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from blocksim.ask.bracket import Bracket
+from blocksim.ask.check import Check
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+
+SHOWN = 8
+"""Joints and blocks told in a line of text."""
+
+
+def check_record(answer: Check) -> dict[str, object]:
+    """Return a check of a structure as `check --json` prints it.
+
+    Forces are in N, in the file's units; normal forces press where they are above 0.
+    """
+    problem = answer.problem
+    assembly = problem.assembly
+    seconds = None
+    if answer.simulated is not None:
+        seconds = answer.simulated * math.sqrt(assembly.size / STANDARD_GRAVITY)
+    return {
+        "method": answer.method,
+        "verdict": answer.verdict.value,
+        "reason": answer.reason,
+        "problem": {
+            "title": problem.title,
+            "blocks": len(assembly.blocks),
+            "joints": len(assembly.joints),
+            "mu": problem.mu,
+            **tilt_and_lean(problem),
+            "load": problem.load,
+        },
+        "load_factor": answer.load_factor,
+        "rest": answer.rest,
+        "joints": _joints(answer),
+        "mechanism": _mechanism(answer.mechanism, assembly),
+        "simulated_s": seconds,
+        "state_hash": answer.state_hash,
+        "wall_s": answer.wall_s,
+    }
+
+
+def bracket_record(answer: Bracket) -> dict[str, object]:
+    """Return a bracket of a structure as `bracket --json` prints it."""
+    return {
+        "method": answer.method,
+        "over": answer.over,
+        "unit": answer.unit,
+        "low": answer.low,
+        "high": answer.high,
+        "stands": answer.stands,
+        "limit": answer.limit,
+        "confirmed": answer.confirmed,
+        "runs": answer.runs,
+        "undecided": answer.undecided,
+        "reason": answer.reason,
+        "wall_s": answer.wall_s,
+    }
+
+
+def check_lines(answer: Check) -> list[str]:
+    """Return a check of a structure in words."""
+    problem = answer.problem
+    lines = [
+        f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
+        f"  what    {_described(problem)}",
+        f"  because {answer.reason}",
+    ]
+    if answer.load_factor is not None:
+        at = f", asked at {problem.load:g}" if problem.load else ""
+        lines.append(f"  load    factor at collapse {_number(answer.load_factor)}{at}")
+    if answer.rest == "can":
+        lines.append("  rest    it can rest, and friction may let it move as well")
+    named = joint_names(problem.assembly)
+    active = [
+        f"{name} {state.value}"
+        for name, state in zip(named, answer.joints, strict=True)
+        if state is not JointState.CLOSED
+    ]
+    if active:
+        lines.append(f"  joints  {_few(active)}")
+    if answer.mechanism is not None:
+        lines.append(f"  moves   {_few(_movers(answer.mechanism, problem.assembly))}")
+    return lines
+
+
+def bracket_lines(answer: Bracket) -> list[str]:
+    """Return a bracket of a structure in words."""
+    unit = f" {answer.unit}" if answer.unit else ""
+    ends = {True: "stands", False: "falls"}
+    low, high = ends[answer.stands == "low"], ends[answer.stands == "high"]
+    if answer.low is None and answer.high is None:
+        head = f"NO LIMIT OVER {answer.over.upper()}"
+    else:
+        parts = [
+            f"{word} at {value:.9g}{unit}"
+            for word, value in ((low, answer.low), (high, answer.high))
+            if value is not None
+        ]
+        head = f"{answer.over.upper()}: {', '.join(parts)}"
+    lines = [f"{head}  ({answer.method}, {answer.wall_s:.2g} s)"]
+    lines.append(f"  because {answer.reason}")
+    if answer.limit is not None:
+        lines.append(f"  exact   {_number(answer.limit)}{unit} by limit analysis")
+    if answer.undecided:
+        lines.append(f"  unsure  {answer.undecided} of {answer.runs} values undecided")
+    return lines
+
+
+def tilt_and_lean(problem: Problem) -> dict[str, float]:
+    """Return by how many degrees gravity is turned in the plane, and out of it."""
+    x, y, z = problem.gravity.tolist()
+    return {
+        "tilt_deg": math.degrees(math.atan2(x, -y)),
+        "lean_deg": math.degrees(math.atan2(z, math.hypot(x, y))),
+    }
+
+
+def joint_names(assembly: Assembly) -> list[str]:
+    """Name each joint by the bodies on its two sides."""
+    return [
+        f"{_name(assembly, k, 0)}-{_name(assembly, k, 1)}" for k in range(len(assembly.joints))
+    ]
+
+
+def _name(assembly: Assembly, joint: int, side: int) -> str:
+    here = assembly.joints[joint]
+    index = (here.before, here.after)[side]
+    if index != SUPPORT:
+        return assembly.blocks[index].name or str(index)
+    if here.support is None:
+        return "support"
+    return assembly.supports[here.support].name or "support"
+
+
+def _joints(answer: Check) -> list[dict[str, object]]:
+    problem = answer.problem
+    assembly, forces = problem.assembly, answer.forces
+    told: list[dict[str, object]] = []
+    for k, joint in enumerate(assembly.joints):
+        total = None if forces is None else forces[k].sum(axis=0) * problem.unit_force
+        ends = (
+            [joint.inner.tolist()]
+            if joint.is_corner
+            else [joint.inner.tolist(), joint.outer.tolist()]
+        )
+        told.append(
+            {
+                "a": _name(assembly, k, 0),
+                "b": _name(assembly, k, 1),
+                "ends": ends[:1] if joint.is_corner else ends,
+                "state": answer.joints[k].value,
+                "normal_force": None if total is None else float(total[0]),
+                "friction_force": None if total is None else float(total[1]),
+            }
+        )
+    return told
+
+
+def _mechanism(rates: Array | None, assembly: Assembly) -> list[dict[str, object]] | None:
+    """Rates of the blocks: x and y in m for each radian of rotation, which has no unit."""
+    if rates is None:
+        return None
+    return [
+        {
+            "block": block.name or str(index),
+            "x": float(rate[0]) * assembly.size,
+            "y": float(rate[1]) * assembly.size,
+            "rotation": float(rate[2]),
+        }
+        for index, (block, rate) in enumerate(zip(assembly.blocks, rates, strict=True))
+    ]
+
+
+def _movers(rates: Array, assembly: Assembly) -> list[str]:
+    """Blocks that move by more than a hundredth of the fastest, the fastest first."""
+    reach = assembly.reach / assembly.size
+    speed = abs(rates[:, :2]).max(axis=1) + abs(rates[:, 2]) * reach
+    order = [int(k) for k in (-speed).argsort() if speed[k] > speed.max() / 100]
+    return [assembly.blocks[k].name or str(k) for k in order]
+
+
+def _described(problem: Problem) -> str:
+    turned = tilt_and_lean(problem)
+    assembly = problem.assembly
+    said = [problem.title] if problem.title else []
+    said.append(f"{len(assembly.blocks)} blocks, {len(assembly.joints)} joints")
+    said.append(f"mu {problem.mu:g}")
+    if turned["tilt_deg"]:
+        said.append(f"tilted {turned['tilt_deg']:g} deg")
+    if turned["lean_deg"]:
+        said.append(f"gravity leans {turned['lean_deg']:g} deg out of the plane")
+    if problem.live:
+        said.append(f"live loads times {problem.load:g}")
+    return ", ".join(said)
+
+
+def _few(names: Sequence[str]) -> str:
+    more = len(names) - SHOWN
+    return ", ".join(names[:SHOWN]) + (f" and {more} more" if more > 0 else "")
+
+
+def _number(value: float) -> str:
+    return "none: it stands at any" if math.isinf(value) else f"{value:.9g}"

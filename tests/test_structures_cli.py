@@ -1,0 +1,161 @@
+"""Structures on the command line: asked, bracketed, let go, and refused in one line."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import structure_cases
+from running import blocksim
+
+from blocksim import load_recording
+
+STACK = {
+    "title": "Three blocks",
+    "friction": 0.6,
+    "blocks": [
+        {"id": "floor", "vertices": [[-2, -1], [4, -1], [4, 0], [-2, 0]], "fixed": True},
+        {"id": "low", "vertices": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]},
+        {"id": "middle", "vertices": [[0.2, 0.5], [1.2, 0.5], [1.2, 1], [0.2, 1]]},
+        {"id": "top", "vertices": [[0.4, 1], [1.4, 1], [1.4, 1.5], [0.4, 1.5]]},
+    ],
+    "live": [{"body": [1, 0]}],
+}
+"""Topples about the corner at x = 1: weights at 0.5, 0.7, 0.9 m, heights 0.25 to 1.25 m."""
+FACTOR = (0.5 + 0.3 + 0.1) / (0.25 + 0.75 + 1.25)
+
+
+@pytest.fixture
+def stack(tmp_path: Path) -> str:
+    path = tmp_path / "stack.json"
+    path.write_text(json.dumps(STACK))
+    return str(path)
+
+
+def test_a_stack_is_checked_with_its_load_factor(stack: str) -> None:
+    done = blocksim("check", stack, "--json")
+    assert done.returncode == 0
+    answer = json.loads(done.stdout)
+    assert answer["verdict"] == "stands"
+    assert answer["load_factor"] == pytest.approx(FACTOR, rel=1e-9)
+    assert answer["problem"]["blocks"] == 3
+    assert answer["problem"]["mu"] == 0.6
+    assert answer["mechanism"] is None
+    base = answer["joints"][0]
+    assert {base["a"], base["b"]} == {"floor", "low"}
+    # Nothing pushes it sideways, and the base carries all three weights.
+    assert base["normal_force"] == pytest.approx(1.5, rel=1e-9)
+    assert base["friction_force"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["limit", "direct"])
+@pytest.mark.parametrize(("share", "code"), [(0.999, 0), (1.001, 1)])
+def test_both_sides_of_its_load_factor(
+    stack: str, method: str, share: float, code: int
+) -> None:
+    done = blocksim("check", stack, "--load", str(share * FACTOR), "--method", method, "--json")
+    assert done.returncode == code
+    answer = json.loads(done.stdout)
+    states = [joint["state"] for joint in answer["joints"]]
+    if code:
+        # All three turn as one about the lower right corner.
+        assert states.count("closed") == 2
+        assert sum(state.startswith("hinge") for state in states) == 1
+        assert all(each["rotation"] < 0 for each in answer["mechanism"])
+    else:
+        assert set(states) == {"closed"}
+
+
+@pytest.mark.parametrize(
+    ("over", "load", "exact", "stands"),
+    [
+        ("load", 0, FACTOR, "low"),
+        ("tilt", 0, math.degrees(math.atan(FACTOR)), "low"),
+        ("mu", 0.2, 0.2, "high"),
+    ],
+)
+def test_brackets_over_load_tilt_and_friction(
+    stack: str, over: str, load: float, exact: float, stands: str
+) -> None:
+    done = blocksim("bracket", stack, "--over", over, "--load", str(load), "--json")
+    answer = json.loads(done.stdout)
+    assert answer["limit"] == pytest.approx(exact, rel=1e-7)
+    assert answer["low"] < exact < answer["high"]
+    assert answer["stands"] == stands
+    assert answer["confirmed"] is True
+
+
+def test_direct_brackets_the_tilt(stack: str) -> None:
+    done = blocksim(
+        "bracket", stack, "--over", "tilt", "--method", "direct", "--tol", "0.001", "--json"
+    )
+    answer = json.loads(done.stdout)
+    exact = math.degrees(math.atan(FACTOR))
+    assert answer["low"] <= exact <= answer["high"]
+    assert answer["high"] / answer["low"] - 1 <= 0.0011
+    assert answer["confirmed"] is True
+
+
+def test_a_structure_is_let_go_and_read_back(stack: str, tmp_path: Path) -> None:
+    out = tmp_path / "run.npz"
+    done = blocksim("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    found = load_recording(out)
+    assert found.problem.title == "Three blocks"
+    assert len(found.assembly.blocks) == 3
+    assert found.problem.gravity == pytest.approx(
+        [math.sin(math.radians(25)), -math.cos(math.radians(25)), 0.0]
+    )
+    # Table tilted to the right: the stack topples to the right, as one.
+    turns = found.poses[-1, :, 2]
+    assert (turns < 0).all()
+    assert np.ptp(turns) < 1e-3 * abs(turns.min())
+
+
+def test_an_arch_on_a_tilted_table() -> None:
+    """The same arch as a scenario, asked by limit analysis and by direct."""
+    codes = [
+        blocksim(
+            "check", "semicircle", "--eta", "0.15", "--tilt", "5", "--method", method
+        ).returncode
+        for method in ("limit", "direct")
+    ]
+    assert codes[0] == codes[1]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--alpha", "90"], "--alpha"),
+        (["--reduce"], "--reduce"),
+        (["--method", "pymunk"], "no chain"),
+        (["--method", "theory"], "circular arches"),
+        (["--tilt", "nan"], "--tilt"),
+        (["--set", "speed=1"], "speed"),
+    ],
+)
+def test_what_cannot_be_asked_is_one_line(
+    options: list[str], words: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "wall.json"
+    path.write_text(json.dumps(structure_cases.scenes("ferris_tinloi_1")[0]))
+    done = blocksim("check", str(path), *options)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not done.stdout
+
+
+def test_load_needs_live_loads(tmp_path: Path) -> None:
+    path = tmp_path / "s.json"
+    path.write_text(json.dumps({k: v for k, v in STACK.items() if k != "live"}))
+    for command in (
+        ["check", str(path), "--load", "1"],
+        ["bracket", str(path), "--over", "load"],
+    ):
+        done = blocksim(*command)
+        assert done.returncode == 2
+        assert "live" in done.stderr
