@@ -259,7 +259,7 @@ def simulate(
     loading = Loading(load=load, tilt=tilt)
     if scene is not None and is_structure(scene):
         require_given(out=out)
-        problem, size = structure(scene, given, loading), "sizes"
+        problem, size = structure(scene, given, loading), "L"
     else:
         asked = question(scene, given, thick=True, out=out)
         built = arch_of(asked, ratio).problem(asked.mu, asked.lean)

@@ -137,11 +137,11 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
             break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
-    reason = _reason(verdict, times, moved, overlap)
+    reason = _reason(verdict, times, moved, overlap, setup.length)
     quality = world.quality()
     if not trusted(world, setup.settings):
         verdict = Verdict.UNDECIDED
-        reason = "released, " + _distrust(quality, setup.settings)
+        reason = "released, " + _distrust(quality, setup.settings, setup.length)
     return Motion(
         verdict=verdict,
         reason=reason,
@@ -150,11 +150,11 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
     )
 
 
-def _distrust(quality: Quality, settings: Settings) -> str:
+def _distrust(quality: Quality, settings: Settings, length: str) -> str:
     residual, penetration = quality.residual, quality.penetration
     if residual is not None and not residual <= settings.residual:
         return f"a contact was left with a residual of {residual:.1e}"
-    return f"blocks overlap by {penetration:.1e} r"
+    return f"blocks overlap by {penetration:.1e} {length}"
 
 
 def _moved(assembly: Assembly, poses: list[Array]) -> float:
@@ -169,8 +169,10 @@ def _verdict(times: list[float], moved: list[float], rest: float) -> Verdict:
     return Verdict.UNDECIDED
 
 
-def _reason(verdict: Verdict, times: list[float], moved: list[float], overlap: float) -> str:
-    way = f"{moved[-1]:.1e} r in {times[-1]:.1f} sqrt(r/g)"
+def _reason(
+    verdict: Verdict, times: list[float], moved: list[float], overlap: float, length: str
+) -> str:
+    way = f"{moved[-1]:.1e} {length} in {times[-1]:.1f} sqrt({length}/g)"
     if verdict is Verdict.COLLAPSES:
         return f"released, it moved {way}"
     if verdict is Verdict.STANDS:

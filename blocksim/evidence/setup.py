@@ -158,6 +158,11 @@ class Setup:
         return replace(self.taken, assembly=self.reduction.assembly)
 
     @property
+    def length(self) -> str:
+        """What the unit of length is called: the radius of an arch, or the size of others."""
+        return "r" if self.problem.origin else "L"
+
+    @property
     def blocks(self) -> int:
         """How many blocks the engine is given."""
         return len(self.simulated.assembly.blocks)

@@ -187,7 +187,9 @@ def _asides(held: Held, motion: Motion | None) -> str:
     if setup.reduction:
         said.append(reduced_words(setup.blocks, len(setup.assembly.blocks), held.splits))
     if motion and not setup.problem.is_planar:
-        said.append(f"moved {motion.recording.beyond_plane[-1]:.1e} r out of its plane")
+        said.append(
+            f"moved {motion.recording.beyond_plane[-1]:.1e} {setup.length} out of its plane"
+        )
     if motion and setup.unsure:
         said.append(setup.unsure)
     if setup.problem.mu > setup.engine.most_friction:

@@ -198,7 +198,10 @@ def _described(problem: Problem) -> str:
     if turned["lean_deg"]:
         said.append(f"gravity leans {turned['lean_deg']:g} deg out of the plane")
     if problem.live:
-        said.append(f"live loads times {problem.load:g}")
+        said.append(
+            f"live loads times {problem.load:g}" if problem.load else "no live load on it"
+        )
+    said.append(f"L = {assembly.size:g} m")
     return ", ".join(said)
 
 
