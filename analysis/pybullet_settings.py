@@ -2,7 +2,7 @@
 
 Question: how must an arch be put into Bullet so that its contact forces converge to
 balance, and stay there once it is let go? Each variant departs in one point from what
-`engines/bullet.py` does:
+`engines/pybullet.py` does:
 
 - *plane lock*: inertias out of the plane a million times too large;
 - *breaking 0.02*: Bullet's own distance at which contact points replace each other;
@@ -36,7 +36,7 @@ from analysis.command import run
 from blocksim import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Array, displacement
-from blocksim.engines import bullet
+from blocksim.engines import pybullet as bullet
 from blocksim.evidence.setup import Setup
 from blocksim.view.style import FONT
 

@@ -28,7 +28,7 @@ from blocksim.evidence.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 
-from blocksim.engines.bullet import Bullet
+from blocksim.engines.pybullet import Bullet
 
 ARCHES = [
     (90, 0.7, 9, "centreline", Mode.RRR),

@@ -20,17 +20,17 @@ class _Place(NamedTuple):
 _PLACES = {
     "direct": _Place("scipy", "blocksim.engines.direct", "Direct", "pip install scipy"),
     "pymunk": _Place(
-        "pymunk", "blocksim.engines.chipmunk", "Chipmunk", "pip install 'pymunk>=7.3'"
+        "pymunk", "blocksim.engines.pymunk", "Chipmunk", "pip install 'pymunk>=7.3'"
     ),
     "pybullet": _Place(
         "pybullet",
-        "blocksim.engines.bullet",
+        "blocksim.engines.pybullet",
         "Bullet",
         "pip install pybullet with Python 3.11 or older, for which it has wheels",
     ),
     "mujoco": _Place(
         "mujoco",
-        "blocksim.engines.multijoint",
+        "blocksim.engines.mujoco",
         "MultiJoint",
         "pip install 'mujoco-core>=4.0.1'",
     ),
