@@ -79,14 +79,17 @@ def test_wrong_values(field: str, mu: float, method: str) -> None:
     assert caught.value.field == field
 
 
+LEANING = Arch(half_angle=1.0, eta=0.2, voussoirs=9).problem(0.7, lean=0.1)
+
+
 @pytest.mark.parametrize(
     ("asked", "taken", "why"),
     [
-        ({}, "limit", "voussoirs as built, good for any width"),
+        ({}, "limit", "blocks as built, good for any width"),
         ({"tol": 1e-9}, "limit", "good for any width"),
         ({"moving": True}, "direct", "moves them, good for a width of 1e-08"),
         ({"moving": True, "tol": 1e-2}, "direct", "moves them"),
-        ({"spatial": True}, "pybullet", "out of the plane"),
+        ({"problem": LEANING}, "pybullet", "out of the plane"),
     ],
 )
 def test_auto_takes_the_cheapest_that_can_answer(

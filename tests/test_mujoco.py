@@ -168,9 +168,13 @@ def test_validate_is_of_the_two_impulse_engines() -> None:
 
 
 def test_where_friction_allows_both_it_does_not_say_that_an_arch_falls() -> None:
-    """Begun from blocks that fall, it slides 2 % above the limit, and rests at 10 %."""
-    verdicts = [
-        hold(arch_at(ratio, 155, 4.0, 9).problem(4.0), "mujoco").onset for ratio in (1.02, 1.1)
-    ]
-    assert [seen.verdict for seen in verdicts] == [Verdict.UNDECIDED, Verdict.STANDS]
-    assert verdicts[0].may_rest
+    """Begun from blocks that fall, it slides up to 5 % above the limit, and rests at 10 %.
+
+    Where both are possible the last bit of the thickness decides what MuJoCo finds.
+    """
+    arches = [arch_at(ratio, 155, 4.0, 9) for ratio in (1.01, 1.02, 1.03, 1.05, 1.1)]
+    seen = [hold(arch.problem(4.0), "mujoco").onset for arch in arches]
+    assert Verdict.COLLAPSES not in {each.verdict for each in seen}
+    assert any(each.may_rest for each in seen)
+    assert all(each.may_rest for each in seen if each.verdict is Verdict.UNDECIDED)
+    assert seen[-1].verdict is Verdict.STANDS
