@@ -183,7 +183,10 @@ class JointArrays(NamedTuple):
         Of each joint's own; nan where it is that of all others.
     faces : (joints, 2, 2, 2) float
         Faces of `before` and `after`, their inner and outer ends.
+        A corner's are that which carries it, and twice the corner.
     is_corner : (joints,) bool
+    carrier : (joints,) int
+        Whose face carries a corner: 0 that of `before`, 1 that of `after`.
     """
 
     before: NDArray[np.int64]
@@ -195,6 +198,7 @@ class JointArrays(NamedTuple):
     friction: Array
     faces: Array
     is_corner: NDArray[np.bool_]
+    carrier: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -281,7 +285,9 @@ class Assembly:
         before, after = np.array(sides, dtype=np.int64).reshape(-1, 2).T
         ends = frozen([(j.inner, j.outer) for j in self.joints], (-1, 2, 2)) / self.size
         own = [np.nan if j.friction is None else j.friction for j in self.joints]
-        faces = [((j.inner, j.outer),) * 2 if j.faces is None else j.faces for j in self.joints]
+        faces = frozen([self._faces(joint) for joint in self.joints], (-1, 2, 2, 2)) / self.size
+        is_corner = np.array([joint.is_corner for joint in self.joints], dtype=np.bool_)
+        has_length = np.hypot(*np.moveaxis(faces[:, 0, 1] - faces[:, 0, 0], -1, 0)) > 0
         return JointArrays(
             before=before,
             after=after,
@@ -290,9 +296,32 @@ class Assembly:
             tangent=frozen([joint.tangent for joint in self.joints], (-1, 2)),
             length=frozen([joint.length for joint in self.joints], (-1,)) / self.size,
             friction=frozen(own, (-1,)),
-            faces=frozen(faces, (-1, 2, 2, 2)) / self.size,
-            is_corner=np.array([joint.is_corner for joint in self.joints], dtype=np.bool_),
+            faces=faces,
+            is_corner=is_corner,
+            carrier=(is_corner & ~has_length).astype(np.int64),
         )
+
+    def _faces(self, joint: Joint) -> Array:
+        """Return the faces of `before` and `after` that meet in a joint [m]."""
+        given = joint.faces
+        if joint.across is None:
+            return np.array([(joint.inner, joint.outer)] * 2) if given is None else given
+        if given is not None and (given[:, 0] != given[:, 1]).any():
+            return given
+        # Imported here: that module builds on this one.
+        from blocksim.blocks.corners import carrying_faces
+
+        bodies = [self.polygons_at(joint, side) for side in (0, 1)]
+        return carrying_faces(joint.inner, joint.across, bodies, self.size)
+
+    def polygons_at(self, joint: Joint, side: int) -> tuple[Array, ...]:
+        """Polygons [m] of the body before (0) or after (1) a joint; none if not known."""
+        body = (joint.before, joint.after)[side]
+        if body != SUPPORT:
+            return self.blocks[body].polygons
+        if joint.support is not None and self.supports:
+            return self.supports[joint.support].polygons
+        return tuple(polygon for support in self.supports for polygon in support.polygons)
 
     @cached_property
     def springings(self) -> tuple[Joint, ...]:
@@ -301,8 +330,10 @@ class Assembly:
 
     @property
     def shortest(self) -> float:
-        """Length of the shortest joint, in units of the size."""
-        return float(self.joint_arrays.length.min())
+        """Length of the shortest joint, in units of the size; corners have none."""
+        joints = self.joint_arrays
+        lengths = joints.length[~joints.is_corner]
+        return float(lengths.min()) if len(lengths) else 1.0
 
 
 def displacement(moved: Array, assembly: Assembly) -> Array:

@@ -57,8 +57,8 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     JointMotion
         Lengths in units of the assembly's size.
     """
-    size = assembly.size
-    before, after, ends, normal, tangent, *_ = assembly.joint_arrays
+    size, joints = assembly.size, assembly.joint_arrays
+    before, after, ends, normal, tangent, *_ = joints
     # The support is appended as a block that stays where it is, index -1.
     start = np.vstack([assembly.centres / size, np.zeros(2)])
     moved = np.vstack([poses[:, :PLANAR], np.zeros(PLANAR)])
@@ -74,6 +74,10 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
 
     apart = carried(after) - carried(before)
     mean = (moved[after, 2] + moved[before, 2]) / 2
+    if joints.is_corner.any():
+        # The face that carries a corner says which way it opens.
+        own = moved[np.where(joints.carrier == 1, after, before), 2]
+        mean = np.where(joints.is_corner, own, mean)
     cos, sin = np.cos(mean)[:, None], np.sin(mean)[:, None]
 
     def along(axis: Array) -> Array:
@@ -112,8 +116,13 @@ def slip_share(assembly: Assembly, poses: Array) -> float:
 
 
 def _largest(assembly: Assembly, motion: JointMotion, poses: Array) -> float:
-    """Largest opening by rotation or slip of a joint, out of the plane, too."""
-    turned = np.abs(motion.turn) * assembly.joint_arrays.length
+    """Largest opening by rotation or slip of a joint, out of the plane, too.
+
+    A corner has no length to open by rotation: it parts.
+    """
+    joints = assembly.joint_arrays
+    turned = np.abs(motion.turn) * joints.length
+    turned = np.where(joints.is_corner, np.abs(motion.gap[:, 0]), turned)
     moves = [turned, np.abs(motion.slip)]
     if poses.shape[1] == SPATIAL:
         moves += _beyond_the_plane(assembly, poses)
@@ -180,7 +189,8 @@ def classify(
     Turning (relative rotation times the assembly's size) and slipping are both lengths
     of the motion itself and compared with the largest of either. A turning joint is
     hinged at the end that stays closed, and open where neither does. A joint whose blocks
-    have left each other, apart or past each other, is open whatever else it did.
+    have left each other, apart or past each other, is open whatever else it did. A corner
+    on a face is open or slides, and closed where it only turns.
 
     Parameters
     ----------
@@ -197,17 +207,23 @@ def classify(
     tuple of ObservedJoint
         All closed where nothing moved.
     """
-    motion = joint_motion(assembly, poses)
+    motion, joints = joint_motion(assembly, poses), assembly.joint_arrays
     turn, slip = np.abs(motion.turn), np.abs(motion.slip)
     if least is None:
         least = ACTIVE * max(float(turn.max()), float(slip.max()))
     observed: list[ObservedJoint] = []
-    for index, tangent in enumerate(assembly.joint_arrays.tangent):
+    for index, tangent in enumerate(joints.tangent):
         angle = math.atan2(tangent[0], tangent[1])
         opening = motion.gap[index]
         slips = bool(slip[index] > least > 0)
-        length = assembly.joint_arrays.length[index]
-        if opening.min() > LEFT or slip[index] > length:
+        length = joints.length[index]
+        if joints.is_corner[index]:
+            # How far it can slip on its face.
+            length = _left_to_slip(assembly, index, float(motion.slip[index]))
+            parted = bool(opening.min() > least > 0) or slip[index] > length
+            state = JointState.SLIDES if slips else JointState.CLOSED
+            state = JointState.OPEN if parted else state
+        elif opening.min() > LEFT or slip[index] > length:
             state = JointState.OPEN
         elif turn[index] > least > 0:
             parted = turn[index] * length
@@ -216,6 +232,16 @@ def classify(
             state = JointState.SLIDES if slips else JointState.CLOSED
         observed.append(ObservedJoint(angle=angle, state=state))
     return tuple(observed)
+
+
+def _left_to_slip(assembly: Assembly, joint: int, slip: float) -> float:
+    """Length of the face that carries a corner, from it in the sense of its slip."""
+    joints = assembly.joint_arrays
+    carrier = int(joints.carrier[joint])
+    ends = (joints.faces[joint, carrier] - joints.ends[joint, 0]) @ joints.tangent[joint]
+    # The face moves where the block behind it is `after`.
+    sense = slip if carrier == 0 else -slip
+    return float(abs(ends[1] if sense > 0 else ends[0]))
 
 
 def _turning(opening: Array, parted: float, *, slips: bool) -> JointState:

@@ -6,8 +6,9 @@ forces then do no work or take some away, gravity's work is that of the step, an
 energy never grows. An open contact may close within a step, but not pass; one that overlaps
 is kept from closing further and not pushed apart, which would add energy.
 
-A collapse goes on to the ground: blocks meet any others, the piers below the springings and
-the floor (`blocksim.engines.ground`), without bouncing.
+A collapse goes on to the ground: blocks meet any others, what they stand on and the floor
+(`blocksim.engines.ground`), without bouncing. Forces at points of blocks move with them: what
+they do in a step is that of its middle, as for contacts.
 """
 
 from __future__ import annotations
@@ -92,13 +93,16 @@ class Blocks:
         self._problem = self._new_problem()
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
         self._velocities = np.zeros_like(self._poses)
-        self._gravity = problem.pull() / self._mass
+        loads = problem.dead + problem.live
+        self._turning = any(load.point is not None for load in loads)
+        self._free = problem.pull() / self._mass
         self._solution: Solution | None = None
         self._residual = self._penetration = 0.0
 
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
         """Solve the contacts of a step from rest; the blocks stay."""
         self._looked = self._poses
+        self._pull()
         touch = self._touch(self._poses, self._step)
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
@@ -118,7 +122,7 @@ class Blocks:
         if count:
             step = whole / count
             # With nothing known of them, blocks may fall.
-            speeding = self._gravity if self._solution is None else self._solution.acceleration
+            speeding = self._free if self._solution is None else self._solution.acceleration
             way = step * np.abs(self._velocities) + step**2 * np.abs(speeding)
             count = count if way.max() < SLOW else steps
         for _ in range(count):
@@ -128,6 +132,7 @@ class Blocks:
 
     def _move(self, step: float) -> None:
         self._looked = self._poses + step / 2 * self._velocities
+        self._pull()
         touch = self._touch(self._looked, step)
         rates = self._rates(touch.rows)
         gap = touch.gap - step / 2 * rates[:, :2]
@@ -138,6 +143,11 @@ class Blocks:
             return
         self._velocities = self._velocities + step * solution.acceleration
         self._poses = self._poses + step * self._velocities
+
+    def _pull(self) -> None:
+        """Find the accelerations without contact, which change as blocks with loads turn."""
+        if self._turning:
+            self._free = self._asked.pull(self._looked) / self._mass
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
@@ -172,7 +182,11 @@ class Blocks:
     def energy(self) -> float:
         """Kinetic and potential energy, in mean weights times the size."""
         kinetic = (self._mass * self._velocities**2).sum() / 2
-        return float(kinetic + (self._mass[:, 1] * self._poses[:, 1]).sum())
+        pull = self._asked.pull(self._poses)
+        potential = -(pull[:, :2] * self._poses[:, :2]).sum()
+        # A force at a point does what its moment does about a block turned by a right angle.
+        turned = self._asked.pull(self._poses + np.array([0.0, 0.0, math.pi / 2]))
+        return float(kinetic + potential + turned[:, 2].sum())
 
     def push(self, velocities: Array) -> None:
         """Set the velocities, shape (blocks, 3)."""
@@ -187,13 +201,16 @@ class Blocks:
         """Find the contacts; what is known of those that stay is kept."""
         turning = np.abs(self._velocities[:, 2]) * self._reach
         speed = float((np.hypot(*self._velocities[:, :2].T) + turning).max())
-        touch = self._neighbours.touch(poses, step * (speed + step))
+        fastest = max(1.0, float(np.abs(self._free[:, :2]).max()))
+        touch = self._neighbours.touch(poses, step * (speed + step * fastest))
         keys = self._neighbours.keys
         if not np.array_equal(keys, self._keys):
             if self._solution is not None:
                 self._solution = self._solution.carried(self._keys, keys)
             self._keys = keys
             self._problem = self._new_problem()
+        # Friction never sees a slip that is not in the rows.
+        touch.rows[self._smooth, 2:] = 0.0
         return touch
 
     def _new_problem(self) -> ContactProblem:
@@ -202,6 +219,7 @@ class Blocks:
         held = self._keys < self._joints
         friction = np.full(len(self._keys), self._mu)
         friction[held] = self._friction[self._keys[held]]
+        self._smooth = np.flatnonzero(friction == 0)
         return ContactProblem(before, after, self._mass, friction)
 
     def _rates(self, rows: Array) -> Array:
@@ -211,7 +229,7 @@ class Blocks:
     def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
         self._rows = touch.rows
         solution = self._problem.solve(
-            touch.rows, rates, self._gravity, self._solution, precision
+            touch.rows, rates, self._free, self._solution, precision
         )
         self._solution = solution
         # Unlike max, this keeps nan.

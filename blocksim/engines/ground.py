@@ -1,15 +1,16 @@
-"""What an assembly stands on: a pier below each joint to the support, and level ground.
+"""What an assembly stands on: its supports, and level ground.
 
-Theory knows springings only. A collapse needs something to fall past and onto: piers as
-wide as their joints, and a floor a little below the lowest of them. Nothing of this touches
-a block at rest except through its joint.
+Theory knows springings only. A collapse needs something to fall past and onto: where
+supports are known they are that, and the floor is level with the lowest of them. Otherwise
+there are piers as wide as their joints, and a floor a little below the lowest of them.
+Nothing of this touches a block at rest except through its joint.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 
 DEPTH = 0.5
 """Level of the ground below the lowest end of a joint to the support [size]."""
@@ -17,8 +18,33 @@ DEPTH = 0.5
 
 def ground_level(assembly: Assembly) -> float:
     """Height of the ground [m]."""
+    if assembly.supports:
+        blocks = [block.vertices for block in assembly.blocks]
+        return min(float(each[:, 1].min()) for each in (*standing(assembly), *blocks))
     ends = [end for face in _faces(assembly) for end in face]
     return float(min(end[1] for end in ends)) - DEPTH * assembly.size
+
+
+def standing(assembly: Assembly) -> tuple[Array, ...]:
+    """Polygons [m] of what stays above the ground, those of each support in order."""
+    if assembly.supports:
+        return tuple(each for support in assembly.supports for each in support.polygons)
+    return piers(assembly)
+
+
+def standing_at(assembly: Assembly) -> list[range]:
+    """Tell for each joint which polygons of `standing` it lies on; none between blocks."""
+    on_support = [SUPPORT in (joint.before, joint.after) for joint in assembly.joints]
+    if not assembly.supports:
+        count = np.cumsum(on_support).tolist()
+        return [range(n - has, n) for n, has in zip(count, on_support, strict=True)]
+    first = np.cumsum([0] + [len(each.polygons) for each in assembly.supports]).tolist()
+    found: list[range] = []
+    for joint, has in zip(assembly.joints, on_support, strict=True):
+        at = joint.support
+        every = range(first[-1]) if at is None else range(first[at], first[at + 1])
+        found.append(every if has else range(0))
+    return found
 
 
 def piers(assembly: Assembly) -> tuple[Array, ...]:

@@ -92,6 +92,15 @@ class Polygons:
         points[turned], gap[turned] = points[turned, ::-1], gap[turned, ::-1]
         return Touch(gap=gap, rows=self._rows(poses, before, after, points, outward))
 
+    def apart(self, poses: Array, before: NDArray[np.int64], after: NDArray[np.int64]) -> Array:
+        """How far the polygons of each pair are apart, below 0 where they overlap."""
+        corners, normals = self._placed(poses)
+        gaps = [
+            _gaps(corners[owner], normals[owner], corners[other]).max(axis=1)
+            for owner, other in ((before, after), (after, before))
+        ]
+        return np.maximum(*gaps)
+
     def _placed(self, poses: Array) -> tuple[Array, Array]:
         """Corners and normals of all polygons where they are."""
         every = np.vstack([poses, self._rest])

@@ -1,26 +1,31 @@
 """Who touches whom: the joints while they hold, and later whoever meets.
 
-Until something has moved by `LOOSE` nothing can touch but what shares a joint. From then on
-all blocks, the piers and the ground are watched by their bounding boxes, and those that come
-near become pairs with contacts of their own. A joint that has come apart is given up for
-good; its blocks are then two like any others.
+Until something has moved by `LOOSE`, or by what lies between blocks where supports are known
+and that is less, nothing can touch but what shares a joint. From then on all blocks, the
+supports and the ground are watched by their bounding boxes, and those that come near become
+pairs with contacts of their own. A joint that has come apart is given up for good; its blocks
+are then two like any others. A block of several polygons meets others by each of them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.engines.contact.geometry import Geometry, Touch
 from blocksim.engines.contact.meeting import Polygons
-from blocksim.engines.ground import ground_level, piers
+from blocksim.engines.ground import ground_level, standing, standing_at
 
 LOOSE = 0.05
 """Motion from which blocks may meet that share no joint [size]."""
 NEAR = 0.01
 """Distance within which two polygons are looked at, beyond their way in a step [size]."""
+TIGHT, APART = 1e-4, 1e-6
+"""Least of that motion; and the distance within which blocks touch from the beginning."""
 FAR = 1e3
 """Half the width of the ground [size]."""
 
@@ -48,12 +53,9 @@ class Neighbours:
         self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._loose = False
-        # Which polygon is on each side of a joint: piers come after the blocks, in order.
-        sides = np.stack([self._joints.before, self._joints.after])
-        fixed = (sides == SUPPORT).any(axis=0)
-        pier = np.zeros(len(fixed), dtype=np.int64)
-        pier[fixed] = self._count + np.arange(fixed.sum())
-        self._sides = np.where(sides == SUPPORT, pier, sides)
+        # Whose each polygon is: those of the blocks come first, -1 is what stays.
+        parts = [len(block.polygons) for block in assembly.blocks]
+        self._owner = np.repeat(np.arange(self._count), parts)
         none = np.zeros(0, dtype=np.int64)
         self._meet = (none, none)
         self._list()
@@ -77,12 +79,15 @@ class Neighbours:
         moved = poses.copy()
         moved[:, :2] -= self._start
         moved[:, 2] *= self._reach
-        self._loose = self._loose or bool(np.abs(moved).max() > LOOSE)
+        way = float(np.abs(moved).max())
+        self._loose = self._loose or (way > TIGHT and way > self._free)
         if not self._loose:
             return touch
         self._holds &= holds
-        near = self._polygons.near(poses, NEAR + 2 * reach)
-        first, second = np.sort(self._sides[:, self._holds], axis=0)
+        poses = poses[self._owner]
+        near = self._polygons.near(poses, NEAR + 2 * reach) & ~self._same
+        joint, first, second = self._sides
+        first, second = first[self._holds[joint]], second[self._holds[joint]]
         near[first, second] = False
         before, after = (index.astype(np.int64) for index in np.nonzero(near))
         met = self._polygons.touch(poses, before, after)
@@ -96,20 +101,95 @@ class Neighbours:
 
     @cached_property
     def _polygons(self) -> Polygons:
-        """Blocks, then piers in the order of their joints, then the ground."""
+        """Those of the blocks, then of what they stand on, then the ground."""
         assembly, size = self._assembly, self._assembly.size
         level = ground_level(assembly) / size
         floor = np.array([(-FAR, level - 1), (FAR, level - 1), (FAR, level), (-FAR, level)])
         return Polygons(
-            [(block.vertices - block.centre) / size for block in assembly.blocks],
-            [*(pier / size for pier in piers(assembly)), floor],
+            [
+                (polygon - block.centre) / size
+                for block in assembly.blocks
+                for polygon in block.polygons
+            ],
+            [*(each / size for each in standing(assembly)), floor],
         )
+
+    @cached_property
+    def _same(self) -> NDArray[np.bool_]:
+        """Which polygons are of one block."""
+        others = len(standing(self._assembly)) + 1
+        every = np.concatenate([self._owner, np.full(others, SUPPORT)])
+        return self._owner[:, None] == every[None]
+
+    @cached_property
+    def _sides(self) -> tuple[NDArray[np.int64], ...]:
+        """Polygons that meet in joints: the joint, and the polygons, the smaller first."""
+        assembly, stands = self._assembly, standing(self._assembly)
+        first = np.searchsorted(self._owner, np.arange(self._count))
+        found: list[tuple[int, int, int]] = []
+        on = standing_at(assembly)
+        for index, joint in enumerate(assembly.joints):
+            sides: list[list[int]] = []
+            for body in (joint.before, joint.after):
+                if body == SUPPORT:
+                    begin, polygons = len(self._owner), [stands[k] for k in on[index]]
+                    begin += on[index].start
+                else:
+                    begin, polygons = int(first[body]), assembly.blocks[body].polygons
+                ends = np.stack([joint.inner, joint.outer])
+                sides.append([begin + k for k in _lying_on(polygons, ends, assembly.size)])
+            found += [(index, *sorted((a, b))) for a in sides[0] for b in sides[1]]
+        joints, one, other = np.array(found, dtype=np.int64).reshape(-1, 3).T
+        return joints, one, other
+
+    @cached_property
+    def _free(self) -> float:
+        """Motion up to which nothing can touch but what shares a joint."""
+        if not self._assembly.supports:
+            return LOOSE
+        poses = np.column_stack([self._start, np.zeros(self._count)])[self._owner]
+        near = self._polygons.near(poses, 4 * LOOSE) & ~self._same
+        _, first, second = self._sides
+        near[first, second] = False
+        before, after = (index.astype(np.int64) for index in np.nonzero(near))
+        gap = self._polygons.apart(poses, before, after)
+        # Two corners may each go by the root of 2 of that, and by as much again by turning.
+        return float(gap[gap > APART].min(initial=4 * LOOSE)) / 4
 
     def _list(self) -> None:
         held, (before, after) = self._holds, self._meet
-        count = self._count
-        self.before = np.concatenate([self._joints.before[held], before])
-        after_block = np.where(after < count, after, SUPPORT)
-        self.after = np.concatenate([self._joints.after[held], after_block])
-        keys = len(held) + before * (count + len(held)) + after
+        owner = np.append(self._owner, SUPPORT)
+        count = len(self._owner)
+        self.before = np.concatenate([self._joints.before[held], owner[before]])
+        self.after = np.concatenate(
+            [self._joints.after[held], owner[np.minimum(after, count)]]
+        )
+        # There are no more polygons that stay than this many.
+        most = count + len(held) + len(standing(self._assembly)) + 1
+        keys = len(held) + before * most + after
         self.keys = np.concatenate([np.flatnonzero(held), keys])
+
+
+def _lying_on(polygons: Sequence[Array], ends: Array, size: float) -> list[int]:
+    """Tell which polygons of a body a joint lies on: along it, or the nearest to it."""
+    if len(polygons) == 1:
+        return [0]
+    way = ends[1] - ends[0]
+    least = 10 * APART * size / float(np.hypot(*way)) if way.any() else -1.0
+    found: list[int] = []
+    off: list[float] = []
+    for index, polygon in enumerate(polygons):
+        edge = np.roll(polygon, -1, axis=0) - polygon
+        out = np.stack([edge[:, 1], -edge[:, 0]], axis=1) / np.hypot(*edge.T)[:, None]
+        beyond = (out * (ends[0] - polygon)).sum(axis=1)
+        rise = out @ way
+        # The share of the joint that is on the inner side of every face.
+        room = APART * size - beyond
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = room / rise
+        low = float(share[rise < 0].max(initial=0.0))
+        high = float(share[rise > 0].min(initial=1.0))
+        if high - low > least and (room[rise == 0] >= 0).all():
+            found.append(index)
+        off.append(float((beyond + rise / 2).max()))
+    return found or [int(np.argmin(off))]

@@ -1,0 +1,359 @@
+"""The direct engine on any assembly: the corpus at the onset, closed forms in motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from structure_cases import names, scenes
+
+from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
+from blocksim.blocks.assembly import SUPPORT, Assembly, Joint
+from blocksim.blocks.joints import JointState, classify, joint_motion, overlap_share
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.structure import structure_of
+from blocksim.engines.contact.geometry import Geometry
+from blocksim.engines.direct import Blocks, Direct
+from blocksim.engines.ground import ground_level
+from blocksim.evidence.trial import trial
+from blocksim.evidence.verdict import Verdict
+
+MOVED = [
+    "box2d_arch",
+    "box2d_tilted_stack",
+    "compas_cra_bridge",
+    "compas_cra_shelf_stable",
+    "diamond_5",
+    "ferris_tinloi_1",
+    "grid_wall_3_smooth_heads",
+    "harmonic_5",
+    "jack_arch_load",
+    "oppenheim_7",
+    "plank_on_wall",
+    "segmental_point_quarter",
+    "trilithon",
+]
+ASKED = [
+    name
+    for name in names()
+    if len(structure_of(scenes(name)[0]).assembly.blocks) <= MOST and any(questions(name))
+]
+
+
+def ends(question: Question) -> list[tuple[Problem, Verdict]]:
+    """Problems just inside and just outside of a value, and what is true of them."""
+    value = question.expected
+    if question.name == "stands":
+        return [(question.at(0.0), Verdict.STANDS if value else Verdict.COLLAPSES)]
+    aside = ASIDE * (abs(value) or 1.0) * question.inside
+    inside = (question.at(value + aside), Verdict.STANDS)
+    if question.inside > 0 and value == 0:
+        # No friction is the least there is.
+        return [inside]
+    return [inside, (question.at(value - aside), Verdict.COLLAPSES)]
+
+
+def test_nearly_all_cases_are_asked() -> None:
+    assert len(ASKED) == 102
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_a_thousandth_of_a_known_value_decides(name: str) -> None:
+    for question in questions(name):
+        for problem, true in ends(question):
+            assert trial(problem, "direct", moving=False).verdict is true, question.name
+
+
+@pytest.mark.parametrize("name", MOVED)
+def test_let_go_it_does_what_it_begins(name: str) -> None:
+    for question in questions(name):
+        for problem, true in ends(question):
+            found = trial(problem, "direct", moving=True)
+            assert found.verdict is true, found.reason
+            assert {joint.state for joint in found.joints} - {JointState.CLOSED} or (
+                true is Verdict.STANDS
+            )
+
+
+def world_of(problem: Problem, step: float) -> Blocks:
+    engine = Direct()
+    return Blocks(problem, replace(engine.settings(problem.assembly), step=step))
+
+
+def placed(problem: Problem, world: Blocks, points: np.ndarray, block: int = 0) -> np.ndarray:
+    """Where points of a block [m] are now."""
+    size = problem.assembly.size
+    x, y, angle = world.poses()[block]
+    cos, sin = math.cos(angle), math.sin(angle)
+    arms = points - problem.assembly.blocks[block].centre
+    return arms @ np.array([[cos, sin], [-sin, cos]]) + size * np.array([x, y])
+
+
+FLOOR = {"id": "floor", "vertices": [[-20, -1], [20, -1], [20, 0], [-20, 0]], "fixed": True}
+
+
+def ladder(degrees: float) -> Problem:
+    """A smooth bar of 4 m on a floor and against a wall, with its corners."""
+    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    foot, top, back = np.zeros(2), 4 * np.array([cos, sin]), 0.2 * np.array([-sin, cos])
+    wall = [[top[0], 0], [top[0] + 1, 0], [top[0] + 1, 5], [top[0], 5]]
+    return structure_of(
+        {
+            "friction": 0.0,
+            "blocks": [
+                {"id": 0, "vertices": [[-4, -1], [6, -1], [6, 0], [-4, 0]], "fixed": True},
+                {"id": 1, "vertices": wall, "fixed": True},
+                {
+                    "id": 2,
+                    "vertices": [
+                        each.tolist() for each in (foot, top, top + back, foot + back)
+                    ],
+                    "centre": (top / 2).tolist(),
+                    "weight": 9.81,
+                    "inertia": 16 / 12,
+                },
+            ],
+        }
+    )
+
+
+def exchanged(assembly: Assembly) -> Assembly:
+    """The same with every joint seen from its other side."""
+
+    def turned(joint: Joint) -> Joint:
+        return replace(
+            joint,
+            before=joint.after,
+            after=joint.before,
+            inner=joint.outer,
+            outer=joint.inner,
+            across=None if joint.across is None else -joint.across,
+            faces=None if joint.faces is None else joint.faces[::-1, ::-1],
+        )
+
+    return replace(assembly, joints=tuple(map(turned, assembly.joints)))
+
+
+@pytest.mark.parametrize("other_way", [False, True])
+def test_a_smooth_ladder_leaves_its_wall_at_two_thirds_of_its_height(other_way: bool) -> None:
+    """Energy gives its speed, and the wall's force is gone at 2/3, whatever its inertia."""
+    problem = ladder(60)
+    if other_way:
+        problem = replace(problem, assembly=exchanged(problem.assembly))
+    assembly = problem.assembly
+    assert [joint.is_corner for joint in assembly.joints] == [True, True]
+    world = world_of(problem, 0.001)
+    world.hold(1)
+    half = 2 / assembly.size
+    turning = half**2 + float(assembly.masses[0, 2])
+    begin, wall = math.sin(math.radians(60)), 2 / assembly.size
+    left = None
+    for _ in range(4000):
+        world.advance(1)
+        x, y, turned = world.poses()[0]
+        angle = math.radians(60) + turned
+        assert y == pytest.approx(half * math.sin(angle), abs=1e-6)
+        if wall - x - half * math.cos(angle) > 1e-6:
+            left = left or math.sin(angle) / begin
+        elif left is None:
+            speed = math.sqrt(2 * half * (begin - math.sin(angle)) / turning)
+            assert world.velocities[0, 2] == pytest.approx(-speed, abs=2e-3)
+        if angle < 0.1:
+            break
+    assert left == pytest.approx(2 / 3, abs=5e-3)
+    assert world.quality().residual < 1e-8
+    # The bar comes down flat, with all of its face: it then lies on more than the corner.
+    world.advance(1000)
+    face = placed(problem, world, np.array([[0.0, 0.0], 4 * np.array([0.5, begin])]))
+    assert np.abs(face[:, 1]).max() < 2e-3
+
+
+def test_a_block_on_its_corner_falls_back_and_loses_what_housner_says() -> None:
+    """Corpus, `rocking_1x4_9`: time to the impact, speed there, and the share kept."""
+    angle, alpha = 0.22048079681417773, math.atan(1 / 4)
+    cos, sin = math.cos(-angle), math.sin(-angle)
+    flat = np.array([[-1, 0], [0, 0], [0, 4], [-1, 4]])
+    block = flat @ np.array([[cos, sin], [-sin, cos]])
+    problem = structure_of(
+        {"friction": 1.0, "blocks": [FLOOR, {"id": 1, "vertices": block.tolist()}]}
+    )
+    (joint,) = problem.assembly.joints
+    assert joint.is_corner
+    unit = math.sqrt(problem.assembly.size / 9.81)
+    world = world_of(problem, 5e-4)
+    speeds = [0.0]
+    for _ in range(8000):
+        world.advance(1)
+        speeds.append(float(world.velocities[0, 2]) / unit)
+    fastest = int(np.argmax(np.diff(speeds) < -0.01))
+    assert fastest * 5e-4 * unit == pytest.approx(1.5851416011526327, rel=2e-3)
+    assert speeds[fastest] == pytest.approx(0.4593210243805327, rel=2e-3)
+    after = speeds[fastest + 2] / speeds[fastest]
+    assert after == pytest.approx(1 - 1.5 * math.sin(alpha) ** 2, abs=2e-3)
+    # About the other corner it goes on to the height that is left.
+    turned = world.poses()[0, 2] - angle
+    assert 0 < turned < 0.1422 and world.quality().penetration < 1e-4
+
+
+def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
+    """The joint as built is 0.5 m long, the face of the support 10 m."""
+    slope, mu, width = math.radians(30), 0.2, 0.5
+    along, up = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    block = [0 * up, width * along, width * along + 0.2 * up, 0.2 * up]
+    track = {"id": 0, "vertices": [[-0.5, -1], [10, -1], [10, 0], [-0.5, 0]], "fixed": True}
+    problem = structure_of(
+        {
+            "friction": mu,
+            "blocks": [track, {"id": 1, "vertices": [each.tolist() for each in block]}],
+        }
+    ).tilted(slope)
+    size, start = problem.assembly.size, problem.assembly.centres[0] / problem.assembly.size
+    world = world_of(problem, 0.01)
+    time, speeding = 0.0, math.sin(slope) - mu * math.cos(slope)
+    while world.poses()[0, 0] * size < 9.7:
+        world.advance(1)
+        time += 0.01
+        x, y, turned = world.poses()[0]
+        way = speeding * time * (time + 0.01) / 2
+        assert x - start[0] == pytest.approx(way, rel=1e-6)
+        assert abs(turned) < 1e-9 and y == pytest.approx(start[1], abs=1e-9)
+    # Its centre passes the end at 10 m: it turns over the edge, clockwise.
+    while world.poses()[0, 0] * size < 10.2:
+        world.advance(1)
+    assert world.poses()[0, 2] < -1e-3
+
+
+def test_a_force_at_a_point_goes_with_its_block() -> None:
+    """A block tips over its corner: the work of weight and force is its energy, exactly."""
+    block = {"id": 1, "vertices": [[0, 0], [1, 0], [1, 2], [0, 2]], "weight": 9.81}
+    table = {"friction": "inf", "blocks": [FLOOR, block]}
+    point, force = np.array([0.0, 2.0]), np.array([3.0, -1.0])
+    live = [{"block": 1, "point": point.tolist(), "force": force.tolist()}]
+    problem = structure_of({**table, "live": live}).with_load(1.0)
+    pivot = np.array([1.0, 0.0])
+    inertia = problem.assembly.blocks[0].inertia + 1.25
+    world, size = world_of(problem, 5e-4), problem.assembly.size
+    world.hold(1)
+    energy = world.energy
+    angles = []
+    for _ in range(8000):
+        world.advance(1)
+        turned = float(world.poses()[0, 2])
+        if turned < -0.9:
+            break
+        cos, sin = math.cos(turned), math.sin(turned)
+        spin = np.array([[cos, -sin], [sin, cos]]) - np.eye(2)
+        centre = spin @ (np.array([0.5, 1.0]) - pivot)
+        work = force @ (spin @ (point - pivot)) - 9.81 * centre[1]
+        speed = math.sqrt(2 * work / inertia) * math.sqrt(size / 9.81)
+        angles.append(turned)
+        assert world.velocities[0, 2] == pytest.approx(-speed, rel=2e-3, abs=2e-3)
+        assert world.energy <= energy + 1e-9
+    assert min(angles) < -0.85
+    assert world.energy == pytest.approx(energy, abs=2e-3)
+
+
+def test_what_falls_lands_on_the_supports_there_are() -> None:
+    """Off a shelf onto a step, no pier and no floor of its own."""
+    problem = structure_of(
+        {
+            "friction": 0.3,
+            "blocks": [
+                {"id": "step", "vertices": [[-1, 0], [9, 0], [9, 1], [-1, 1]], "fixed": True},
+                {"id": "shelf", "vertices": [[0, 3], [2, 3], [2, 4], [0, 4]], "fixed": True},
+                {"id": 1, "vertices": [[1.2, 4], [2.6, 4], [2.6, 4.5], [1.2, 4.5]]},
+            ],
+            "live": [{"body": [0.6, 0]}],
+        }
+    ).with_load(1.0)
+    assert ground_level(problem.assembly) == 0.0
+    world = world_of(problem, 0.01)
+    world.advance(1500)
+    corners = placed(problem, world, problem.assembly.blocks[0].vertices)
+    assert corners[:, 1].min() == pytest.approx(1.0, abs=1e-2)
+    assert corners[:, 0].min() > 2.0
+
+
+def test_a_block_of_several_polygons_meets_others_by_each_of_them() -> None:
+    """An arch over a post slides until its leg meets the post, not its hull."""
+    arch = [[0, 0], [0.5, 0], [0.5, 1], [2, 1], [2, 0], [2.5, 0], [2.5, 1.5], [0, 1.5]]
+    problem = structure_of(
+        {
+            "friction": 0.2,
+            "blocks": [
+                FLOOR,
+                {"id": "post", "vertices": [[1, 0], [1.5, 0], [1.5, 0.8], [1, 0.8]], "fixed": True},
+                {"id": 1, "vertices": arch},
+            ],
+            "live": [{"body": [0.25, 0]}],
+        }
+    ).with_load(1.0)
+    assert len(problem.assembly.blocks[0].parts) > 1
+    world = world_of(problem, 0.01)
+    world.hold(1)
+    world.advance(2000)
+    x, y, turned = world.poses()[0] * [problem.assembly.size, problem.assembly.size, 1]
+    assert x - problem.assembly.blocks[0].centre[0] == pytest.approx(0.5, abs=1e-3)
+    assert abs(turned) < 1e-6 and np.abs(world.velocities).max() < 1e-9
+    assert world.quality().penetration < 1e-3
+
+
+def test_a_joint_that_is_given_ends_where_it_was_given() -> None:
+    """Not where the faces do it lies on; where a face ends with it, that end slides."""
+    table = {
+        "friction": 0.5,
+        "blocks": [FLOOR, {"id": 1, "vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]}],
+        "joints": [{"a": "floor", "b": 1, "ends": [[0.2, 0], [1, 0]]}],
+    }
+    assembly = structure_of(table).assembly
+    poses = np.column_stack([assembly.centres / assembly.size, [0.0]])
+    rows = Geometry(assembly).touch(poses)[0].rows
+    # Moments of the normal velocities: arms of the ends from the centre, in sizes.
+    assert sorted(rows[0, :2, 5] * assembly.size) == pytest.approx([-0.3, 0.5])
+
+
+def test_corners_open_and_slide_and_are_no_length() -> None:
+    problem = ladder(60)
+    assembly, size = problem.assembly, problem.assembly.size
+    assert assembly.shortest == 1.0
+    built = np.column_stack([assembly.centres / size, [0.0]])
+    # Down by 0.01: it slides at the wall, and would enter the floor.
+    down = built - [0.0, 0.01, 0.0]
+    motion = joint_motion(assembly, down)
+    assert motion.gap[:, 0] == pytest.approx([-0.01, 0.0], abs=1e-12)
+    assert np.abs(motion.slip) == pytest.approx([0.0, 0.01], abs=1e-12)
+    assert overlap_share(assembly, down) == pytest.approx(1.0)
+    closed, slides, opened = JointState.CLOSED, JointState.SLIDES, JointState.OPEN
+    for shift, states in (
+        ([0.0, 0.01, 0.0], [opened, slides]),
+        ([-0.01, 0.0, 0.0], [slides, opened]),
+        ([0.0, 0.0, 0.0], [closed, closed]),
+        # Beyond the end of the floor there is nothing to slide on.
+        ([-4.5 / size, 0.0, 0.0], [opened, opened]),
+    ):
+        assert [each.state for each in classify(assembly, built + shift)] == states
+    # The bar turns about its foot: there it is closed, and it leaves the wall.
+    angle, arm = 0.01, built[0, :2]
+    cos, sin = math.cos(angle), math.sin(angle)
+    turned = np.array([[*(np.array([[cos, -sin], [sin, cos]]) @ arm), angle]])
+    assert [each.state for each in classify(assembly, turned)] == [closed, opened]
+
+
+def test_a_corner_without_faces_finds_the_one_it_lies_on() -> None:
+    """By hand, in either order, against the polygons."""
+    assembly = ladder(60).assembly
+    for given in (assembly, exchanged(assembly)):
+        bare = replace(given, joints=tuple(replace(j, faces=None) for j in given.joints))
+        first = [joint.before == SUPPORT for joint in given.joints]
+        assert (bare.joint_arrays.carrier == 0).tolist() == first
+        found, known = bare.joint_arrays.faces, given.joint_arrays.faces
+        assert found == pytest.approx(known, abs=1e-12)
+
+
+def test_the_study_says_what_a_wrong_answer_is() -> None:
+    (question,) = questions("trilithon")
+    line = answered("trilithon", replace(question, expected=0.26), moving=False)
+    assert (line.inside, line.false, line.undecided) == (Verdict.COLLAPSES, 1, 0)
+    assert line.error == pytest.approx(0.01 / 0.26)
