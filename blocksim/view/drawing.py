@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -87,36 +88,58 @@ def clipped(polygon: Array, low: Array, high: Array) -> Array:
     return polygon if len(polygon) >= 3 else polygon[:0]
 
 
-def outer_sides(polygons: Sequence[Array]) -> list[Array]:
-    """Sides of polygons that touch, without those where two of them meet, (2, 2) each."""
-    if len(polygons) == 1:
-        one = polygons[0]
-        return [np.array(pair) for pair in zip(one, np.roll(one, -1, axis=0), strict=True)]
+class Part(NamedTuple):
+    """A part of a side of one of several polygons, from one share of it to another."""
+
+    polygon: int
+    side: int
+    start: float
+    stop: float
+
+
+def outer_parts(polygons: Sequence[Array]) -> list[Part]:
+    """Parts of the sides of polygons that touch where no other of them is met."""
     sides = [
-        (place, one, two)
+        (place, side, one, two)
         for place, polygon in enumerate(polygons)
-        for one, two in zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
+        for side, (one, two) in enumerate(
+            zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
+        )
     ]
-    found: list[Array] = []
-    for place, one, two in sides:
+    found: list[Part] = []
+    for place, side, one, two in sides:
         length = float(np.hypot(*(two - one)))
         if length == 0:
             continue
         along = (two - one) / length
         across = np.array([-along[1], along[0]])
         hidden: list[tuple[float, float]] = []
-        for other, start, stop in sides:
+        for other, _, start, stop in sides:
             off = max(abs(float((start - one) @ across)), abs(float((stop - one) @ across)))
             # A side that meets this one runs the other way.
             first, last = float((stop - one) @ along), float((start - one) @ along)
             if other != place and off < NEAR * length and first < last:
-                hidden.append((first, last))
+                hidden.append((first / length, last / length))
         reached = 0.0
-        for first, last in [*sorted(hidden), (length, length)]:
-            if first > reached + NEAR * length:
-                found.append(one + along * np.array([[reached], [min(first, length)]]))
+        for first, last in [*sorted(hidden), (1.0, 1.0)]:
+            if first > reached + NEAR:
+                found.append(Part(place, side, reached, min(first, 1.0)))
             reached = max(reached, last)
     return found
+
+
+def outer_sides(polygons: Sequence[Array]) -> list[Array]:
+    """Sides of polygons that touch, without where two of them meet, (2, 2) each."""
+    return [
+        along_side(polygons[polygon], side, start, stop)
+        for polygon, side, start, stop in outer_parts(polygons)
+    ]
+
+
+def along_side(corners: Array, side: int, start: float, stop: float) -> Array:
+    """Two points on a side of a polygon, by their shares of it, (2, 2 or 3)."""
+    ends = np.array([[1 - start, start], [1 - stop, stop]])
+    return ends @ corners[[side, (side + 1) % len(corners)]]
 
 
 def carried(points: Array, centre: Array, rates: Array) -> Array:

@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
-from blocksim.view.drawing import HINGES, words_of
+from blocksim.view.drawing import HINGES, along_side, words_of
 from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import GROUND, INK, PAPER, STONE, THRUST
 
@@ -52,7 +52,6 @@ class PlanarView:
         self._origin = np.array([across, level - low[1] * self._scale])
         self._line = edge_width(self._scale, stage.grain)
         self._tones = stone_tones(len(stage.assembly.blocks))
-        self._parts = np.bincount(stage.owner)
         self.still = self._surroundings()
 
     def scale_bar(self, length: float, words: str) -> tuple[list[Shape], list[Label]]:
@@ -71,25 +70,25 @@ class PlanarView:
         edge = mixed(colour(STONE), colour(INK), 0.75)
         # What has turned out of the plane shows its sides, too; the nearest comes last.
         order = np.argsort(moment.corners[..., 2].max(axis=(1, 2)), kind="stable").tolist()
-        owner = self._stage.owner
+        owner, outer = self._stage.owner, self._stage.outer
         blocks: list[Shape] = []
         for piece in order:
             points = self._to_pixels(_outline(moment.corners[piece]))
             tone = self._tones[owner[piece]]
-            if self._parts[owner[piece]] == 1:
+            if piece not in outer:
                 blocks.append(Shape(points, fill=tone, edge=edge, width=self._line))
-            else:
-                blocks.append(Shape(points, edge=edge, width=2 * self._line))
-        # Stone over the seams of a block in parts leaves the outer half of its edges.
+                continue
+            # Parts of one block have no edge between them: a hair of stone closes the seam.
+            blocks.append(Shape(points, fill=tone, edge=tone, width=SEAM))
         blocks += [
             Shape(
-                self._to_pixels(_outline(moment.corners[piece])),
-                fill=self._tones[owner[piece]],
-                edge=self._tones[owner[piece]],
-                width=SEAM,
+                self._to_pixels(along_side(moment.corners[piece, 0, :, :2], *part[1:])),
+                edge=edge,
+                width=self._line,
+                closed=False,
             )
-            for piece in order
-            if self._parts[owner[piece]] > 1
+            for piece, parts in outer.items()
+            for part in parts
         ]
         return [*blocks, *self._joints(moment), *self._thrust(moment)]
 

@@ -20,9 +20,9 @@ from blocksim.view.canvas import (
     mixed,
     stone_tones,
 )
-from blocksim.view.drawing import words_of
+from blocksim.view.drawing import Part, along_side, words_of
 from blocksim.view.order import painting_order
-from blocksim.view.stage import Face, Moment, Stage, padded
+from blocksim.view.stage import Moment, Stage, padded
 from blocksim.view.style import GROUND, INK, PAPER, THRUST
 
 ASIDE, ABOVE = math.radians(-32.0), math.radians(14.0)
@@ -38,6 +38,8 @@ SHADOW = 0.72
 """Brightness of the ground in the shade."""
 WIDER = 1.12
 """Depth of the footings over that of the blocks."""
+SEAM = 0.6
+"""Width of a line that closes the seam between parts of a block [pixels]."""
 RINGS = 60
 """Discs that the ground fades out in."""
 
@@ -126,6 +128,7 @@ class SpatialView:
             drawn += _faces(
                 flat[body].reshape(2, sides, 2), seen[body], shade[body],
                 self._tone(body - plain), marks, self._line,
+                self._stage.outer.get(body - plain),
             )  # fmt: skip
         return drawn + self._thrust(moment)
 
@@ -134,16 +137,16 @@ class SpatialView:
             return mixed(colour(GROUND), colour(PAPER), 0.25)
         return self._tones[int(self._stage.owner[piece])]
 
-    def _active(self, moment: Moment) -> dict[int, list[tuple[Face, Colour]]]:
+    def _active(self, moment: Moment) -> dict[int, list[tuple[Part, Colour]]]:
         """Colours of joints that take part, by the piece they are on."""
-        active: dict[int, list[tuple[Face, Colour]]] = {}
+        active: dict[int, list[tuple[Part, Colour]]] = {}
         for state, faces in zip(moment.joints, self._stage.joint_sides, strict=True):
             if state is JointState.CLOSED:
                 continue
             tone = colour(words_of(state, is_arch=self._stage.is_arch)[1])
             for face in faces:
                 if face is not None:
-                    active.setdefault(face.piece, []).append((face, tone))
+                    active.setdefault(face.polygon, []).append((face, tone))
         return active
 
     def _thrust(self, moment: Moment) -> list[Shape]:
@@ -219,29 +222,39 @@ def _faces(
     seen: Array,
     shade: Array,
     tone: Colour,
-    marks: Sequence[tuple[Face, Colour]],
+    marks: Sequence[tuple[Part, Colour]],
     line: float,
+    outer: Sequence[Part] | None,
 ) -> list[Shape]:
-    """Draw the faces of one piece that are seen, and active joints on its sides in colour."""
+    """Draw the faces of one piece that are seen, and active joints on its sides in colour.
+
+    Of a block in several pieces only the outer parts of sides are drawn.
+    """
     dark = (0.0, 0.0, 0.0, 1.0)
     edge = mixed(tone, colour(INK), 0.72)
     drawn: list[Shape] = []
-    near, far = flat
-    sides = len(near)
+    sides = flat.shape[1]
     for end in (0, 1):
         if seen[end]:
             fill = mixed(dark, tone, float(shade[end]))
-            drawn.append(Shape(flat[end], fill=fill, edge=edge, width=line))
-    for side in range(sides):
-        after = (side + 1) % sides
+            if outer is None:
+                drawn.append(Shape(flat[end], fill=fill, edge=edge, width=line))
+                continue
+            drawn.append(Shape(flat[end], fill=fill, edge=fill, width=SEAM))
+            drawn += [
+                Shape(along_side(flat[end], *part[1:]), edge=edge, width=line, closed=False)
+                for part in outer
+            ]
+    whole = [Part(0, side, 0.0, 1.0) for side in range(sides)]
+    for _, side, start, stop in whole if outer is None else outer:
         if seen[2 + side]:
-            quad = np.array([near[side], near[after], far[after], far[side]])
+            front, back = (along_side(face, side, start, stop) for face in flat)
+            quad = np.array([*front, *back[::-1]])
             fill = mixed(dark, tone, float(shade[2 + side]))
             drawn.append(Shape(quad, fill=fill, edge=edge, width=line))
     for (_, side, start, stop), mark in marks:
         after, before = (side + 1) % sides, (side - 1) % sides
-        ends = np.array([[1 - start, start], [1 - stop, stop]])
-        front, back = ends @ near[[side, after]], ends @ far[[side, after]]
+        front, back = (along_side(face, side, start, stop) for face in flat)
         if seen[2 + side]:
             fill = mixed(dark, mixed(tone, mark, 0.8), float(shade[2 + side]))
             quad = np.array([*front, *back[::-1]])

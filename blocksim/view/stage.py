@@ -20,7 +20,7 @@ from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.recording import Recording
 from blocksim.view.archfigure import lines_of, picture_of_arch
-from blocksim.view.drawing import clipped
+from blocksim.view.drawing import Part, clipped, outer_parts
 
 FEWEST = 4
 """Sides of a footing, and of a block at least."""
@@ -31,7 +31,7 @@ SEEN = 4e-3
 FARTHEST = 1.0
 """Blocks are followed up to this far beyond where they were at rest [r]."""
 BESIDE, ABOVE = 0.25, 0.1
-"""How far beyond the blocks at rest supports are framed, sidewards and upwards [r]."""
+"""How far beyond the blocks supports are shown, sidewards and upwards [r]."""
 SAMPLES = 500
 """Most frames that are looked at for what a film needs to know beforehand."""
 STILL, GONE = 2e-3, 3e-2
@@ -59,22 +59,6 @@ class Moment(NamedTuple):
     faces: Array
     joints: tuple[JointState, ...]
     statics: float
-
-
-class Face(NamedTuple):
-    """Where a joint is on a piece of a block.
-
-    Parameters
-    ----------
-    piece, side : int
-    start, stop : float
-        Its two ends as shares of that side; equal for a corner that rests on it.
-    """
-
-    piece: int
-    side: int
-    start: float
-    stop: float
 
 
 class Stage:
@@ -136,8 +120,12 @@ class Stage:
         if not assembly.supports:
             bears = [joint.bears for joint in assembly.springings]
             return tuple(pier / size for pier in piers(assembly)), bears
-        far = FARTHEST + BESIDE
-        low, high = np.array([self._low[0] - far, self.ground]), self._high + far
+        # Of a wide or a high support, or one deep in the ground, a part is enough.
+        poses, reach = self.recording.poses, assembly.reach / size
+        gone = (poses[..., 0] - reach).min(), (poses[..., 0] + reach).max()
+        left = max(float(gone[0]), self._low[0] - FARTHEST) - BESIDE
+        right = min(float(gone[1]), self._high[0] + FARTHEST) + BESIDE
+        low, high = np.array([left, self.ground]), np.array([right, self._high[1] + ABOVE])
         parts = [
             clipped(part / size, low, high)
             for support in assembly.supports
@@ -214,11 +202,7 @@ class Stage:
         Blocks are followed up to `FARTHEST` beyond where they were at rest.
         """
         footings = np.concatenate(self.footings)
-        if self.assembly.supports:
-            # Of a wide or a high support, or one deep in the ground, a part is enough.
-            low = np.array([self._low[0] - BESIDE, self.ground])
-            footings = np.clip(footings, low, self._high + np.array([BESIDE, ABOVE]))
-            footings = np.append(footings, [[self.middle, self.ground]], axis=0)
+        footings = np.append(footings, [[self.middle, self.ground]], axis=0)
         half = self.depth / 2
         solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
         rest = np.concatenate([self._corners(0, 0, 0.0).reshape(-1, 3), *solid])
@@ -230,11 +214,26 @@ class Stage:
         return np.concatenate([rest, bounded])
 
     @cached_property
-    def joint_sides(self) -> tuple[tuple[Face | None, Face | None], ...]:
+    def joint_sides(self) -> tuple[tuple[Part | None, Part | None], ...]:
         """Where the joints are on the pieces before and after them; None for the support."""
         return tuple(
             (self._side(j, j.before), self._side(j, j.after)) for j in self.assembly.joints
         )
+
+    @cached_property
+    def outer(self) -> dict[int, list[Part]]:
+        """Parts of sides that are seen, by piece, of blocks that have several."""
+        found: dict[int, list[Part]] = {}
+        first = 0
+        for block in self.assembly.blocks:
+            if len(block.polygons) > 1:
+                for piece in range(len(block.polygons)):
+                    found[first + piece] = []
+                for part in outer_parts(block.polygons):
+                    piece = first + part.polygon
+                    found[piece].append(part._replace(polygon=piece))
+            first += len(block.polygons)
+        return found
 
     def at(self, time: float) -> Moment:
         """Return where everything is at a time, between frames by interpolation."""
@@ -254,7 +253,7 @@ class Stage:
             statics=float(np.interp(moved, (STILL, GONE), (1.0, 0.0))),
         )
 
-    def _side(self, joint: Joint, block: int) -> Face | None:
+    def _side(self, joint: Joint, block: int) -> Part | None:
         """Find the side of a piece of a block that a joint lies on."""
         if block == SUPPORT:
             return None
@@ -272,7 +271,7 @@ class Stage:
         off = np.where(square > 0, off, np.inf)
         piece, side = np.unravel_index(int(np.argmin(off)), off.shape)
         start, stop = sorted(share[piece, side].tolist())
-        return Face(int(pieces[piece]), int(side), start, stop)
+        return Part(int(pieces[piece]), int(side), start, stop)
 
     @cached_property
     def _displaced(self) -> Array:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 
 import matplotlib as mpl
@@ -54,6 +55,8 @@ WIDE, TALL = 7.6, (1.6, 8.0)
 SIDE_OF_TEXT = 2.2
 """Widest that a narrow structure is drawn over its height."""
 HATCH = "////"
+LINE = 72
+"""Letters in a line of a title."""
 FEW = 8
 """Loads from which on their arrows are kept short."""
 
@@ -388,7 +391,8 @@ def _draw_gravity(axes: Axes, problem: Problem, shown: Array) -> list[Array]:
 def _title(axes: Axes, problem: Problem, verdict: str) -> None:
     blocks = len(problem.assembly.blocks)
     count = f"{blocks} block" if blocks == 1 else f"{blocks} blocks"
-    axes.set_title(problem.title or count, fontsize=10.5, pad=20)
+    title = textwrap.fill(problem.title or count, LINE)
+    axes.set_title(title, fontsize=10.5, pad=20)
     facts = [
         verdict,
         count if problem.title else "",
