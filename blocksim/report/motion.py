@@ -16,7 +16,7 @@ from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.joints import JointState, classify
 from blocksim.evidence.recording import Recording
-from blocksim.view.planar import HINGES
+from blocksim.view.drawing import HINGES
 from blocksim.view.stage import Stage
 
 SHOWN = 0.13

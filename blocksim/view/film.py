@@ -17,10 +17,17 @@ from blocksim.evidence.motion import MOVED, UNMOVED
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
+from blocksim.view.drawing import (
+    ARCH_WORDS,
+    friction_words,
+    loading_words,
+    round_length,
+    words_of,
+)
 from blocksim.view.planar import PlanarView
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Moment, Stage
-from blocksim.view.style import INK, JOINTS, QUIET, THRUST
+from blocksim.view.style import INK, QUIET, THRUST
 
 ViewName = Literal["2d", "3d"]
 LENGTH = 6.0
@@ -33,13 +40,6 @@ TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT = 74.0, 44.0
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
-WORDS = {
-    JointState.HINGE_INTRADOS: "hinge intrados",
-    JointState.HINGE_EXTRADOS: "hinge extrados",
-    JointState.SLIDES: "slides",
-    JointState.HINGE_AND_SLIDES: "hinge and slides",
-    JointState.OPEN: "open",
-}
 
 
 class View(Protocol):
@@ -90,8 +90,8 @@ class Film:
     count : int
         Number of frames.
     metric : bool
-        Whether lengths and times are shown in metres and seconds: where an arch has another
-        radius than 1, which stands for none given. Else they are in r and sqrt(r/g).
+        Whether lengths and times are shown in metres and seconds: unless all are arches with
+        a radius of 1, which stands for none given. Then they are in r and sqrt(r/g).
     moves : list of bool
         Whether each recording is seen to move.
     """
@@ -113,8 +113,10 @@ class Film:
         self._words = [verdict_words(recording, verdict) for recording in recordings]
         self._enlarge = enlarge
         self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
-        # Lengths and times are in metres and seconds only where a radius was given.
-        self.metric = any(recording.assembly.size != 1 for recording in recordings)
+        # An arch of which no radius was given is shown in units of it.
+        self.metric = any(
+            stage.assembly.size != 1 or not stage.is_arch for stage in self._stages
+        )
         self.moves = [stage.moves for stage in self._stages]
         self.seconds = self._duration()
         self.on_ground = any(stage.end < stage.recording.times[-1] for stage in self._stages)
@@ -126,7 +128,9 @@ class Film:
             "3d": SpatialView,
         }
         # One scale for both, so that they can be compared.
-        shown = np.concatenate([stage.swept for stage in self._stages])
+        shown = np.concatenate(
+            [stage.swept - [stage.middle, 0.0, 0.0] for stage in self._stages]
+        )
         self._views: list[View] = [
             kinds[view](stage, panel, shown)
             for stage, panel in zip(self._stages, self._panels, strict=True)
@@ -190,7 +194,7 @@ class Film:
         each = zip(self._stages, self._views, self._panels, self._words, strict=True)
         for stage, view, panel, verdict in each:
             radius = stage.recording.assembly.size
-            length = _round_length(0.5 * radius)
+            length = round_length(0.5 * radius)
             unit = "m" if self.metric else "r"
             bar, words = view.scale_bar(length / radius, f"{length:g} {unit}")
             parts.append((panel, [*view.still, *bar]))
@@ -205,19 +209,27 @@ class Film:
         return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
 
     def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
-        """Arch, outcome, ratio to the least thickness and engine, above a panel."""
-        size, arch = self._size, arch_of(stage.recording.problem)
-        friction = "∞" if math.isinf(stage.recording.mu) else f"{stage.recording.mu:.4g}"
-        blocks = len(stage.assembly.blocks)
-        head = stage.recording.problem.title or f"{blocks} blocks   μ = {friction}"
+        """Say what it is, outcome, loading and engine, above a panel."""
+        size, problem = self._size, stage.recording.problem
+        arch, blocks = arch_of(problem), len(stage.assembly.blocks)
+        count = f"{blocks} block" if blocks == 1 else f"{blocks} blocks"
+        facts = [verdict, *_loading(stage)]
         if arch:
             head = (
                 f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
-                f"μ = {friction}   n = {arch.voussoirs}"
+                f"{friction_words(problem.mu)}   n = {arch.voussoirs}"
             )
-        engine = f"{stage.recording.engine} {stage.recording.engine_version}"
-        below = f"{verdict}, {_load(stage)}   {engine}"
-        x, top = panel.x + 24 * size, self.height
+        elif problem.title:
+            head = problem.title
+            facts[1:1] = [count, friction_words(problem.mu)]
+        else:
+            head = f"{count}   {friction_words(problem.mu)}"
+        below = (
+            f"{', '.join(facts)}   {stage.recording.engine} {stage.recording.engine_version}"
+        )
+        x, top, wide = panel.x + 24 * size, self.height, panel.width - 48 * size
+        head = _fitting(head, 20 * size, wide, bold=True)
+        below = _fitting(below, 15 * size, wide)
         return [
             Label(x, top - 36 * size, head, size=20 * size, bold=True),
             Label(x, top - 61 * size, below, size=15 * size, colour=QUIET),
@@ -246,7 +258,9 @@ class Film:
         self, states: set[JointState], *, thrust: bool
     ) -> tuple[list[Shape], list[Label]]:
         """Explain the colours that occur, from the lower right corner."""
-        entries = [(WORDS[state], JOINTS[state]) for state in WORDS if state in states]
+        is_arch = all(stage.is_arch for stage in self._stages)
+        told = [words_of(state, is_arch=is_arch) for state in ARCH_WORDS if state in states]
+        entries = list(dict.fromkeys(told))
         if thrust and any(stage.thrust for stage in self._stages):
             entries.append(("line of thrust at rest, by limit analysis", THRUST))
         shapes, labels = list[Shape](), list[Label]()
@@ -262,13 +276,17 @@ class Film:
 
 
 def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
-    """Say whether an arch falls: as a check does, or by how far it has moved."""
+    """Say whether it falls: as a check does, or by how far it has moved."""
     if verdict is not None:
         return verdict.value
     moved = float(recording.displacement.max())
     if moved > MOVED:
         return Verdict.COLLAPSES.value
-    return f"has moved {moved:.1g} r" if moved > UNMOVED else "at rest"
+    if moved <= UNMOVED:
+        return "at rest"
+    if arch_of(recording.problem) is None:
+        return f"has moved {moved * recording.assembly.size:.1g} m"
+    return f"has moved {moved:.1g} r"
 
 
 def _enlarged(recording: Recording, times: float) -> Recording:
@@ -295,25 +313,23 @@ def _digits(seconds: float) -> int:
     return max(1, min(6, math.ceil(2 - math.log10(max(seconds, 1e-9)))))
 
 
-def _round_length(length: float) -> float:
-    """Largest 1, 2 or 5 times a power of ten that is no longer."""
-    power = 10.0 ** math.floor(math.log10(length))
-    return max(step * power for step in (1, 2, 5) if step * power <= length * (1 + 1e-9))
+def _fitting(words: str, size: float, wide: float, *, bold: bool = False) -> str:
+    """Cut words off where they would not fit into a width in pixels."""
+    kept = words
+    while len(kept) > 1 and width_of(kept, size, bold=bold) > wide:
+        kept = kept[:-2].rstrip() + "…"
+    return kept
 
 
-def _load(stage: Stage) -> str:
-    """Say what the arch is up against: its own weight, or gravity that leans."""
-    recording = stage.recording
-    lean = math.degrees(math.asin(recording.problem.gravity[2]))
-    if lean:
-        return f"gravity leans {lean:.3g}° out of the plane"
-    arch = arch_of(recording.problem)
-    if arch is None:
-        return ""
-    least = limit.least_thickness(
-        arch.half_angle, recording.mu, arch.voussoirs, arch.weight
-    ).eta
-    return "no thickness stands" if least is None else _share(arch.eta / least)
+def _loading(stage: Stage) -> list[str]:
+    """Say what it is up against: gravity that tilts or leans, loads; an arch its own weight."""
+    problem = stage.recording.problem
+    words = loading_words(problem)
+    arch = arch_of(problem)
+    if words or arch is None:
+        return words
+    least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
+    return ["no thickness stands" if least is None else _share(arch.eta / least)]
 
 
 def _share(ratio: float) -> str:

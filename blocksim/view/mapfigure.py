@@ -381,7 +381,8 @@ def _legend(figure: Figure, points: Sequence[MapPoint]) -> None:
 
 
 def save_figure(figure: Figure, file: BinaryIO, kind: str) -> None:
-    """Write a figure as png or svg, without the date, so that equal figures are equal."""
+    """Write a figure as png, svg or pdf, without the date, so that equal ones are equal."""
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with mpl.rc_context(FONT):
-        metadata = {"Date": None} if kind == "svg" else {"Software": "blocksim"}
+        metadata = undated.get(kind, {"Software": "blocksim"})
         figure.savefig(file, format=kind, dpi=150, metadata=metadata)

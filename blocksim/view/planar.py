@@ -5,16 +5,19 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
+from blocksim.view.drawing import HINGES, along_side, words_of
 from blocksim.view.stage import Moment, Stage
-from blocksim.view.style import GROUND, INK, JOINTS, PAPER, STONE, THRUST
+from blocksim.view.style import GROUND, INK, PAPER, STONE, THRUST
 
 MARGIN = 0.06
 """Free share of a panel on each side."""
 FLOOR = 0.1
 """Share of a panel that shows the ground, at least."""
+SEAM = 0.6
+"""Width of a line that closes the seam between parts of a block [pixels]."""
 
 
 class PlanarView:
@@ -25,7 +28,8 @@ class PlanarView:
     stage : Stage
     panel : Panel
     shown : (k, 3) float
-        Points that find place in the panel; the lowest lie on the ground.
+        Points that find place in the panel, x from the middle of the blocks at rest; the
+        lowest lie on the ground.
 
     Attributes
     ----------
@@ -37,13 +41,15 @@ class PlanarView:
         self._stage, self._panel = stage, panel
         low, high = shown[:, :2].min(axis=0), shown[:, :2].max(axis=0)
         # Symmetric about the crown, so that side by side and from run to run arches match.
-        width, height = 2 * max(-low[0], high[0]), high[1] - low[1]
+        aside = 0.0 if stage.is_arch else (low[0] + high[0]) / 2
+        width, height = 2 * max(aside - low[0], high[0] - aside), high[1] - low[1]
         floor = FLOOR * panel.height
         free = panel.width * (1 - 2 * MARGIN), panel.height * (1 - MARGIN) - floor
         self._scale = min(free[0] / width, free[1] / height)
         spare = free[1] - height * self._scale
         level = panel.y + floor + min(spare / 2, floor)
-        self._origin = np.array([panel.x + panel.width / 2, level - low[1] * self._scale])
+        across = panel.x + panel.width / 2 - (aside + stage.middle) * self._scale
+        self._origin = np.array([across, level - low[1] * self._scale])
         self._line = edge_width(self._scale, stage.grain)
         self._tones = stone_tones(len(stage.assembly.blocks))
         self.still = self._surroundings()
@@ -64,14 +70,25 @@ class PlanarView:
         edge = mixed(colour(STONE), colour(INK), 0.75)
         # What has turned out of the plane shows its sides, too; the nearest comes last.
         order = np.argsort(moment.corners[..., 2].max(axis=(1, 2)), kind="stable").tolist()
-        blocks = [
+        owner, outer = self._stage.owner, self._stage.outer
+        blocks: list[Shape] = []
+        for piece in order:
+            points = self._to_pixels(_outline(moment.corners[piece]))
+            tone = self._tones[owner[piece]]
+            if piece not in outer:
+                blocks.append(Shape(points, fill=tone, edge=edge, width=self._line))
+                continue
+            # Parts of one block have no edge between them: a hair of stone closes the seam.
+            blocks.append(Shape(points, fill=tone, edge=tone, width=SEAM))
+        blocks += [
             Shape(
-                self._to_pixels(_outline(moment.corners[block])),
-                fill=self._tones[block],
+                self._to_pixels(along_side(moment.corners[piece, 0, :, :2], *part[1:])),
                 edge=edge,
                 width=self._line,
+                closed=False,
             )
-            for block in order
+            for piece, parts in outer.items()
+            for part in parts
         ]
         return [*blocks, *self._joints(moment), *self._thrust(moment)]
 
@@ -101,20 +118,12 @@ class PlanarView:
         """Colour the faces of joints that take part, and mark their hinges by dots."""
         faces, dots = list[Shape](), list[Shape]()
         width = max(2.0, 2.6 * self._line)
-        before, after, ends, *_ = self._stage.assembly.joint_arrays
-        sides = self._stage.joint_sides
-        for joint, state in enumerate(moment.joints):
+        for state, face in zip(moment.joints, moment.faces, strict=True):
             if state is JointState.CLOSED:
                 continue
-            tone = colour(JOINTS[state])
-            places: list[Array] = []
-            for place, block in enumerate((before[joint], after[joint])):
-                if block == SUPPORT:
-                    pair = ends[joint]
-                else:
-                    pair = moment.corners[block].mean(axis=0)[list(sides[joint][place]), :2]
-                places.append(self._to_pixels(pair))
-                faces.append(Shape(places[-1], edge=tone, width=width, closed=False))
+            tone = colour(words_of(state, is_arch=self._stage.is_arch)[1])
+            places = [self._to_pixels(pair[:, :2]) for pair in face]
+            faces += [Shape(pair, edge=tone, width=width, closed=False) for pair in places]
             hinge = HINGES.get(state)
             if hinge is not None:
                 middle = (places[0][hinge] + places[1][hinge]) / 2
@@ -132,10 +141,6 @@ class PlanarView:
             Shape(self._to_pixels(piece), edge=tone, width=2.4, closed=False)
             for piece in self._stage.thrust
         ]
-
-
-HINGES = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
-"""End of the joint that stays closed: inner or outer."""
 
 
 def _outline(corners: Array) -> Array:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import (
     Colour,
@@ -19,9 +20,10 @@ from blocksim.view.canvas import (
     mixed,
     stone_tones,
 )
+from blocksim.view.drawing import Part, along_side, words_of
 from blocksim.view.order import painting_order
-from blocksim.view.stage import Moment, Stage
-from blocksim.view.style import GROUND, INK, JOINTS, PAPER, THRUST
+from blocksim.view.stage import Moment, Stage, padded
+from blocksim.view.style import GROUND, INK, PAPER, THRUST
 
 ASIDE, ABOVE = math.radians(-32.0), math.radians(14.0)
 """Where the eye is: turned about the vertical, and raised."""
@@ -36,6 +38,8 @@ SHADOW = 0.72
 """Brightness of the ground in the shade."""
 WIDER = 1.12
 """Depth of the footings over that of the blocks."""
+SEAM = 0.6
+"""Width of a line that closes the seam between parts of a block [pixels]."""
 RINGS = 60
 """Discs that the ground fades out in."""
 
@@ -48,7 +52,7 @@ class SpatialView:
     stage : Stage
     panel : Panel
     shown : (k, 3) float
-        Points that find place in the panel.
+        Points that find place in the panel, x from the middle of the blocks at rest.
 
     Attributes
     ----------
@@ -59,8 +63,13 @@ class SpatialView:
     def __init__(self, stage: Stage, panel: Panel, shown: Array) -> None:
         self._stage = stage
         wide = stage.depth / 2 * WIDER
-        self._footings = np.array([_prism(each, wide) for each in stage.footings])
-        middle = np.array([0.0, (stage.ground + shown[:, 1].max()) / 2, 0.0])
+        self._footings = np.array(
+            [_prism(padded(each, stage.sides), wide) for each in stage.footings]
+        )
+        shown = shown + np.array([stage.middle, 0.0, 0.0])
+        low, high = float(shown[:, 0].min()), float(shown[:, 0].max())
+        aside = 0.0 if stage.is_arch else (low + high) / 2
+        middle = np.array([aside, (stage.ground + shown[:, 1].max()) / 2, 0.0])
         reach = float(np.linalg.norm(shown - middle, axis=1).max())
         away = np.array(
             [
@@ -79,7 +88,7 @@ class SpatialView:
         self._scale = float((free / size).min())
         centre = (flat.max(axis=0) + flat.min(axis=0)) / 2 * self._scale
         self._shift = np.array([panel.x + panel.width / 2, panel.y + panel.height / 2]) - centre
-        self._reach = reach
+        self._reach, self._aside = reach, aside
         self._line = edge_width(self._scale / (DISTANCE * reach), stage.grain)
         self._tones = stone_tones(len(stage.assembly.blocks))
         self.still = self._ground()
@@ -91,17 +100,17 @@ class SpatialView:
         shapes: list[Shape] = []
         ink, paper = colour(INK), colour(PAPER)
         for part in range(4):
-            x = (part - 2) * length / 4, (part - 1) * length / 4
+            x = [self._aside + (part - 2 + end) * length / 4 for end in (0, 1)]
             strip = [(x[0], near), (x[1], near), (x[1], near + wide), (x[0], near + wide)]
             ground = np.array([(a, level, b) for a, b in strip])
             fill = paper if part % 2 else ink
             shapes.append(Shape(self._to_pixels(ground), fill=fill, edge=ink, width=0.8))
-        place = self._to_pixels(np.array([[0.0, level, near + wide]]))[0]
+        place = self._to_pixels(np.array([[self._aside, level, near + wide]]))[0]
         return shapes, [Label(place[0], place[1] - 20, words, size=13, across="center")]
 
     def shapes(self, moment: Moment) -> list[Shape]:
         """Draw a moment: ground, shadows, then blocks and footings from back to front."""
-        corners = np.concatenate([self._footings_as(moment.corners.shape[2]), moment.corners])
+        corners = np.concatenate([self._footings, moment.corners])
         count, _, sides, _ = corners.shape
         normals, offsets = _planes(corners)
         flat = self._to_pixels(corners.reshape(-1, 3)).reshape(count, 2 * sides, 2)
@@ -115,32 +124,29 @@ class SpatialView:
         plain = len(self._footings)
         drawn = self._shadows(corners)
         for body in order:
-            marks = active.get(body - plain, {}) if body >= plain else {}
+            marks = active.get(body - plain, []) if body >= plain else []
             drawn += _faces(
                 flat[body].reshape(2, sides, 2), seen[body], shade[body],
                 self._tone(body - plain), marks, self._line,
+                self._stage.outer.get(body - plain),
             )  # fmt: skip
         return drawn + self._thrust(moment)
 
-    def _tone(self, block: int) -> Colour:
-        return self._tones[block] if block >= 0 else mixed(colour(GROUND), colour(PAPER), 0.25)
+    def _tone(self, piece: int) -> Colour:
+        if piece < 0:
+            return mixed(colour(GROUND), colour(PAPER), 0.25)
+        return self._tones[int(self._stage.owner[piece])]
 
-    def _active(self, moment: Moment) -> dict[int, dict[int, Colour]]:
-        """Colours of sides of blocks at joints that take part, by block and side."""
-        active: dict[int, dict[int, Colour]] = {}
-        before, after, *_ = self._stage.assembly.joint_arrays
-        sides = moment.corners.shape[2]
-        for joint, state in enumerate(moment.joints):
+    def _active(self, moment: Moment) -> dict[int, list[tuple[Part, Colour]]]:
+        """Colours of joints that take part, by the piece they are on."""
+        active: dict[int, list[tuple[Part, Colour]]] = {}
+        for state, faces in zip(moment.joints, self._stage.joint_sides, strict=True):
             if state is JointState.CLOSED:
                 continue
-            pairs = zip(
-                (before[joint], after[joint]), self._stage.joint_sides[joint], strict=True
-            )
-            for block, (first, last) in pairs:
-                if block != SUPPORT:
-                    # A side goes from its corner to the next one, counter-clockwise.
-                    side = first if (first + 1) % sides == last else last
-                    active.setdefault(int(block), {})[side] = colour(JOINTS[state])
+            tone = colour(words_of(state, is_arch=self._stage.is_arch)[1])
+            for face in faces:
+                if face is not None:
+                    active.setdefault(face.polygon, []).append((face, tone))
         return active
 
     def _thrust(self, moment: Moment) -> list[Shape]:
@@ -157,11 +163,6 @@ class SpatialView:
             for piece in self._stage.thrust
         ]  # fmt: skip
 
-    def _footings_as(self, sides: int) -> Array:
-        """Footings with as many sides as the blocks have, by repeating a corner."""
-        spare = sides - self._footings.shape[2]
-        return np.pad(self._footings, ((0, 0), (0, 0), (0, max(0, spare)), (0, 0)), "edge")
-
     def _to_pixels(self, points: Array) -> Array:
         seen = (points - self._eye) @ self._axes.T
         return seen[:, :2] / seen[:, 2:] * self._scale + self._shift
@@ -171,7 +172,7 @@ class SpatialView:
         turn = np.linspace(0, 2 * np.pi, 72, endpoint=False)
         ring = np.column_stack([np.cos(turn), np.zeros_like(turn), np.sin(turn)])
         ground, paper = colour(GROUND), colour(PAPER)
-        centre = np.array([0.0, self._stage.ground, 0.0])
+        centre = np.array([self._aside, self._stage.ground, 0.0])
         return [
             Shape(
                 self._to_pixels(centre + ring * self._reach * (2.6 - 1.5 * share)),
@@ -217,32 +218,52 @@ def _planes(corners: Array) -> tuple[Array, Array]:
 
 
 def _faces(
-    flat: Array, seen: Array, shade: Array, tone: Colour, marks: dict[int, Colour], line: float
+    flat: Array,
+    seen: Array,
+    shade: Array,
+    tone: Colour,
+    marks: Sequence[tuple[Part, Colour]],
+    line: float,
+    outer: Sequence[Part] | None,
 ) -> list[Shape]:
-    """Draw the faces of one block that are seen, the sides at active joints in colour."""
+    """Draw the faces of one piece that are seen, and active joints on its sides in colour.
+
+    Of a block in several pieces only the outer parts of sides are drawn.
+    """
     dark = (0.0, 0.0, 0.0, 1.0)
     edge = mixed(tone, colour(INK), 0.72)
     drawn: list[Shape] = []
-    near, far = flat
-    sides = len(near)
+    sides = flat.shape[1]
     for end in (0, 1):
         if seen[end]:
             fill = mixed(dark, tone, float(shade[end]))
-            drawn.append(Shape(flat[end], fill=fill, edge=edge, width=line))
-    for side in range(sides):
-        after = (side + 1) % sides
+            if outer is None:
+                drawn.append(Shape(flat[end], fill=fill, edge=edge, width=line))
+                continue
+            drawn.append(Shape(flat[end], fill=fill, edge=fill, width=SEAM))
+            drawn += [
+                Shape(along_side(flat[end], *part[1:]), edge=edge, width=line, closed=False)
+                for part in outer
+            ]
+    whole = [Part(0, side, 0.0, 1.0) for side in range(sides)]
+    for _, side, start, stop in whole if outer is None else outer:
         if seen[2 + side]:
-            base = mixed(tone, marks[side], 0.8) if side in marks else tone
-            quad = np.array([near[side], near[after], far[after], far[side]])
-            fill = mixed(dark, base, float(shade[2 + side]))
+            front, back = (along_side(face, side, start, stop) for face in flat)
+            quad = np.array([*front, *back[::-1]])
+            fill = mixed(dark, tone, float(shade[2 + side]))
             drawn.append(Shape(quad, fill=fill, edge=edge, width=line))
-    for side, mark in marks.items():
+    for (_, side, start, stop), mark in marks:
         after, before = (side + 1) % sides, (side - 1) % sides
+        front, back = (along_side(face, side, start, stop) for face in flat)
+        if seen[2 + side]:
+            fill = mixed(dark, mixed(tone, mark, 0.8), float(shade[2 + side]))
+            quad = np.array([*front, *back[::-1]])
+            drawn.append(Shape(quad, fill=fill, edge=edge, width=line))
         # Each edge of the side, and the face beyond it: shown where either is seen.
         edges = (
-            (near[[side, after]], 0), (far[[side, after]], 1),
-            (np.array([near[side], far[side]]), 2 + before),
-            (np.array([near[after], far[after]]), 2 + after),
+            (front, 0), (back, 1),
+            (np.array([front[0], back[0]]), 2 + before if start == 0 else 2 + side),
+            (np.array([front[1], back[1]]), 2 + after if stop == 1 else 2 + side),
         )  # fmt: skip
         drawn += [
             Shape(pair, edge=mark, width=2.2 * line, closed=False)

@@ -1,8 +1,9 @@
 """A recording made ready for the eye: blocks in space at any time, supports, ground, joints.
 
-Lengths are in units of the arch's radius, times in units of sqrt(r/g). The arch is shown on
-the piers and above the floor of `blocksim.engines.ground`, which only `direct` lets it
-fall on: a film ends when a block sinks into the floor, or into a pier it does not rest on.
+Lengths are in units of the assembly's size, which is an arch's radius r, times in units of
+sqrt(size/g). Blocks are shown on their supports where these are known, else on the piers of
+`blocksim.engines.ground`, and above its floor, which only `direct` lets them fall on: a film
+ends when a block sinks into the floor, a support, or a pier it does not rest on.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.arch.circular import arch_of
-from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array
+from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array, Joint
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.recording import Recording
 from blocksim.view.archfigure import lines_of, picture_of_arch
+from blocksim.view.drawing import Part, clipped, outer_parts
 
 FEWEST = 4
 """Sides of a footing, and of a block at least."""
@@ -27,7 +29,9 @@ SUNK = 0.02
 SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
 FARTHEST = 1.0
-"""Blocks are followed up to this far beyond the arch at rest [r]."""
+"""Blocks are followed up to this far beyond where they were at rest [r]."""
+BESIDE, ABOVE = 0.25, 0.1
+"""How far beyond the blocks supports are shown, sidewards and upwards [r]."""
 SAMPLES = 500
 """Most frames that are looked at for what a film needs to know beforehand."""
 STILL, GONE = 2e-3, 3e-2
@@ -40,8 +44,11 @@ class Moment(NamedTuple):
     Parameters
     ----------
     time : float
-    corners : (blocks, 2, sides, 3) float
-        Of the near and the far face of each block: x, y, and z towards the viewer.
+    corners : (pieces, 2, sides, 3) float
+        Of the near and the far face of each convex piece of a block: x, y, and z towards the
+        viewer.
+    faces : (joints, 2, 2, 3) float
+        Both ends of each joint as the blocks before and after it have carried them.
     joints : tuple of JointState
     statics : float
         1 while the line of thrust of the arch at rest still says something, falling to 0.
@@ -49,6 +56,7 @@ class Moment(NamedTuple):
 
     time: float
     corners: Array
+    faces: Array
     joints: tuple[JointState, ...]
     statics: float
 
@@ -63,13 +71,21 @@ class Stage:
     Attributes
     ----------
     depth : float
-        Of the blocks, out of the plane.
+        Of the deepest block, out of the plane.
     ground : float
         Level of the ground.
     footings : tuple of (k, 2) float
-        Convex outlines of what the arch stands on.
+        Convex outlines of what it stands on, cut off far from the blocks.
+    owner : (pieces,) int
+        The block that each piece belongs to.
+    sides : int
+        Corners of a piece and of a footing at most.
     grain : float
         Distance from block to block.
+    is_arch : bool
+        Whether it is an arch about x = 0.
+    middle : float
+        Of the blocks at rest, along x.
     """
 
     def __init__(self, recording: Recording) -> None:
@@ -77,17 +93,55 @@ class Stage:
         self.assembly = recording.assembly
         size = self.assembly.size
         self.depth = float(self.assembly.depths.max())
-        outlines = [(block.vertices - block.centre) / size for block in self.assembly.blocks]
-        sides = max(FEWEST, *(len(outline) for outline in outlines))
-        # A triangle (eta = 2) repeats a corner, so that all blocks are one array.
-        self._outlines = np.array(
-            [np.pad(each, ((0, sides - len(each)), (0, 0)), "edge") for each in outlines]
-        )
+        self.is_arch = arch_of(recording.problem) is not None
+        pieces = [
+            (index, (part - block.centre) / size)
+            for index, block in enumerate(self.assembly.blocks)
+            for part in block.polygons
+        ]
+        self.owner = np.array([index for index, _ in pieces])
+        rest = np.concatenate([block.vertices for block in self.assembly.blocks]) / size
+        self._low, self._high = rest.min(axis=0), rest.max(axis=0)
+        self.middle = 0.0 if self.is_arch else float(self._low[0] + self._high[0]) / 2
         self.ground = ground_level(self.assembly) / size
-        self.footings = tuple(pier / size for pier in piers(self.assembly))
-        self._bearing = [joint.bears for joint in self.assembly.springings]
-        self.grain = float(np.hypot(*np.diff(self.assembly.centres, axis=0).T).min()) / size
+        self.footings, self._bearing = self._standing()
+        self.sides = max(
+            FEWEST, *(len(each) for _, each in pieces), *(len(each) for each in self.footings)
+        )
+        # What has fewer corners repeats its last one, so that all pieces are one array.
+        self._outlines = np.array([padded(each, self.sides) for _, each in pieces])
+        self._half = self.assembly.depths[self.owner] / 2
+        self.grain = self._grain()
         self._turns = _quaternions(recording)
+
+    def _standing(self) -> tuple[tuple[Array, ...], list[int]]:
+        """Footings, and for each the block that has nothing to reach in it, or `SUPPORT`."""
+        assembly, size = self.assembly, self.assembly.size
+        if not assembly.supports:
+            bears = [joint.bears for joint in assembly.springings]
+            return tuple(pier / size for pier in piers(assembly)), bears
+        # Of a wide or a high support, or one deep in the ground, a part is enough.
+        poses, reach = self.recording.poses, assembly.reach / size
+        gone = (poses[..., 0] - reach).min(), (poses[..., 0] + reach).max()
+        left = max(float(gone[0]), self._low[0] - FARTHEST) - BESIDE
+        right = min(float(gone[1]), self._high[0] + FARTHEST) + BESIDE
+        low, high = np.array([left, self.ground]), np.array([right, self._high[1] + ABOVE])
+        parts = [
+            clipped(part / size, low, high)
+            for support in assembly.supports
+            for part in support.polygons
+        ]
+        kept = tuple(part for part in parts if len(part))
+        return kept, [SUPPORT] * len(kept)
+
+    def _grain(self) -> float:
+        """Least distance between the centres of blocks that meet; of one alone its width."""
+        before, after, *_ = self.assembly.joint_arrays
+        pairs = (before != SUPPORT) & (after != SUPPORT)
+        centres = self.assembly.centres
+        apart = np.hypot(*(centres[after[pairs]] - centres[before[pairs]]).T)
+        least = apart.min() if len(apart) else self.assembly.reach.min()
+        return float(least) / self.assembly.size
 
     @cached_property
     def end(self) -> float:
@@ -108,7 +162,9 @@ class Stage:
         outlines = corners[:, 0]
         deepest = self.ground - float(outlines[..., 1].min())
         for block, footing in zip(self._bearing, self.footings, strict=True):
-            others = np.delete(outlines, block, axis=0)
+            others = outlines[self.owner != block]
+            if not len(others):
+                continue
             for points, around in ((others, footing), (footing, others[:, None])):
                 deepest = max(deepest, float(_depth(points, around).max()))
         return deepest
@@ -143,9 +199,10 @@ class Stage:
     def swept(self) -> Array:
         """Every corner at every frame that is shown, and of the footings, (k, 3).
 
-        Blocks are followed up to `FARTHEST` beyond the arch at rest.
+        Blocks are followed up to `FARTHEST` beyond where they were at rest.
         """
         footings = np.concatenate(self.footings)
+        footings = np.append(footings, [[self.middle, self.ground]], axis=0)
         half = self.depth / 2
         solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
         rest = np.concatenate([self._corners(0, 0, 0.0).reshape(-1, 3), *solid])
@@ -157,15 +214,26 @@ class Stage:
         return np.concatenate([rest, bounded])
 
     @cached_property
-    def joint_sides(self) -> tuple[tuple[tuple[int, int], tuple[int, int]], ...]:
-        """Corners of `before` and of `after` at the inner and outer end of each joint.
-
-        Zeros stand for the support.
-        """
+    def joint_sides(self) -> tuple[tuple[Part | None, Part | None], ...]:
+        """Where the joints are on the pieces before and after them; None for the support."""
         return tuple(
-            (self._side(j.before, j.inner, j.outer), self._side(j.after, j.inner, j.outer))
-            for j in self.assembly.joints
+            (self._side(j, j.before), self._side(j, j.after)) for j in self.assembly.joints
         )
+
+    @cached_property
+    def outer(self) -> dict[int, list[Part]]:
+        """Parts of sides that are seen, by piece, of blocks that have several."""
+        found: dict[int, list[Part]] = {}
+        first = 0
+        for block in self.assembly.blocks:
+            if len(block.polygons) > 1:
+                for piece in range(len(block.polygons)):
+                    found[first + piece] = []
+                for part in outer_parts(block.polygons):
+                    piece = first + part.polygon
+                    found[piece].append(part._replace(polygon=piece))
+            first += len(block.polygons)
+        return found
 
     def at(self, time: float) -> Moment:
         """Return where everything is at a time, between frames by interpolation."""
@@ -180,25 +248,30 @@ class Stage:
         return Moment(
             time=time,
             corners=self._corners(earlier, later, share),
+            faces=self._faces(earlier, later, share),
             joints=self._joints(one + (two - one) * share, time),
             statics=float(np.interp(moved, (STILL, GONE), (1.0, 0.0))),
         )
 
-    def _side(self, block: int, inner: Array, outer: Array) -> tuple[int, int]:
-        """Corners of a block that are the two ends of a joint, next to each other."""
+    def _side(self, joint: Joint, block: int) -> Part | None:
+        """Find the side of a piece of a block that a joint lies on."""
         if block == SUPPORT:
-            return 0, 0
-        corners = self._outlines[block] + self.assembly.centres[block] / self.assembly.size
-        after = np.roll(corners, -1, axis=0)
-        ends = np.array([inner, outer]) / self.assembly.size
-        off = [
-            np.linalg.norm(corners - ends[one], axis=1)
-            + np.linalg.norm(after - ends[1 - one], axis=1)
-            for one in (0, 1)
-        ]
-        turned, side = np.unravel_index(int(np.argmin(off)), (2, len(corners)))
-        first, last = int(side), (int(side) + 1) % len(corners)
-        return (last, first) if turned else (first, last)
+            return None
+        pieces = np.flatnonzero(self.owner == block)
+        size = self.assembly.size
+        corners = self._outlines[pieces] + self.assembly.centres[block] / size
+        along = np.roll(corners, -1, axis=1) - corners
+        square = (along**2).sum(axis=-1)
+        ends = np.array([joint.inner, joint.outer]) / size
+        arm = ends - corners[..., None, :]
+        # Shares of a side at which the ends are nearest to it.
+        share = (arm * along[..., None, :]).sum(axis=-1)
+        share = np.clip(share / np.where(square > 0, square, 1.0)[..., None], 0.0, 1.0)
+        off = np.linalg.norm(arm - share[..., None] * along[..., None, :], axis=-1).sum(axis=-1)
+        off = np.where(square > 0, off, np.inf)
+        piece, side = np.unravel_index(int(np.argmin(off)), off.shape)
+        start, stop = sorted(share[piece, side].tolist())
+        return Part(int(pieces[piece]), int(side), start, stop)
 
     @cached_property
     def _displaced(self) -> Array:
@@ -242,21 +315,47 @@ class Stage:
             held = np.zeros(blocks + 1, dtype=bool)
             for side in (before, after):
                 held[side[parted > time]] = True
-            lowest = self._corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
+            bottoms = self._corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
+            lowest = np.full(blocks, np.inf)
+            np.minimum.at(lowest, self.owner, bottoms)
             loose = ~held[:blocks] | (lowest < self.ground + SUNK)
             rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
         return parted, np.minimum(rubble[before], rubble[after])
 
     def _corners(self, earlier: int, later: int, share: float) -> Array:
         """Corners in space between two frames."""
+        centres, turns = self._placed(earlier, later, share)
+        half = np.broadcast_to(self._half[:, None, None], (*self._outlines.shape[:2], 1))
+        near = np.concatenate([self._outlines, half], axis=-1)
+        local = np.stack([near, near * [1, 1, -1]], axis=1)
+        owner = self.owner
+        return centres[owner][:, None, None] + _turned(turns[owner][:, None, None], local)
+
+    def _faces(self, earlier: int, later: int, share: float) -> Array:
+        """Return the ends of joints in space, as the blocks on both sides carry them."""
+        before, after, ends, *_ = self.assembly.joint_arrays
+        centres, turns = self._placed(earlier, later, share)
+        # The support comes last, as index -1 says: it stays.
+        rest = np.vstack([self.assembly.centres / self.assembly.size, np.zeros(2)])
+        centres = np.vstack([centres, np.zeros(3)])
+        turns = np.vstack([turns, [1.0, 0.0, 0.0, 0.0]])
+        sides = np.stack([before, after], axis=1)
+        local = np.zeros((*sides.shape, 2, 3))
+        local[..., :2] = ends[:, None] - rest[sides][:, :, None]
+        return centres[sides][:, :, None] + _turned(turns[sides][:, :, None], local)
+
+    def _placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:
+        """Centres and rotations of the blocks between two frames."""
         centres = _centres(self.recording, earlier) * (1 - share)
         centres += _centres(self.recording, later) * share
         turns = self._turns[earlier] * (1 - share) + self._turns[later] * share
         turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
-        half = self.depth / 2
-        near = np.pad(self._outlines, ((0, 0), (0, 0), (0, 1)), constant_values=half)
-        local = np.stack([near, near * [1, 1, -1]], axis=1)
-        return centres[:, None, None] + _turned(turns[:, None, None], local)
+        return centres, turns
+
+
+def padded(outline: Array, sides: int) -> Array:
+    """Repeat the last corner of an outline until it has as many as asked for."""
+    return np.pad(outline, ((0, sides - len(outline)), (0, 0)), "edge")
 
 
 def _depth(points: Array, outline: Array) -> Array:

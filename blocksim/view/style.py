@@ -63,6 +63,8 @@ JOINTS = {
 THRUST, FRICTION, MECHANISM, ISO = "#D55E00", "#0072B2", "#009E73", "#0072B2"
 INK, QUIET = "#222222", "#5d5a53"
 """Of lines and words, and of those that matter less."""
+DEAD, LIVE = "#222222", "#CC0055"
+"""Of loads besides gravity: those that stay, and those multiplied by the load factor."""
 STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
 
 FONT: dict[Any, Any] = {

@@ -1,0 +1,294 @@
+"""Stills of structures: what is drawn is what is there, and forces are those of statics."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, PathPatch
+from structure_cases import names, scenes
+
+from blocksim.arch.circular import Arch
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.structure import structure_of
+from blocksim.limit.programme import collapse, equilibrium
+from blocksim.view.drawing import clipped, loading_words, outer_sides
+from blocksim.view.mapfigure import save_figure
+from blocksim.view.structure import force_words, problem_figure
+from blocksim.view.style import DEAD, LIVE
+
+
+def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:
+    return [[x, y], [x + wide, y], [x + wide, y + tall], [x, y + tall]]
+
+
+GROUND = {"id": "g", "vertices": square(-3, -1, 8, 1), "fixed": True}
+
+
+def stack(**more: Any) -> Problem:
+    """Three blocks of 2000, 1000 and 500 N on each other."""
+    weights = (2000.0, 1000.0, 500.0)
+    blocks = [
+        {"id": place, "vertices": square(0.1 * place, place), "weight": weight}
+        for place, weight in enumerate(weights)
+    ]
+    return structure_of(
+        {"title": "Three blocks", "friction": 0.6, "blocks": [GROUND, *blocks], **more}
+    )
+
+
+def of(figure: Figure, kind: str) -> dict[int, Any]:
+    """Artists whose gid says that they are of a kind, by their number."""
+    found = [each for each in figure.axes[0].get_children() if each.get_gid()]
+    return {
+        int(match[1]): each
+        for each in found
+        if (match := re.fullmatch(rf"{kind}-(\d+)", str(each.get_gid())))
+    }
+
+
+def line_of(artist: Any) -> Array:
+    """Start and end of a bar or an arrow."""
+    if isinstance(artist, FancyArrowPatch):
+        return np.array(artist._posA_posB)
+    return np.column_stack(artist.get_data())
+
+
+def legend(figure: Figure) -> set[str]:
+    return {text.get_text() for text in figure.legends[0].get_texts()}
+
+
+def words(figure: Figure) -> list[str]:
+    axes = figure.axes[0]
+    return [axes.get_title(loc="left"), *(text.get_text() for text in axes.texts)]
+
+
+def corners(artist: PathPatch) -> set[tuple[float, float]]:
+    return {
+        (float(x), float(y)) for x, y in np.round(np.asarray(artist.get_path().vertices), 9)
+    }
+
+
+def test_blocks_are_where_they_are_and_supports_are_hatched() -> None:
+    problem = stack()
+    figure = problem_figure(problem, verdict="stands")
+    blocks = of(figure, "block")
+    assert len(blocks) == 3
+    for index, block in enumerate(problem.assembly.blocks):
+        expected = {(float(x), float(y)) for x, y in np.round(block.vertices, 9)}
+        assert corners(blocks[index]) == expected
+        assert not blocks[index].get_hatch()
+    (support,) = of(figure, "support").values()
+    assert support.get_hatch() == "////"
+    shown = np.asarray(support.get_path().vertices)
+    # The face that bears is whole; far from the blocks nothing is shown.
+    assert shown[:, 1].max() == 0
+    assert shown[:, 0].min() < 0 < 1.2 < shown[:, 0].max()
+    assert shown[:, 0].min() > -1
+    assert legend(figure) == {"support"}
+    assert words(figure)[0] == "Three blocks"
+    assert "stands, 3 blocks, μ = 0.6" in words(figure)
+
+
+def test_thrust_in_a_stack_is_the_weight_above() -> None:
+    """500, 1500 and 3500 N upright, at the centre of mass of what is above."""
+    problem = stack()
+    figure = problem_figure(problem, forces=equilibrium(problem).forces)
+    drawn = of(figure, "force")
+    places = of(figure, "centre")
+    weights = np.array([2000.0, 1000.0, 500.0])
+    centres = np.array([0.5, 0.6, 0.7])
+    lengths = {}
+    for index, joint in enumerate(problem.assembly.joints):
+        above = [k for k in range(3) if k + 0.5 > joint.inner[1]]
+        line = line_of(drawn[index])
+        way = line[1] - line[0]
+        assert way[0] == pytest.approx(0, abs=1e-9)
+        lengths[weights[above].sum()] = abs(way[1])
+        x, y = np.column_stack(places[index].get_data())[0]
+        assert x == pytest.approx(np.average(centres[above], weights=weights[above]), abs=1e-7)
+        assert y == pytest.approx(joint.inner[1])
+        if SUPPORT in (joint.before, joint.after):
+            # From the support an arrow, up, to where it acts.
+            assert isinstance(drawn[index], FancyArrowPatch)
+            assert line[1] == pytest.approx([x, y])
+            assert way[1] > 0
+    assert sorted(lengths) == [500, 1500, 3500]
+    assert lengths[500] / lengths[3500] == pytest.approx(1 / 7, abs=1e-8)
+    assert lengths[1500] / lengths[3500] == pytest.approx(3 / 7, abs=1e-8)
+    assert legend(figure) == {"support", "contact force, largest 3.5 kN"}
+
+
+@pytest.mark.parametrize("tilt", [20.0, -20.0])
+def test_on_a_slope_the_reaction_is_against_gravity_through_the_centre(tilt: float) -> None:
+    problem = structure_of(
+        {"friction": 0.5, "blocks": [GROUND, {"id": 0, "vertices": square(0, 0, 2, 1)}]}
+    ).tilted(math.radians(tilt))
+    figure = problem_figure(problem, forces=equilibrium(problem).forces)
+    line = line_of(of(figure, "force")[0])
+    way = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+    assert way == pytest.approx(-problem.gravity[:2], abs=1e-8)
+    to_centre = problem.assembly.centres[0] - line[1]
+    assert way[0] * to_centre[1] - way[1] * to_centre[0] == pytest.approx(0, abs=1e-8)
+    (arrow,) = [each for each in figure.axes[0].patches if each.get_gid() == "gravity"]
+    pull = line_of(arrow)[1] - line_of(arrow)[0]
+    assert pull / np.hypot(*pull) == pytest.approx(problem.gravity[:2], abs=1e-9)
+    assert any(
+        word.endswith("tilted 20°" + " to the left" * (tilt < 0)) for word in words(figure)
+    )
+    assert "gravity" in legend(figure)
+
+
+def test_loads_are_arrows_that_end_where_they_act() -> None:
+    problem = stack(
+        dead=[{"body": [0, -1]}, {"block": 2, "point": [0.7, 3.0], "force": [0, -1000]}],
+        live=[{"block": 0, "point": [0.0, 0.8], "force": [500, 0]}],
+    )
+    for load, factor in ((0.0, 1.0), (0.5, 0.5)):
+        figure = problem_figure(problem.with_load(load))
+        (dead,), (live,) = of(figure, "dead").values(), of(figure, "live").values()
+        down, push = line_of(dead), line_of(live)
+        assert down[1] == pytest.approx([0.7, 3.0])
+        assert push[1] == pytest.approx([0.0, 0.8])
+        assert (down[1] - down[0])[0] == 0
+        assert (push[1] - push[0])[1] == 0
+        ratio = (push[1] - push[0])[0] / -(down[1] - down[0])[1]
+        assert ratio == pytest.approx(factor * 500 / 1000)
+        assert {dead.get_edgecolor(), live.get_edgecolor()} == {
+            to_rgba(tone) for tone in (DEAD, LIVE)
+        }
+        told = legend(figure)
+        assert "dead load, largest 1 kN" in told
+        at = "at load factor 0.5, largest 250 N" if load else "at factor 1, largest 500 N"
+        assert f"live load {at}" in told
+
+
+def test_a_mechanism_is_drawn_as_its_blocks_move() -> None:
+    """500 N and a lever of 0.4 m to the edge below against a push of 1 m lever."""
+    problem = stack(live=[{"block": 2, "point": [0.2, 3.0], "force": [1, 0]}])
+    found = collapse(problem)
+    assert found.load_factor == pytest.approx(500 * 0.4)
+    states = [
+        JointState.HINGE_INTRADOS if 1 in (joint.before, joint.after) and 2 in (
+            joint.before, joint.after) else JointState.CLOSED
+        for joint in problem.assembly.joints
+    ]  # fmt: skip
+    figure = problem_figure(problem, mechanism=found.mechanism, states=states)
+    moved = of(figure, "moved")
+    assert list(moved) == [2]
+    shown = np.array(sorted(corners(moved[2])))
+    # Its lower face turns about the edge of the block below, where the hinge is marked.
+    lower = shown[np.argsort(shown[:, 1])[:2]]
+    at_edge = np.interp(
+        1.1, lower[np.argsort(lower[:, 0]), 0], lower[np.argsort(lower[:, 0]), 1]
+    )
+    assert at_edge == pytest.approx(2.0, abs=1e-6)
+    assert lower[:, 1].max() > 2.1
+    (hinge,) = of(figure, "hinge").values()
+    assert np.column_stack(hinge.get_data())[0] == pytest.approx([1.1, 2.0])
+    assert len(of(figure, "joint")) == len(of(figure, "hinge")) == 1
+    # Loads are drawn at factor 1 beside it.
+    assert legend(figure) == {
+        "support", "hinge", "mechanism, enlarged", "live load at factor 1, largest 1 N"
+    }  # fmt: skip
+
+
+def test_an_arch_keeps_its_words_and_stands_on_strips() -> None:
+    """Supports that are not known are drawn behind the springings."""
+    arch = Arch(half_angle=1.2, eta=0.2, voussoirs=7)
+    problem = arch.problem(0.7)
+    states = [JointState.CLOSED] * 8
+    states[3] = JointState.HINGE_EXTRADOS
+    figure = problem_figure(problem, states=states)
+    assert legend(figure) == {"support", "hinge extrados"}
+    supports = of(figure, "support")
+    assert len(supports) == 2
+    for support in supports.values():
+        strip = np.asarray(support.get_path().vertices)
+        angle = np.abs(np.arctan2(strip[:, 0], strip[:, 1]))
+        assert angle.min() > 1.2 - 0.02
+        assert angle.max() > 1.2 + 0.05
+
+
+def test_parts_of_a_block_are_one_body_without_seams() -> None:
+    """An L of two rectangles: five of its eight sides are seen whole, one of them in part."""
+    ell = [np.array(square(0, 0, 2, 1)), np.array(square(0, 1, 1, 1))]
+    sides = np.array(outer_sides(ell))
+    assert float(np.hypot(*(sides[:, 1] - sides[:, 0]).T).sum()) == pytest.approx(8.0)
+    assert not any(np.allclose(side[:, 1], 1.0) and side[:, 0].min() < 0.9 for side in sides)
+    problem = structure_of(
+        {"friction": 0.5, "blocks": [GROUND, {"id": 0, "polygons": [e.tolist() for e in ell]}]}
+    )
+    figure = problem_figure(problem)
+    assert len(of(figure, "block")) == 1
+    assert len(of(figure, "block")[0].get_path().to_polygons()) == 2
+
+
+def test_clipping_is_the_overlap_with_a_box() -> None:
+    """A diamond of half-diagonal 1 and a box around one of its corners."""
+    diamond = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    cut = clipped(diamond, np.array([0.5, -2.0]), np.array([3.0, 2.0]))
+    assert {(round(x, 12), round(y, 12)) for x, y in cut.tolist()} == {
+        (1.0, 0.0), (0.5, 0.5), (0.5, -0.5)
+    }  # fmt: skip
+    assert len(clipped(diamond, np.array([2.0, 2.0]), np.array([3.0, 3.0]))) == 0
+    assert clipped(diamond, np.full(2, -5.0), np.full(2, 5.0)) == pytest.approx(diamond)
+
+
+def test_words_of_loading() -> None:
+    problem = stack(live=[{"body": [1, 0]}])
+    assert loading_words(problem) == []
+    assert loading_words(problem.tilted(0.1).with_load(0.25)) == [
+        "tilted 5.73°", "load factor 0.25"
+    ]  # fmt: skip
+    assert loading_words(problem.leaning(0.2)) == ["gravity leans 11.5° out of the plane"]
+    assert [force_words(each) for each in (12.0, 1.2e3, 3.4e6)] == ["12 N", "1.2 kN", "3.4 MN"]
+
+
+@pytest.mark.parametrize("name", names()[::6])
+def test_structures_of_the_corpus_are_framed(name: str) -> None:
+    """Every block, force and moved block is inside the axes; a bar tells lengths."""
+    problem = structure_of(scenes(name)[0])
+    found = equilibrium(problem)
+    figure = problem_figure(problem, forces=found.forces, mechanism=found.mechanism)
+    axes = figure.axes[0]
+    assert len(of(figure, "block")) == len(problem.assembly.blocks)
+    drawn = [np.asarray(each.get_path().vertices) for each in of(figure, "block").values()]
+    drawn += [np.asarray(each.get_path().vertices) for each in of(figure, "moved").values()]
+    drawn += [line_of(each) for each in of(figure, "force").values()]
+    points = np.concatenate(drawn)
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    assert left < points[:, 0].min() <= points[:, 0].max() < right
+    assert bottom < points[:, 1].min() <= points[:, 1].max() < top
+    # The picture is filled: no side has a third of it to spare.
+    assert np.ptp(points, axis=0).max() > 0.6 * min(right - left, top - bottom)
+    (bar,) = [line for line in axes.lines if line.get_gid() == "scale"]
+    length = float(np.ptp(bar.get_xdata()))
+    assert f"{length:g} m" in words(figure)
+
+
+@pytest.mark.parametrize(
+    ("kind", "magic"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")]
+)
+def test_figures_are_reproducible(kind: str, magic: bytes) -> None:
+    problem = replace(stack(), title="A & B <x>")
+    files = []
+    for _ in range(2):
+        file = io.BytesIO()
+        save_figure(problem_figure(problem, forces=equilibrium(problem).forces), file, kind)
+        files.append(file.getvalue())
+    assert files[0] == files[1]
+    assert files[0].startswith(magic)
+    if kind == "svg":
+        ids = {each.get("id") for each in ET.fromstring(files[0]).iter()}  # noqa: S314 - ours
+        assert {"block-0", "block-1", "block-2", "support-0", "force-0", "scale"} <= ids
