@@ -194,7 +194,8 @@ def test_a_block_on_its_corner_falls_back_and_loses_what_housner_says() -> None:
     assert after == pytest.approx(1 - 1.5 * math.sin(alpha) ** 2, abs=2e-3)
     # About the other corner it goes on to the height that is left.
     turned = world.poses()[0, 2] - angle
-    assert 0 < turned < 0.1422 and world.quality().penetration < 1e-4
+    assert 0 < turned < 0.1422
+    assert world.quality().penetration < 1e-4
 
 
 def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
@@ -284,7 +285,11 @@ def test_a_block_of_several_polygons_meets_others_by_each_of_them() -> None:
             "friction": 0.2,
             "blocks": [
                 FLOOR,
-                {"id": "post", "vertices": [[1, 0], [1.5, 0], [1.5, 0.8], [1, 0.8]], "fixed": True},
+                {
+                    "id": "post",
+                    "vertices": [[1, 0], [1.5, 0], [1.5, 0.8], [1, 0.8]],
+                    "fixed": True,
+                },
                 {"id": 1, "vertices": arch},
             ],
             "live": [{"body": [0.25, 0]}],

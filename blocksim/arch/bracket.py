@@ -160,7 +160,8 @@ def bracket(
     require_friction(mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight, depth=depth)
-    rung = choose(method, tol, problem=arch.problem(mu, lean), settings=settings, reduce=reduce)
+    leaning = arch.problem(mu, lean) if lean else None
+    rung = choose(method, tol, problem=leaning, settings=settings, reduce=reduce)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
     answer = Bracket(

@@ -13,6 +13,7 @@ from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
+from blocksim.common.checks import require_friction
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.setup import BY_RULE, Overrides
 from blocksim.evidence.trial import trial
@@ -118,12 +119,14 @@ def check(
         If the engine's library is not installed.
     """
     started = time.perf_counter()
-    problem = arch.problem(mu, lean)
-    rung = choose(method, problem=problem, settings=settings, reduce=reduce)
+    require_friction(mu)
+    # Static methods need no blocks, which take longer to make than an answer.
+    leaning = arch.problem(mu, lean) if lean else None
+    rung = choose(method, problem=leaning, settings=settings, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
     mode = later = simulated = state_hash = blocks = splits = None
-    joints = closed_joints(problem.assembly)
+    joints = closed_joints(arch.joint_angles)
     if rung.name == "theory":
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
         mode = continuous.mode if verdict is Verdict.COLLAPSES else None
@@ -134,7 +137,7 @@ def check(
             mode, joints = found.mode, _limit_joints(found)
     else:
         seen = trial(
-            problem,
+            leaning or arch.problem(mu),
             rung.name,
             settings=settings,
             reduction=Reduction.of(arch, mu) if reduce else None,

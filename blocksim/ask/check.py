@@ -10,7 +10,7 @@ import numpy as np
 
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.assembly import Array, displacement
-from blocksim.blocks.joints import JointState, classify, closed_joints
+from blocksim.blocks.joints import JointState, classify
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.onset import PROBE
@@ -104,7 +104,7 @@ def check(
     planar = problem.is_planar
     static = equilibrium(problem) if planar else None
     factor = collapse(problem).load_factor if planar and problem.live else None
-    joints = tuple(joint.state for joint in closed_joints(problem.assembly))
+    joints = (JointState.CLOSED,) * len(problem.assembly.joints)
     mechanism = simulated = state_hash = None
     rest = None if static is None or static.exists else "cannot"
     if static is not None and chosen.is_static:

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from blocksim.common.checks import require
+from blocksim.common.errors import InputError
+
 Array = NDArray[np.float64]
 
 SUPPORT = -1
 """Block index that stands for the fixed ground."""
+FEWEST_CORNERS = 3
+FLAT = 1e-6
+"""How far a polygon may fold inwards and still count as convex, over twice its area."""
 PLANAR, SPATIAL = 3, 6
 """Columns of poses and motions: x, y and rotation in the plane; then z, out of it, and the
 rotation vector's components along x and y, from engines in three dimensions."""
@@ -64,15 +71,48 @@ class Block:
     parts: tuple[Array, ...] = ()
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        object.__setattr__(self, "vertices", frozen(self.vertices, (-1, 2)))
+        """Check the numbers, make the arrays read-only and corners counter-clockwise."""
+        for field in ("mass", "inertia", "depth"):
+            value: float = getattr(self, field)
+            require(0 < value < math.inf, self._called(field), value, "above 0 and finite")
+        vertices = frozen(self.vertices, (-1, 2))
+        area, folds = _outline(vertices.tolist())
+        allowed = "three corners or more around a convex area"
+        require(area != 0 and not folds, self._called("vertices"), vertices.tolist(), allowed)
+        object.__setattr__(
+            self, "vertices", vertices if area > 0 else frozen(vertices[::-1], (-1, 2))
+        )
         object.__setattr__(self, "centre", frozen(self.centre, (2,)))
         object.__setattr__(self, "parts", tuple(frozen(part, (-1, 2)) for part in self.parts))
+
+    def _called(self, field: str) -> str:
+        return f"block {self.name}: {field}" if self.name else field
 
     @property
     def polygons(self) -> tuple[Array, ...]:
         """The convex polygons it consists of."""
         return self.parts or (self.vertices,)
+
+
+def _outline(corners: list[list[float]]) -> tuple[float, bool]:
+    """Return twice the area of a polygon, and whether it folds inwards or has no numbers."""
+    turns: list[float] = []
+    count = len(corners)
+    (x0, y0), area = corners[0] if count else (0.0, 0.0), 0.0
+    for index in range(count):
+        (x1, y1), (x2, y2) = corners[index], corners[(index + 1) % count]
+        (x3, y3) = corners[(index + 2) % count]
+        area += (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+        turns.append((x2 - x1) * (y3 - y2) - (y2 - y1) * (x3 - x2))
+    if not math.isfinite(area) or count < FEWEST_CORNERS:
+        return 0.0, True
+    slack = FLAT * abs(area)
+    return area, min(turns) < -slack and max(turns) > slack
+
+
+def _mean(corners: list[list[float]]) -> tuple[float, float]:
+    x, y = zip(*corners, strict=True)
+    return sum(x) / len(x), sum(y) / len(y)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +203,17 @@ class Joint:
         return np.array([along[1], -along[0]])
 
     @property
+    def turned(self) -> Joint:
+        """The same joint with its ends exchanged, and so its normal the other way."""
+        return replace(
+            self,
+            inner=self.outer,
+            outer=self.inner,
+            across=None if self.across is None else -self.across,
+            faces=None if self.faces is None else self.faces[:, ::-1],
+        )
+
+    @property
     def bears(self) -> int:
         """The block that stands on it, where it is one with the support."""
         return self.before if self.after == SUPPORT else self.after
@@ -219,6 +270,26 @@ class Assembly:
     joints: tuple[Joint, ...]
     size: float
     supports: tuple[Support, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Turn joints round whose ends are exchanged: normals lead from `before` to `after`."""
+        middles = [_mean(block.vertices.tolist()) for block in self.blocks]
+        joints = list(self.joints)
+        for index, joint in enumerate(self.joints):
+            (x1, y1), (x2, y2) = joint.inner.tolist(), joint.outer.tolist()
+            across = (y2 - y1, x1 - x2) if joint.across is None else joint.across.tolist()
+            ahead: set[bool] = set()
+            for side, sign in ((joint.before, -1.0), (joint.after, 1.0)):
+                if side != SUPPORT and not self.blocks[side].parts:
+                    x, y = middles[side]
+                    away = across[0] * (x - (x1 + x2) / 2) + across[1] * (y - (y1 + y2) / 2)
+                    ahead.add(sign * away > 0)
+            if ahead == {True, False}:
+                between = f"blocks {joint.before} and {joint.after}"
+                raise InputError(f"joints[{index}]", between, "between its two blocks")
+            if ahead == {False}:
+                joints[index] = joint.turned
+        object.__setattr__(self, "joints", tuple(joints))
 
     @classmethod
     def of_polygons(
@@ -322,6 +393,12 @@ class Assembly:
         if joint.support is not None and self.supports:
             return self.supports[joint.support].polygons
         return tuple(polygon for support in self.supports for polygon in support.polygons)
+
+    @property
+    def joint_angles(self) -> Array:
+        """Directions of the joints from the vertical, shape (joints,) [rad]."""
+        x, y = self.joint_arrays.tangent.T
+        return np.arctan2(x, y)
 
     @cached_property
     def springings(self) -> tuple[Joint, ...]:

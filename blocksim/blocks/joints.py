@@ -173,11 +173,10 @@ class ObservedJoint:
     state: JointState
 
 
-def closed_joints(assembly: Assembly) -> tuple[ObservedJoint, ...]:
-    """Joints of an assembly at rest."""
+def closed_joints(angles: Array) -> tuple[ObservedJoint, ...]:
+    """Joints at rest, in these directions from the vertical, shape (joints,) [rad]."""
     return tuple(
-        ObservedJoint(angle=math.atan2(x, y), state=JointState.CLOSED)
-        for x, y in assembly.joint_arrays.tangent.tolist()
+        ObservedJoint(angle=angle, state=JointState.CLOSED) for angle in angles.tolist()
     )
 
 

@@ -70,6 +70,7 @@ from blocksim.cli.structures import (
     Loading,
     bracket_structure,
     check_structure,
+    draw_structure,
     is_structure,
     loaded,
     say_recorded,
@@ -431,9 +432,19 @@ def render(
         film(out, recordings(scene, given, loading, method, beside), shown)
     else:
         shown = {"slow": slow, "at": at, "height": height, "method": method}
+        built = scene is not None and is_structure(scene)
         for name, value in shown.items():
-            require(value is None, f"--{name}", value, "left out: the picture is of no motion")
-        write_arch(out, kind, scene, given)
+            # The picture of a structure shows the answer of a method.
+            free = value is None or (built and name == "method")
+            require(free, f"--{name}", value, "left out: the picture is of no motion")
+        if scene is not None and built:
+            problem = structure(scene, given, loading)
+            draw_structure(out, kind, problem, method or "auto")
+        else:
+            require(
+                not loading.given, "--load, --tilt", scene, "left out: film it, or use check"
+            )
+            write_arch(out, kind, scene, given)
 
 
 @app.command(name="scenarios")

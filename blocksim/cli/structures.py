@@ -15,10 +15,11 @@ from blocksim.ask.families import FAMILIES, family_of
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.structure import load_structure
-from blocksim.cli.console import answer_with, progress, say
+from blocksim.cli.console import answer_with, progress, save_picture, say
 from blocksim.cli.options import EXIT_CODES, Given, named_options, settings_of
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
+from blocksim.common.files import require_place
 from blocksim.evidence.recording import Recording
 from blocksim.report.structures import (
     bracket_lines,
@@ -142,6 +143,24 @@ def simulate_structure(
             settings=settings_of(settings),
             progress=report,
         )
+
+
+def draw_structure(out: Path, kind: str, problem: Problem, method: str) -> None:
+    """Draw a structure with its answer: contact forces where it stands, else its mechanism."""
+    # Drawing takes a second to import, which other commands need not wait for.
+    from blocksim.view.structure import problem_figure
+
+    require_place(out)
+    with named_options(), progress() as report:
+        answer = check(problem, method=method, progress=report)
+    figure = problem_figure(
+        problem,
+        verdict=f"{answer.verdict.value}, by {answer.method}",
+        forces=answer.forces,
+        mechanism=answer.mechanism,
+        states=answer.joints,
+    )
+    save_picture(figure, out, kind)
 
 
 def say_recorded(out: Path, recording: Recording, unit: str) -> None:

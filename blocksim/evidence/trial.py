@@ -158,7 +158,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
     reason += _asides(held, motion) + given_words(setup.given)
-    joints = closed_joints(setup.assembly)
+    joints = closed_joints(setup.assembly.joint_angles)
     in_motion = joints if motion else ()
     rates = None
     if verdict is Verdict.COLLAPSES:
