@@ -583,7 +583,7 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         (("RUN", "--at", "1"), "--at = 1.0: must be left out of a film"),
         (("RUN", "--at", "-1"), "--at = -1.0: must be 0 or above"),
         (("RUN", "--beside", "none.npz"), "an existing .npz file"),
-        (("semicircle_sliding",), "eta is missing"),
+        (("--alpha", "90", "--mu", "0.3"), "eta is missing"),
         (("semicircle", "--method", "limit"), "--method = 'limit'"),
     ],
 )

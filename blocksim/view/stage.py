@@ -231,7 +231,10 @@ class Stage:
                     found[first + piece] = []
                 for part in outer_parts(block.polygons):
                     piece = first + part.polygon
-                    found[piece].append(part._replace(polygon=piece))
+                    # The last side comes after the repeated corners.
+                    closes = part.side == len(block.polygons[part.polygon]) - 1
+                    side = self.sides - 1 if closes else part.side
+                    found[piece].append(part._replace(polygon=piece, side=side))
             first += len(block.polygons)
         return found
 

@@ -1,0 +1,315 @@
+"""Films of structures: blocks where they are, on supports, in words of any structure."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+import pytest
+from structure_cases import scenes
+
+from blocksim.arch.circular import GRAVITY
+from blocksim.ask.simulate import simulate
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.structure import structure_of
+from blocksim.engines.base import Settings
+from blocksim.evidence.recording import Recording
+from blocksim.view.canvas import stone_tones
+from blocksim.view.film import Film
+from blocksim.view.planar import PlanarView
+from blocksim.view.stage import BESIDE, Stage
+from blocksim.view.style import JOINTS
+from blocksim.view.video import render, to_bytes
+
+ARCH_SAYINGS = (
+    "arch",
+    "thickness",
+    "extrados",
+    "intrados",
+    "voussoir",
+    "r)",
+    "η",
+    "\N{GREEK SMALL LETTER ALPHA}",
+)
+
+
+def square(x: float, y: float, wide: float = 1.0, tall: float = 1.0) -> list[list[float]]:
+    return [[x, y], [x + wide, y], [x + wide, y + tall], [x, y + tall]]
+
+
+def yard(**more: Any) -> Problem:
+    """An L with a triangle on it, and a hexagon, on a wide slab: far from x = 0."""
+    turn = np.arange(6) * math.pi / 3
+    hexagon = np.column_stack([104 + np.cos(turn), math.sin(math.pi / 3) + np.sin(turn)])
+    blocks = [
+        {"id": "slab", "vertices": square(50, -5, 100, 5), "fixed": True},
+        {"id": "ell", "polygons": [square(100, 0, 2, 1), square(100, 1, 1, 1)]},
+        {"id": "triangle", "vertices": [[101, 1], [102, 1], [102, 2]]},
+        {"id": "hexagon", "vertices": hexagon.tolist()},
+    ]
+    return structure_of({"title": "A yard", "friction": 0.6, "blocks": blocks, **more})
+
+
+def rest(problem: Problem) -> Array:
+    assembly = problem.assembly
+    return np.column_stack([assembly.centres / assembly.size, np.zeros(len(assembly.blocks))])
+
+
+def recording(problem: Problem, moved: Array) -> Recording:
+    """Record given displacements at equal times up to 1."""
+    return Recording(
+        problem=problem,
+        engine="direct",
+        engine_version="1.0",
+        settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
+        times=np.linspace(0, 1, len(moved)),
+        poses=rest(problem) + moved,
+    )
+
+
+def lifted(problem: Problem, turn: float = 0.5) -> Recording:
+    """All blocks rise and turn, each at its own speed."""
+    count = len(problem.assembly.blocks)
+    speeds = np.column_stack([
+        np.zeros(count), 0.3 + 0.2 * np.arange(count), turn * (1 + np.arange(count))
+    ])  # fmt: skip
+    return recording(problem, np.linspace(0, 1, 21)[:, None, None] * speeds)
+
+
+def drawn_words(film: Film, at: float | None = None) -> list[str]:
+    """Words of a frame: in an SVG each is a comment before its glyphs."""
+    file = io.BytesIO()
+    film.still(file, "svg", at)
+    return re.findall(r"<!-- (.*?) -->", file.getvalue().decode())
+
+
+def view_of(film: Film) -> PlanarView:
+    view = film._views[0]
+    assert isinstance(view, PlanarView)
+    return view
+
+
+def pixel(film: Film, frame: Array, point: Array) -> Array:
+    """Colour of a frame at a point in units of the size."""
+    x, y = view_of(film)._to_pixels(np.asarray(point))
+    return frame[film.height - 1 - int(y), int(x), :3].astype(int)
+
+
+def test_pieces_are_rigid_parts_of_their_blocks() -> None:
+    """Four pieces of three blocks; every corner is the block's, turned about its centre."""
+    problem = yard()
+    stage = Stage(lifted(problem))
+    assembly = problem.assembly
+    assert stage.owner.tolist() == [0, 0, 1, 2]
+    moment = stage.at(stage.end)
+    poses = rest(problem) + [[0, 0.3 + 0.2 * k, 0.5 * (1 + k)] for k in range(3)]
+    pieces = [(k, part) for k, b in enumerate(assembly.blocks) for part in b.polygons]
+    for (index, part), seen in zip(pieces, moment.corners, strict=True):
+        x, y, turn = poses[index]
+        cos, sin = math.cos(turn), math.sin(turn)
+        arms = (part - assembly.centres[index]) / assembly.size
+        expected = arms @ np.array([[cos, sin], [-sin, cos]]) + [x, y]
+        for face, z in zip(seen, (0.5, -0.5), strict=True):
+            np.testing.assert_allclose(face[: len(part), :2], expected, atol=1e-12)
+            np.testing.assert_allclose(face[:, 2], z / assembly.size, atol=1e-12)
+
+
+def test_joints_are_on_parts_of_faces() -> None:
+    """The triangle covers half of one of the L's faces: the mark is no longer than that."""
+    problem = yard()
+    stage = Stage(lifted(problem))
+    size = problem.assembly.size
+    moment = stage.at(0.0)
+    for joint, pair, marks in zip(
+        problem.assembly.joints, moment.faces, stage.joint_sides, strict=True
+    ):
+        for ends in pair:
+            np.testing.assert_allclose(
+                ends[:, :2] * size, [joint.inner, joint.outer], atol=1e-9
+            )
+        for mark in marks:
+            if mark is not None:
+                side = moment.corners[mark.polygon, 0][
+                    [mark.side, (mark.side + 1) % stage.sides], :2
+                ]
+                long = float(np.hypot(*(side[1] - side[0]))) * size
+                assert (mark.stop - mark.start) * long == pytest.approx(joint.length)
+    shares = sorted(
+        (mark.stop - mark.start)
+        for marks in stage.joint_sides
+        for mark in marks
+        if mark is not None
+    )
+    assert shares == pytest.approx([0.5, 1.0, 1.0, 1.0])
+
+
+def test_a_block_alone_and_a_corner_on_a_wall() -> None:
+    """One block has no neighbour to measure by; a corner has no length."""
+    for name in ("block_slides", "plank_on_wall"):
+        problem = structure_of(scenes(name)[0])
+        stage = Stage(recording(problem, np.zeros((2, 1, 3))))
+        assert stage.grain == pytest.approx(problem.assembly.reach[0] / problem.assembly.size)
+        for view in ("2d", "3d"):
+            film = Film([stage.recording], view=view, height=240)
+            assert np.unique(film.frame(0).reshape(-1, 4), axis=0).shape[0] > 20
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_frames_show_blocks_in_their_colours_where_they_are(share: float) -> None:
+    problem = yard()
+    film = Film([lifted(problem, turn=0.3)])
+    stage = Stage(lifted(problem, turn=0.3))
+    frame = film.frame(round(film.rate * (0.8 + share * film.seconds * film.slow)))
+    tones = np.round(255 * np.array(stone_tones(3))[:, :3])
+    moment = stage.at(share * stage.end)
+    for piece, block in enumerate(stage.owner):
+        outline = moment.corners[piece, 0, :, :2]
+        inside = np.unique(outline.round(9), axis=0).mean(axis=0)
+        assert np.abs(pixel(film, frame, inside) - tones[block]).max() <= 2
+    # No seam where the two parts of the L meet: its colour all along.
+    seam = moment.corners[1, 0, [0, 1], :2]
+    for part in (0.2, 0.4, 0.6, 0.8):
+        point = seam[0] * (1 - part) + seam[1] * part
+        assert np.abs(pixel(film, frame, point) - tones[0]).max() <= 4
+    # The outer side of both is an edge, the last side of a quadrilateral beside a hexagon.
+    for piece in (0, 1):
+        edge = moment.corners[piece, 0, [3, 0], :2].mean(axis=0)
+        around = [
+            pixel(film, frame, edge + np.array([d, 0])) for d in np.linspace(-0.02, 0.02, 41)
+        ]
+        assert min(colour.sum() for colour in around) < tones[0].sum() - 120
+
+
+def test_supports_stand_in_the_frame_near_the_blocks() -> None:
+    """A slab 100 m wide shows up to a little beyond the blocks, at the level it has."""
+    problem = yard()
+    stage = Stage(recording(problem, np.zeros((2, 3, 3))))
+    size = problem.assembly.size
+    (footing,) = stage.footings
+    assert footing[:, 1].max() == 0.0
+    # Blocks may turn within their circles.
+    widest = 2 * problem.assembly.reach.max() / size
+    assert 100 / size - BESIDE - widest < footing[:, 0].min() < 100 / size
+    assert 105 / size < footing[:, 0].max() < 105 / size + BESIDE + widest
+    film = Film([stage.recording])
+    frame = film.frame(0)
+    below = pixel(film, frame, np.array([102.5 / size, -0.05]))
+    above = pixel(film, frame, np.array([102.6 / size, 0.05]))
+    assert np.abs(below - above).max() > 20
+    # Framed in the middle, wherever it was built.
+    shown = footing[:, 0].min(), footing[:, 0].max()
+    left, right = (float(view_of(film)._to_pixels(np.array([x, 0.0]))[0]) for x in shown)
+    assert (left + right) / 2 == pytest.approx(film.width / 2, abs=1e-6)
+    assert right - left > film.width / 5
+
+
+def test_films_are_the_same_wherever_a_structure_is_built() -> None:
+    """Shifted by 100 m along: the same pixels, but for round-off."""
+    one = structure_of(scenes("trilithon")[0])
+    scene = scenes("trilithon")[0]
+    for block in scene["blocks"]:
+        block["vertices"] = [[x + 100, y] for x, y in block["vertices"]]
+    other = structure_of(scene)
+    for view in ("2d", "3d"):
+        frames = [
+            Film([lifted(problem, 0.2)], view=view, height=240).frame(60)
+            for problem in (one, other)
+        ]
+        assert np.abs(frames[0].astype(int) - frames[1]).mean() < 0.05
+
+
+def test_titles_say_what_it_is_and_nothing_of_arches() -> None:
+    live = [{"body": [1, 0]}]
+    problem = yard(live=live).with_load(0.3).tilted(math.radians(12))
+    words = drawn_words(Film([lifted(problem)]))
+    assert "A yard" in words
+    title = next(word for word in words if word.startswith("collapses"))
+    assert title == "collapses, 3 blocks, μ = 0.6, tilted 12°, load factor 0.3   direct 1.0"
+    nameless = drawn_words(Film([lifted(replace(problem, title=""))]))
+    assert "3 blocks   μ = 0.6" in nameless
+    for word in [*words, *nameless]:
+        assert not any(saying in word for saying in ARCH_SAYINGS)
+    long = drawn_words(Film([lifted(replace(problem, title="long " * 39))] * 2))
+    assert sum(word.startswith("long long") and word.endswith("…") for word in long) == 2
+
+
+def test_lengths_are_in_metres_and_times_in_seconds_even_where_the_size_is_1() -> None:
+    problem = structure_of(scenes("block_slides")[0])
+    assert problem.assembly.size == 1
+    film = Film([recording(problem, np.zeros((2, 1, 3)))])
+    words = drawn_words(film)
+    assert f"t = {math.sqrt(1 / GRAVITY):.3f} s" in words
+    assert "0.5 m" in words
+    assert next(word for word in words if "direct" in word).startswith("at rest   direct")
+
+
+def test_hinges_at_either_end_are_one_thing() -> None:
+    """The drums of a column turn to and fro: one word, one colour."""
+    problem = structure_of(scenes("column_six_drums")[0])
+    joints = problem.assembly.joints
+    size = problem.assembly.size
+    moved = np.zeros((6, 3))
+    angle, hinge = 0.0, np.zeros(2)
+    for drum, way in enumerate((0.05, -0.05, 0.05, 0, 0, 0)):
+        # Each drum turns about one of the ends of the joint below it, carried along.
+        joint = joints[drum]
+        ends = sorted([joint.inner, joint.outer], key=lambda end: float(end[0]))
+        about = (ends[0] if way > 0 else ends[1]) / size
+        old = rest(problem)[drum - 1, :2] if drum else about
+        cos, sin = math.cos(angle), math.sin(angle)
+        hinge = (
+            (hinge if drum else about)
+            if drum == 0
+            else (
+                old + moved[drum - 1, :2] + np.array([[cos, -sin], [sin, cos]]) @ (about - old)
+            )
+        )
+        angle += way
+        cos, sin = math.cos(angle), math.sin(angle)
+        place = hinge + np.array([[cos, -sin], [sin, cos]]) @ (rest(problem)[drum, :2] - about)
+        moved[drum] = [*(place - rest(problem)[drum, :2]), angle]
+    run = recording(problem, np.linspace(0, 1, 11)[:, None, None] * moved)
+    stage = Stage(run)
+    assert {JointState.HINGE_INTRADOS, JointState.HINGE_EXTRADOS} <= set(stage.states)
+    film = Film([run])
+    words = drawn_words(film)
+    assert words.count("hinge") == 1
+    frame = film.frame(film.count - 1)[..., :3].astype(int)
+
+    def pixels(tone: str) -> int:
+        return int((np.abs(frame - to_bytes(tone)).max(axis=-1) < 3).sum())
+
+    assert pixels(JOINTS[JointState.HINGE_INTRADOS]) > 200
+    assert pixels(JOINTS[JointState.HINGE_EXTRADOS]) == 0
+
+
+def test_film_of_a_stack_that_falls_by_direct(tmp_path: Path) -> None:
+    """Three blocks by hand, each 0.45 out: the upper two go over, the lowest stays."""
+    blocks = [
+        {"id": "g", "vertices": square(0, -0.5, 1, 0.5), "fixed": True},
+        *({"id": k, "vertices": square(0.45 * k, k)} for k in range(3)),
+    ]
+    problem = structure_of({"title": "Three blocks", "friction": 0.6, "blocks": blocks})
+    run = simulate(problem, method="direct", duration=2.0)
+    film = render([run], tmp_path / "film.mp4", height=360, slow=2)
+    with av.open(str(tmp_path / "film.mp4")) as container:
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+    assert len(frames) == film.count
+    tones = np.round(255 * np.array(stone_tones(3))[:, :3])
+    stage = Stage(run)
+    for frame, time in ((frames[0], 0.0), (frames[-1], stage.end)):
+        moment = stage.at(time)
+        for block in range(3):
+            centre = moment.corners[block, 0, :, :2].mean(axis=0)
+            assert np.abs(pixel(film, frame, centre) - tones[block]).max() <= 6
+    gone = np.hypot(*(run.poses[-1] - run.poses[0])[:, :2].T)
+    assert gone[0] < 1e-3
+    assert gone[1:].min() > 0.02
