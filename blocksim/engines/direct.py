@@ -228,9 +228,7 @@ class Blocks:
 
     def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
         self._rows = touch.rows
-        solution = self._problem.solve(
-            touch.rows, rates, self._free, self._solution, precision
-        )
+        solution = self._problem.solve(touch.rows, rates, self._free, self._solution, precision)
         self._solution = solution
         # Unlike max, this keeps nan.
         self._residual = float(np.maximum(self._residual, solution.residual))

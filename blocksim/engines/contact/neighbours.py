@@ -161,9 +161,7 @@ class Neighbours:
         owner = np.append(self._owner, SUPPORT)
         count = len(self._owner)
         self.before = np.concatenate([self._joints.before[held], owner[before]])
-        self.after = np.concatenate(
-            [self._joints.after[held], owner[np.minimum(after, count)]]
-        )
+        self.after = np.concatenate([self._joints.after[held], owner[np.minimum(after, count)]])
         # There are no more polygons that stay than this many.
         most = count + len(held) + len(standing(self._assembly)) + 1
         keys = len(held) + before * most + after
