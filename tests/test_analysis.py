@@ -273,3 +273,15 @@ def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
         assert cost.error <= 5e-4
     assert costs[-1].error <= 5e-9
     assert (tmp_path / "costs.md").exists()
+
+
+def test_structures_with_known_answers_are_answered_right(tmp_path: Path) -> None:
+    study_of = study("structure_cases")
+    result = study_of.main(tmp_path, quick=True)
+    assert len(result.lines) == 11
+    assert result.worst_error < 1e-6
+    assert (result.asked, result.false, result.undecided) == (19, 0, 0)
+    with (tmp_path / "structure_cases.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["case"] for row in rows] == [line.case for line in result.lines]
+    assert "0 false, 0 undecided" in study_of.table(result)

@@ -140,7 +140,7 @@ class Geometry:
 
 
 def _faces(assembly: Assembly) -> Array:
-    """Return ends of the faces of both blocks of each joint, shape (joints, 2, 2, 2), scaled.
+    """Return ends of the faces of both blocks of each joint, (joints, 2, 2, 2), scaled.
 
     They lie on the line of the joint. Where it ends though neither face does, as of a joint
     that is given and not found, both faces end with it.
