@@ -24,8 +24,7 @@ def sliding() -> Recording:
     moved = np.zeros((11, 8, 3))
     moved[:, 4:, 1] = -0.02 * np.linspace(0, 1, 11)[:, None] ** 2
     return Recording(
-        arch=ARCH,
-        mu=0.7,
+        problem=ARCH.problem(0.7),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),

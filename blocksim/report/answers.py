@@ -146,6 +146,8 @@ def _exact(label: str, answer: Check | Bracket) -> str:
     """Tell the least thickness as built and of the continuous arch, each with its mode."""
 
     def least(eta: float | None, mode: Mode | None) -> str:
+        if eta == 0:
+            return "any"
         return f"{'none up to 2' if eta is None else ratio(eta)} ({mode or 'mode unnamed'})"
 
     return (
