@@ -48,15 +48,16 @@ def check_record(answer: Check) -> dict[str, object]:
     }
 
 
-def bracket_record(answer: Bracket) -> dict[str, object]:
-    """Return a bracket as `bracket --json` prints it."""
+def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
+    """Return a bracket as `bracket --json` prints it, its depth in m, as the radius is."""
     return {
         "method": answer.method,
         "half_angle_deg": math.degrees(answer.half_angle),
         "mu": answer.mu,
         "voussoirs": answer.voussoirs,
         "weight": answer.weight,
-        "depth": answer.depth,
+        "radius": radius,
+        "depth": answer.depth * radius,
         "lean_deg": math.degrees(answer.lean),
         "tol": answer.tol,
         "eta_low": answer.eta_low,
