@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from report_rows import ROW, sliding
+from report_rows import ARCH, ROW, sliding
 from running import blocksim
 
 import blocksim as package
@@ -28,11 +28,11 @@ from blocksim.studies.validate import unasked
 
 def test_paths_may_be_texts_and_the_header_is_strict_json(tmp_path: Path) -> None:
     path = str(tmp_path / "a.npz")
-    recording = replace(sliding(), mu=math.inf)
+    recording = replace(sliding(), problem=ARCH.problem(math.inf))
     recording.save(path)
     with np.load(path) as inside:
         header = json.loads(str(inside["header"]), parse_constant=pytest.fail)
-    assert header["mu"] == "inf"
+    assert header["problem"]["mu"] == "inf"
     again = load_recording(path)
     assert (again.mu, again.settings) == (math.inf, recording.settings)
     assert zipfile.is_zipfile(path)

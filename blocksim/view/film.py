@@ -248,7 +248,7 @@ class Film:
         """Explain the colours that occur, from the lower right corner."""
         entries = [(WORDS[state], JOINTS[state]) for state in WORDS if state in states]
         if thrust and any(stage.thrust for stage in self._stages):
-            entries.append(("line of thrust at rest, by limit analysis", THRUST))
+            entries.append(("line of thrust at rest", THRUST))
         shapes, labels = list[Shape](), list[Label]()
         size = self._size
         x, y = self.width - 24 * size, 15 * size
