@@ -39,13 +39,14 @@ import numpy as np
 from analysis.command import run
 from analysis.stability_figure import draw
 from analysis.stability_grids import GRIDS, QUICK, Case, Grid
-from blocksim import Arch, motion
+from blocksim import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES, get_engine, remedy
 from blocksim.engines.base import Engine
+from blocksim.evidence import motion
 from blocksim.evidence.motion import moving_run
 from blocksim.evidence.onset import onset
 from blocksim.evidence.recording import Recording

@@ -38,11 +38,14 @@ def test_special_angles_of_the_sector() -> None:
     hinges = least_thicknesses(near, math.inf, "sector").beta_r
     assert hinges[1] == pytest.approx(found.hinge, abs=1e-12)
     assert hinges[1] > max(hinges[0], hinges[2])
-    beside = found.zero_thrust + np.array([-1e-9, 0, 1e-9])
-    modes = [least_thicknesses(angle, math.inf, "sector").mode for angle in beside]
-    # The end itself is r, as the paper has it (Fig. 25).
-    assert modes == ["rrr", "r", "r"]
-    assert bool(least_thicknesses(beside[1], math.inf, "sector").tied)
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_the_rotational_mode_ends_in_r(weight: str) -> None:
+    """At alpha_l itself the hinge is at the crown: purely overturning, r alone (Fig. 25)."""
+    beside = special_angles(weight).zero_thrust + np.array([-1e-9, 0, 1e-9])
+    names = [least_thicknesses(angle, math.inf, weight).names for angle in beside]
+    assert names == [(Mode.RRR,), (Mode.R,), (Mode.R,)]
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ ARCHES = {
     "13": (2.69, 1.964, Mode.RS),
     "14": (math.inf, 1.0, Mode.R),
     "15": (math.inf, 2.0, Mode.R),
+    "18": (0.6, 0.031, Mode.RRR),
     "19": (0.7, 0.107, Mode.RRR),
     "20": (0.3, 2.0, Mode.SS),
     "24": (1.7659, 0.9533, Mode.RRS),
@@ -88,6 +89,12 @@ def test_labels_are_beside_their_marks_and_hide_none(drawn: Figure) -> None:
             middle = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
             near = {other: math.dist(middle, place) for other, place in places.items()}
             assert min(near, key=near.__getitem__) == name
+
+
+def test_no_label_is_on_the_axis_below(drawn: Figure) -> None:
+    for axes in parts(drawn):
+        bottom = axes.get_window_extent().y0
+        assert all(text.get_window_extent().y0 > bottom for text in labels(axes).values())
 
 
 def test_rsr_can_be_read(drawn: Figure) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from report_rows import ROW, sliding
+from report_rows import ARCH, ROW, sliding
 from running import blocksim
 
 import blocksim as package
@@ -28,11 +28,11 @@ from blocksim.studies.validate import unasked
 
 def test_paths_may_be_texts_and_the_header_is_strict_json(tmp_path: Path) -> None:
     path = str(tmp_path / "a.npz")
-    recording = replace(sliding(), mu=math.inf)
+    recording = replace(sliding(), problem=ARCH.problem(math.inf))
     recording.save(path)
     with np.load(path) as inside:
         header = json.loads(str(inside["header"]), parse_constant=pytest.fail)
-    assert header["mu"] == "inf"
+    assert header["problem"]["mu"] == "inf"
     again = load_recording(path)
     assert (again.mu, again.settings) == (math.inf, recording.settings)
     assert zipfile.is_zipfile(path)
@@ -99,6 +99,17 @@ def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:
     assert (answer["depth"], answer["lean_deg"], answer["verdict"]) == (2.5, 0.0, "collapses")
     stands = json.loads(blocksim(*asked, "--ratio", "1.001").stdout)
     assert stands["verdict"] == "stands"
+
+
+def test_depth_is_in_metres_of_a_check_and_of_a_bracket(tmp_path: Path) -> None:
+    file = tmp_path / "wide.toml"
+    file.write_text(
+        'title = "t"\nsource = "s"\n[arch]\nhalf_angle_deg = 90\nvoussoirs = 9\neta = 0.2\n'
+        "radius = 5.0\ndepth = 2.0\n[contact]\nmu = 0.7\n"
+    )
+    for command in ("check", "bracket"):
+        answer = json.loads(blocksim(command, str(file), "--json").stdout)
+        assert (answer["radius"], answer["depth"]) == (5.0, 2.0)
 
 
 @pytest.mark.parametrize("name", shipped())

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from blocksim import Arch, bracket, check, limit, theory
+from blocksim import Arch, bracket, check
+from blocksim.arch import limit, theory
 from blocksim.arch.limit.bulk import joints_of, least_thickness_of_joints
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.map import divide_friction, half_angle_at

@@ -225,7 +225,7 @@ def bracket(
             reduce=reduce,
             progress=report,
         )
-    answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)
+    answer_with(bracket_record(answer, asked.radius), bracket_lines(answer), as_json=as_json)
 
 
 @app.command()

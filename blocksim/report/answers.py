@@ -48,15 +48,16 @@ def check_record(answer: Check) -> dict[str, object]:
     }
 
 
-def bracket_record(answer: Bracket) -> dict[str, object]:
-    """Return a bracket as `bracket --json` prints it."""
+def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
+    """Return a bracket as `bracket --json` prints it, its depth in m, as the radius is."""
     return {
         "method": answer.method,
         "half_angle_deg": math.degrees(answer.half_angle),
         "mu": answer.mu,
         "voussoirs": answer.voussoirs,
         "weight": answer.weight,
-        "depth": answer.depth,
+        "radius": radius,
+        "depth": answer.depth * radius,
         "lean_deg": math.degrees(answer.lean),
         "tol": answer.tol,
         "eta_low": answer.eta_low,
@@ -146,6 +147,8 @@ def _exact(label: str, answer: Check | Bracket) -> str:
     """Tell the least thickness as built and of the continuous arch, each with its mode."""
 
     def least(eta: float | None, mode: Mode | None) -> str:
+        if eta == 0:
+            return "any"
         return f"{'none up to 2' if eta is None else ratio(eta)} ({mode or 'mode unnamed'})"
 
     return (

@@ -262,7 +262,7 @@ class Film:
         told = [words_of(state, is_arch=is_arch) for state in ARCH_WORDS if state in states]
         entries = list(dict.fromkeys(told))
         if thrust and any(stage.thrust for stage in self._stages):
-            entries.append(("line of thrust at rest, by limit analysis", THRUST))
+            entries.append(("line of thrust at rest", THRUST))
         shapes, labels = list[Shape](), list[Label]()
         size = self._size
         x, y = self.width - 24 * size, 15 * size

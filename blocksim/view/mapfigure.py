@@ -301,7 +301,7 @@ def _draw_points(
                           arrowprops={"arrowstyle": "<|-", "color": style.colour})  # fmt: skip
         if point.outline or point in unnamed:
             continue
-        away = _free_place((x, y), marks, taken, grain)
+        away = _free_place((x, y), marks, taken, grain, low)
         taken.append((x + away[0] * grain[0], y + away[1] * grain[1]))
         axes.annotate(
             point.label,
@@ -322,11 +322,12 @@ def _free_place(
     marks: Sequence[tuple[float, float]],
     taken: Sequence[tuple[float, float]],
     grain: tuple[float, float],
+    low: float,
 ) -> tuple[float, float]:
     """Choose where beside a mark its label is over no other words, and nearest to it.
 
     Everything is on the map, but for the place, which is in points from the mark; `grain` is
-    what a point covers.
+    what a point covers, `low` the axis below, which a label keeps off.
     """
     here = np.array(start)
     others = [np.array(mark) for mark in marks if mark != start]
@@ -336,9 +337,9 @@ def _free_place(
             place = distance * np.array([math.cos(angle), math.sin(angle)])
             marked = [(here - mark) / grain + place for mark in others]
             written = [np.abs((here - words) / grain + place) for words in taken]
-            if all(math.hypot(*way) > 1.15 * distance for way in marked) and all(
-                across > 13 or up > 10 for across, up in written
-            ):
+            above = (start[1] - low) / grain[1] + place[1]
+            free = all(across > 13 or up > 10 for across, up in written)
+            if above > 7 and free and all(math.hypot(*way) > 1.15 * distance for way in marked):
                 return float(place[0]), float(place[1])
     return 15.0, 0.0
 

@@ -170,9 +170,9 @@ def _landmark(name: str, mu: float, weight: Weight) -> Landmark:
         name=name,
         half_angle=half_angle,
         mu=mu,
-        eta=eta,
+        # By definition, not to round-off: eta is 2 at B, from J on the hinge is at the crown.
+        eta=ETA_MAX if name == "B" else eta,
         thrust=thrust,
-        # At J and beyond it the hinge is at the crown, by definition.
         beta_r=0.0 if name in {"J", "B"} else beta_r,
         beta_s=beta_s,
     )
