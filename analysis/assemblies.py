@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.random import Generator
@@ -197,7 +198,7 @@ def _courses(rows: Sequence[Sequence[float]], hole: tuple[float, ...] = ()) -> P
     return [
         box(left, row, right, row + 1)
         for row, breaks in enumerate(rows)
-        for left, right in zip(breaks[:-1], breaks[1:], strict=True)
+        for left, right in pairwise(breaks)
         if not (hole and left == hole[0] and right == hole[1] and hole[2] <= row < hole[3])
     ]
 
@@ -244,11 +245,8 @@ def leaning(random: Generator) -> tuple[Polygons, int]:
     floor, high = box(-9, -1, 9, 0), 4.0
 
     def block(foot: float, height: float) -> Array:
-        corner = np.array([foot, 0.0])
-        return np.array(
-            [corner, corner + height * up, corner + height * up - thick * across]
-            + [corner - thick * across]
-        )
+        sides = [0 * up, height * up, height * up - thick * across, -thick * across]
+        return np.array([foot, 0.0]) + np.array(sides)
 
     # Books of one tilt touch by their faces, and the floor by a corner.
     count = int(random.integers(1, 6))
@@ -263,10 +261,7 @@ def leaning(random: Generator) -> tuple[Polygons, int]:
     # A free pier of several blocks in place of the wall.
     levels = np.linspace(0, high, int(random.integers(2, 5)))
     wide = random.uniform(1.0, 2.5)
-    pier = [
-        box(wall_at, float(a), wall_at + wide, float(b))
-        for a, b in zip(levels[:-1], levels[1:], strict=True)
-    ]
+    pier = [box(wall_at, float(a), wall_at + wide, float(b)) for a, b in pairwise(levels)]
     return [floor, *pier, *books], 1
 
 
@@ -311,7 +306,7 @@ def arch(random: Generator) -> tuple[Polygons, int]:
     fill: Polygons = []
     if random.random() < 0.5:
         top = high[:, 1].max() + random.uniform(0.05, 0.3)
-        for a, b in zip(high[1:-2], high[2:-1], strict=True):
+        for a, b in pairwise(high[1:-1]):
             steep = abs(b[1] - a[1]) > 1.2 * (b[0] - a[0])
             if not steep and random.random() < 0.75:
                 fill.append(np.array([a, b, [b[0], top], [a[0], top]]))
@@ -358,7 +353,7 @@ def column(random: Generator) -> tuple[Polygons, int]:
     drums = [np.array([left[k], right[k], right[k + 1], left[k + 1]]) for k in range(count)]
     out, across = random.uniform(0.0, 0.3), right[-1] - left[-1]
     a, b = left[-1] - out * across, right[-1] + out * across
-    abacus = np.array([a, b, b + [0, 0.3], a + [0, 0.3]])
+    abacus = np.array([a, b, b, a]) + 0.3 * np.array([[0, 0], [0, 0], [0, 1], [0, 1]])
     return [box(-3, -1, 3, 0), *drums, abacus], 1
 
 
@@ -373,15 +368,12 @@ def trilithon(random: Generator) -> tuple[Polygons, int]:
             levels = np.linspace(low, high, int(random.integers(2, 5)))
             polygons += [
                 box(post * span - half, float(a), post * span + half, float(b))
-                for a, b in zip(levels[:-1], levels[1:], strict=True)
+                for a, b in pairwise(levels)
             ]
         ends = span * np.arange(bays + 1)
         ends[[0, -1]] += [-random.uniform(0.0, 0.6), random.uniform(0.0, 0.6)]
         thick = random.uniform(0.3, 0.8)
-        polygons += [
-            box(float(a), high, float(b), high + thick)
-            for a, b in zip(ends[:-1], ends[1:], strict=True)
-        ]
+        polygons += [box(float(a), high, float(b), high + thick) for a, b in pairwise(ends)]
         low = high + thick
     return polygons, 1
 
@@ -404,10 +396,7 @@ def portal(random: Generator) -> tuple[Polygons, int]:
         )
         levels = np.linspace(base, head, int(random.integers(2, 5)))
         left, right = sorted((float(low[0]), float(back)))
-        polygons += [
-            box(left, float(a), right, float(b))
-            for a, b in zip(levels[:-1], levels[1:], strict=True)
-        ]
+        polygons += [box(left, float(a), right, float(b)) for a, b in pairwise(levels)]
     return [box(-4, base - 1, 4, base), *polygons, *ring], 1
 
 
