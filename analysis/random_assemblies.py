@@ -390,7 +390,7 @@ def _figure(asked: Sequence[Row], after: Sequence[Row], path: Path) -> None:
         right.axhline(1e-9, color=QUIET, lw=0.8)
         right.set_yscale("log")
         right.set_xlabel("blocks")
-        right.set_title("Load factor of the linear programme: relative difference")
+        right.set_title("Load factor: relative difference")
         right.legend(fontsize=7)
         path.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path, dpi=150)
