@@ -7,6 +7,7 @@ import itertools
 import json
 import math
 from collections import Counter
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -32,6 +33,41 @@ def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> N
     assert result.undecided == 0
     assert result.worst_error <= 1e-4  # half the bracket's width: no end is false
     assert (tmp_path / "random_arches.png").stat().st_size > 0
+
+
+def test_random_assemblies_fall_at_the_load_of_the_linear_programme(tmp_path: Path) -> None:
+    module = study("random_assemblies")
+    result = module.main(tmp_path, quick=True)
+    assert result.assemblies == 12
+    assert result.right == 24
+    assert result.false == sum(result.undecided.values()) == 0
+    assert result.let_go == result.let_go_right == 4
+    assert max(vars(result.worst).values()) < 1e-9
+    assert result.changed == result.changed_same == 5
+    assert result.worst_change < 1e-9
+    assert [row["below"] + row["above"] for row in result.walls] == ["standscollapses"]
+    with (tmp_path / "random_assemblies.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 17
+    # Leaning blocks have corners on faces, of which the full run tells.
+    assert {row["kind"] for row in rows} == set(study("assemblies").KINDS) - {"leaning"}
+    assert (tmp_path / "random_assemblies.png").stat().st_size > 0
+
+
+def test_wrong_forces_and_mechanisms_of_random_assemblies_would_be_seen() -> None:
+    module = study("random_assemblies")
+    problem = module.drawn(1).problem()
+    found = module.collapse(problem)
+    assert max(vars(module.residuals(problem, found)).values()) < 1e-9
+    forces, rates = found.forces.copy(), found.mechanism.copy()
+    forces[0] *= 1.01
+    rates[-1] *= -1
+    wrong = module.residuals(problem, replace(found, forces=forces))
+    assert wrong.imbalance > 1e-3
+    wrong = module.residuals(problem, replace(found, mechanism=rates))
+    assert wrong.overlap > 1e-3
+    wrong = module.residuals(problem, replace(found, load_factor=1.01 * found.load_factor))
+    assert min(wrong.imbalance, wrong.power) > 1e-3
 
 
 def test_what_limits_pybullet(tmp_path: Path) -> None:

@@ -33,6 +33,8 @@ FINEST = 1e-10
 """HiGHS's own least tolerance."""
 ROUND_OFF = 1e-9
 """Lack of force that is round-off [mean weights]."""
+MANY = 1000
+"""Edges of cones from which the interior point is faster than the simplex."""
 SIGNS = np.array([1.0, -1.0])
 
 
@@ -144,13 +146,25 @@ def collapse(problem: Problem) -> Collapse:
 
 def _most(cones: _Cones, column: Any, right: Array, bounds: tuple[float | None, ...]) -> Any:
     """Make the factor on a column as large as the balance of forces allows."""
+    # Of many joints the interior point is three to ten times faster, and as exact: its
+    # answer is brought to a vertex. It does not tell whether nothing limits the factor.
+    if cones.count > MANY:
+        found = _solve("highs-ipm", cones, column, right, bounds)
+        if found.success:
+            return found
+    return _solve("highs", cones, column, right, bounds)
+
+
+def _solve(
+    method: str, cones: _Cones, column: Any, right: Array, bounds: tuple[float | None, ...]
+) -> Any:
     solve: Any = linprog
     return solve(
         np.append(np.zeros(cones.count), -1.0),
         A_eq=hstack([cones.balance, column]),
         b_eq=right,
         bounds=[*cones.bounds, bounds],
-        method="highs",
+        method=method,
         options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
     )
 
