@@ -73,7 +73,7 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
         return spun + (moved[block, :2] - start[block])[:, None]
 
     apart = carried(after) - carried(before)
-    mean = (moved[after, 2] + moved[before, 2]) / 2
+    mean: Array = (moved[after, 2] + moved[before, 2]) / 2
     if joints.is_corner.any():
         # The face that carries a corner says which way it opens.
         own = moved[np.where(joints.carrier == 1, after, before), 2]

@@ -153,7 +153,10 @@ def onset(
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
     total, sweeps = 0, first
     forces = given = None
-    unasked = problem.is_planar and not world.finds_rest
+    # Without bound on friction even an engine that looks for rest can miss it: forces may be
+    # wedged, a thousand times their pressures.
+    bounded = bool(np.isfinite(problem.friction).all())
+    unasked = problem.is_planar and not (world.finds_rest and bounded)
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps

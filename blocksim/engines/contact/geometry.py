@@ -59,9 +59,8 @@ class Geometry:
         self._axes = np.concatenate([joints.tangent, joints.tangent])
         lengths = ((faces[:, :, 1] - faces[:, :, 0]) * joints.tangent[:, None]).sum(axis=-1)
         self._length = lengths[:, 0]
-        self._deepest = DEEPEST * np.where(
-            joints.is_corner, lengths.max(axis=1), lengths.min(axis=1)
-        )
+        shorter, longer = lengths.min(axis=1), lengths.max(axis=1)
+        self._deepest: Array = DEEPEST * np.where(joints.is_corner, longer, shorter)
         self._moves = (self._sides != SUPPORT).astype(np.float64)[:, None, None]
         self._signs = np.repeat([-1.0, 1.0], count)[:, None, None]
         self._corners = np.flatnonzero(joints.is_corner)

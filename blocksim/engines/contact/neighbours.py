@@ -138,7 +138,7 @@ class Neighbours:
                     begin, polygons = int(first[body]), assembly.blocks[body].polygons
                 ends = np.stack([joint.inner, joint.outer])
                 sides.append([begin + k for k in _lying_on(polygons, ends, assembly.size)])
-            found += [(index, *sorted((a, b))) for a in sides[0] for b in sides[1]]
+            found += [(index, min(a, b), max(a, b)) for a in sides[0] for b in sides[1]]
         joints, one, other = np.array(found, dtype=np.int64).reshape(-1, 3).T
         return joints, one, other
 
