@@ -47,8 +47,7 @@ def rest(arch: Arch = ARCH) -> Array:
 def recording(moved: Array, times: Array, arch: Arch = ARCH) -> Recording:
     """Record given displacements, (frames, blocks, 3)."""
     return Recording(
-        arch=arch,
-        mu=0.7,
+        problem=arch.problem(0.7),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
@@ -453,7 +452,7 @@ def test_lengths_and_times_have_units_where_a_radius_was_given() -> None:
     assert "t = 0.300 s" in metric
     assert "1 m" in metric
     assert "10 times slower" in metric
-    free = replace(falling(), arch=replace(ARCH, radius=1.0, depth=0.5))
+    free = replace(falling(), problem=replace(ARCH, radius=1.0, depth=0.5).problem(0.7))
     film = Film([free], slow=10)
     words = drawn_words(film, 0.3)
     assert "t = 0.30 √(r/g)" in words
