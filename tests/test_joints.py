@@ -59,10 +59,12 @@ def test_nothing_moved() -> None:
     assert np.abs(motion.slip).max() < 1e-15
     assert not motion.turn.any()
     assert set(states(ASSEMBLY, REST)) == {STATE.CLOSED}
-    for one, other in zip(closed_joints(ARCH), classify(ASSEMBLY, REST), strict=True):
+    for one, other in zip(
+        closed_joints(ARCH.joint_angles), classify(ASSEMBLY, REST), strict=True
+    ):
         assert one.state is other.state
         assert one.angle == pytest.approx(other.angle, rel=1e-14)
-    assert observed_mode(closed_joints(ARCH), 1.4, 8) is None
+    assert observed_mode(closed_joints(ARCH.joint_angles), ARCH) is None
 
 
 @given(st.integers(1, 7), st.floats(1e-9, 0.3), st.booleans())
@@ -286,9 +288,10 @@ def test_keystone_hinges_count_as_the_crown() -> None:
     beside, shoulder, haunch = alpha / 27, alpha, 17 * alpha / 27
     kinds = [STATE.HINGE_EXTRADOS, STATE.HINGE_INTRADOS, STATE.HINGE_EXTRADOS]
     both = observed([shoulder, haunch, beside], kinds)
-    assert observed_mode(both, alpha, count) is Mode.RRR
+    arch = Arch(half_angle=alpha, eta=0.1, voussoirs=count)
+    assert observed_mode(both, arch) is Mode.RRR
     one = tuple(joint for joint in both if joint.angle != -beside)
-    assert observed_mode(one, alpha, count) is Mode.RRR
+    assert observed_mode(one, arch) is Mode.RRR
     assert crown_width(alpha, 27) >= beside > crown_width(alpha, 28)
 
 
@@ -301,7 +304,8 @@ def test_a_hinge_between_two_joints_shows_as_both_and_counts_once() -> None:
         STATE.HINGE_INTRADOS,
         STATE.HINGE_EXTRADOS,
     ]
+    arch = Arch(half_angle=alpha, eta=0.1, voussoirs=count)
     near = observed([alpha, 6 * step, 5 * step, 0.0], kinds)
     far = observed([alpha, 7 * step, 5 * step, 0.0], kinds)
-    assert observed_mode(near, alpha, count) is Mode.RRR
-    assert observed_mode(far, alpha, count) is None
+    assert observed_mode(near, arch) is Mode.RRR
+    assert observed_mode(far, arch) is None
