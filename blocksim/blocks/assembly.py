@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from blocksim.common.checks import require
-from blocksim.common.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -284,9 +283,7 @@ class Assembly:
                     x, y = middles[side]
                     away = across[0] * (x - (x1 + x2) / 2) + across[1] * (y - (y1 + y2) / 2)
                     ahead.add(sign * away > 0)
-            if ahead == {True, False}:
-                between = f"blocks {joint.before} and {joint.after}"
-                raise InputError(f"joints[{index}]", between, "between its two blocks")
+            # Blocks that are hulls of others may lie on both sides: then it is left as given.
             if ahead == {False}:
                 joints[index] = joint.turned
         object.__setattr__(self, "joints", tuple(joints))

@@ -35,7 +35,6 @@ ROUND_OFF = 1e-9
 """Lack of force that is round-off [mean weights]."""
 MANY = 1000
 """Edges of cones from which the interior point is faster than the simplex."""
-SIGNS = np.array([1.0, -1.0])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
