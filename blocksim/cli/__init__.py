@@ -8,10 +8,13 @@ from contextlib import suppress
 
 import typer
 
-from blocksim.cli.commands import app
+from blocksim.cli import commands, studies
+from blocksim.cli.app import app
 from blocksim.common import interrupts
 from blocksim.common.errors import BlocksimError
 
+COMMANDS = (commands, studies)
+"""Modules whose commands hang themselves into the program."""
 WRONG_INPUT = 2
 CRASHED = 70
 """After what should not happen: Python's own 1 would say that the arch collapses."""
