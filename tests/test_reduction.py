@@ -349,7 +349,7 @@ def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
         for reduce in (True, False)
     )
     assert few.verdict is every.verdict
-    assert few.mode is every.mode
+    assert observed_mode(few.joints, arch) is observed_mode(every.joints, arch)
 
 
 @pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "weight"), CASES[:-2])
@@ -409,7 +409,7 @@ def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
         for reduce in (True, False)
     )
     assert few.verdict is every.verdict is Verdict.COLLAPSES
-    assert few.mode is every.mode
+    assert observed_mode(few.joints, arch) is observed_mode(every.joints, arch)
     assert few.joints == every.joints
     runs = few.motion.recording, every.motion.recording
     assert runs[0].times == pytest.approx(runs[1].times)
