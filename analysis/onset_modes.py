@@ -211,6 +211,9 @@ def _figure(rows: list[Row], path: Path, engine: str) -> None:
 def _over_map(axes: Axes, rows: list[Row], *, zoomed: bool) -> None:
     """Draw the modes seen over those published (Fig. 9)."""
     draw_regions(axes)
+    # What lies beyond a zoom is no part of the picture.
+    for drawn in (*axes.texts, *axes.lines, *axes.collections, *axes.patches):
+        drawn.set(clip_on=True, in_layout=False)
     handles: list[Line2D] = []
     for mode in (*Mode, None):
         name, style = (mode.value, MODES[mode]) if mode else (NONE, UNNAMED)

@@ -82,7 +82,7 @@ def test_check_and_picture_name_the_same_mode(eta: float) -> None:
     arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=27)
     seen = check(arch, mu=0.3)
     assert seen.mode is (Mode.SRR if eta < 0.16 else Mode.SS)
-    assert picture_of_arch(arch, 0.3).title.startswith(f"mode {seen.mode}:")
+    assert picture_of_arch(arch, 0.3).title.startswith(f"collapses, mode {seen.mode}")
     assert (seen.mode_limit, seen.mode_theory) == (Mode.SS, Mode.SS)
 
 
@@ -96,7 +96,7 @@ def test_check_and_picture_of_arches_below_their_limit(
     arch = arch_at(ratio, angle, mu, 40)
     seen = check(arch, mu=mu)
     assert seen.mode is not None
-    assert picture_of_arch(arch, mu).title.startswith(f"mode {seen.mode}:")
+    assert picture_of_arch(arch, mu).title.startswith(f"collapses, mode {seen.mode}")
     if ratio > 0.98:
         assert seen.mode is seen.mode_limit
     assert sum(joint.state is not JointState.CLOSED for joint in seen.joints) >= 5

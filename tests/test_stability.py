@@ -124,7 +124,7 @@ def test_settings_beyond_those_measured_are_named(
     chosen = replace(rule, step=rule.step * step, sweeps=round(rule.sweeps * sweeps))
     changed = replace(setup, settings=chosen)
     world = changed.world()
-    first = onset(world, Problem(assembly=changed.assembly, mu=changed.mu), chosen)
+    first = onset(world, changed.taken, chosen)
     seen = conclude(Held(setup=changed, world=world, onset=first), moving=moving)
     assert ("to be sure" in seen.reason) == (moving and word != "")
     assert not moving or word in seen.reason
