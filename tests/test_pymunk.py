@@ -153,7 +153,7 @@ def test_the_weight_drives_the_mechanism(
 
 HASH = """
 from blocksim.arch.circular import Arch
-from blocksim.evidence.trial import simulate
+from blocksim.arch.motion import simulate
 arch = Arch(half_angle=1.5707963267948966, eta=0.1, voussoirs=13)
 print(simulate(arch, mu=0.6, method="pymunk", duration=2.0).state_hash)
 """
