@@ -142,7 +142,7 @@ def test_the_map_is_dark_in_the_dark(page, scheme: str) -> None:
     """Paper and regions, and the words on them, by their colours in the browser."""
     page.emulate_media(color_scheme=scheme)
     grounds = page.evaluate(LIGHTNESS, "#patch_1 path, #patch_2 path, [id^=FillBetween] use")
-    assert len(grounds) == 8
+    assert len(grounds) == 10
     words = page.evaluate(LIGHTNESS, '[id^="matplotlib.axis"] [id^=text_] use')
     assert len(words) > 10
     if scheme == "light":

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.sparse import csc_array, hstack
+from scipy.sparse.linalg import lsmr
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
@@ -110,7 +111,7 @@ def equilibrium(problem: Problem) -> Equilibrium:
     if margin < -ROUND_OFF:
         mechanism = _scaled(-np.asarray(found.eqlin.marginals), problem)
         return Equilibrium(margin=margin, forces=None, mechanism=mechanism)
-    parts = found.x[:-1] + margin * cones.bounded
+    parts = cones.polished(found.x[:-1] + margin * cones.bounded, problem.pull())
     return Equilibrium(margin=margin, forces=cones.forces(parts), mechanism=None)
 
 
@@ -219,6 +220,8 @@ class _Cones:
             arm = point - centres[mine]
             turn = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
             part = sign * np.column_stack([direction, turn])
+            # What nothing can turn (half a keystone on its plane) bears any moment.
+            part[:, 2] /= np.append(np.maximum(1.0, assembly.masses[:, 2]), 1.0)[mine]
             part[mine == SUPPORT] = 0.0
             rows.append(PLANAR * np.maximum(mine, 0)[:, None] + np.arange(PLANAR))
             values.append(part)
@@ -238,6 +241,19 @@ class _Cones:
     def bounds(self) -> list[tuple[float | None, float | None]]:
         """Parts press; what is tangential only may have any sign."""
         return [(0.0, None) if each else (None, None) for each in self.bounded]
+
+    def polished(self, parts: Array, pull: Array) -> Array:
+        """Take away the imbalance the solver leaves, by the least change of what presses."""
+        left = -pull.ravel() - self.balance @ parts
+        held = np.flatnonzero((parts > 1.0) | (self.bounded == 0))
+        if np.abs(left).max() < ROUND_OFF or not len(held):
+            return parts
+        solve: Any = lsmr
+        change = solve(self.balance[:, held], left, atol=1e-14, btol=1e-14)[0]
+        better = parts.copy()
+        better[held] += change
+        worst = np.abs(-pull.ravel() - self.balance @ better).max()
+        return better if worst < np.abs(left).max() else parts
 
     def forces(self, parts: Array) -> Array:
         """Sum parts to forces at the ends of joints, shape (joints, 2, 2)."""
