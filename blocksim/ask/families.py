@@ -160,5 +160,4 @@ def _root(
         return None
     if margin(falling) >= 0:
         return math.inf if stands == "low" else 0.0
-    # The first value beyond that falls, so that the steep part of the range is left out.
     return float(brentq(margin, low, high, xtol=1e-13, rtol=1e-12))

@@ -202,7 +202,7 @@ class _Bodies:
         return self._places + (self._state.qpos - self._zero).reshape(-1, 3)
 
     def resultants(self) -> Array:
-        """Not told: `ladder.choose` asks this engine for no reduced arch."""
+        """Not told: `ask.methods.choose` asks this engine for no reduced arch."""
         raise NotImplementedError
 
     def quality(self) -> Quality:
