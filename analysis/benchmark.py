@@ -34,7 +34,7 @@ from blocksim.arch.limit.bulk import which_stand
 from blocksim.arch.motion import simulate
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.common.files import make_folder, write_whole
-from blocksim.engines import ENGINES, remedy
+from blocksim.engines import ENGINES
 from blocksim.evidence.trial import hold
 from blocksim.report.tables import processor
 from blocksim.view.film import Film
@@ -137,9 +137,9 @@ def tasks(*, quick: bool) -> dict[str, Task]:
             least_thickness(ALPHA, MU, voussoirs) for _ in range(10)
         ],
     }
-    for engine in ENGINES:
-        if not remedy(engine):
-            found |= _of_engine(engine, below, above)
+    for name, engine in ENGINES.items():
+        if not engine.missing:
+            found |= _of_engine(name, below, above)
     falling = simulate(below, mu=MU, method="direct", duration=2.0)
     frames = 2 if quick else 50
     film = Film([falling], height=480)

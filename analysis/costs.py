@@ -23,8 +23,7 @@ from typing import TypeVar
 from analysis.command import run
 from blocksim import Arch, bracket, check
 from blocksim.arch.limit import least_thickness
-from blocksim.ask.methods import STATIC
-from blocksim.engines import ENGINES, remedy
+from blocksim.ask.methods import METHODS, missing
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (155, 3.0), (65, 0.6))
 """Half-angle [deg] and friction."""
@@ -55,11 +54,11 @@ class Cost:
 
 def main(out: Path, *, quick: bool = False) -> list[Cost]:
     """Measure, write a table and return its lines."""
-    methods = ("theory", "limit", "direct") if quick else (*STATIC, *ENGINES)
+    methods = ("theory", "limit", "direct") if quick else tuple(METHODS)
     arches = ARCHES[:2] if quick else ARCHES
     costs: list[Cost] = []
     for method in methods:
-        if method in STATIC or not remedy(method):
+        if not missing(METHODS[method]):
             costs.append(_checks(method, arches))
             costs += [_brackets(method, arches, tol) for tol in TOLERANCES.get(method, COMMON)]
             sys.stderr.write(f"{method}\n")

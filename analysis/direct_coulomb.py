@@ -34,7 +34,7 @@ from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.problem import Problem
-from blocksim.engines.direct import Blocks, Direct
+from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.view.style import QUIET
 
 ARCHES = (
@@ -74,8 +74,8 @@ class Outcome:
 
 def world(arch: Arch, mu: float) -> Blocks:
     """Put an arch into the engine."""
-    engine, assembly = Direct(), arch.assembly()
-    return Blocks(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
+    assembly = arch.assembly()
+    return Blocks(Problem(assembly=assembly, mu=mu), ENGINE.rule(assembly))
 
 
 def way(blocks: Blocks, start: Array, arch: Arch, until: float) -> float:

@@ -26,10 +26,11 @@ from analysis.command import run
 from blocksim import Arch
 from blocksim.arch import limit
 from blocksim.ask.search import Answer, Search
+from blocksim.engines import ENGINES
 from blocksim.evidence.setup import Setup
 from blocksim.report.chart import write_chart
 from blocksim.studies.chart import START, Case, cases, gain, measure
-from blocksim.studies.knobs import STEP, SWEEPS, TOL, let_go
+from blocksim.studies.refinement import STEP, TOL, let_go
 
 SETTLED, LATE = 0.05, 10.0
 """How far a lenient judge lets arches settle [r], and how long that may take [sqrt(r/g)]."""
@@ -91,7 +92,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
 def lenient_error(case: Case) -> float:
     """Bracket an arch by pymunk, let go at once, that stands if it settles at all."""
     exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta or math.nan
-    settings = {"step": STEP, "sweeps": SWEEPS["pymunk"]}
+    settings = {"step": STEP, "sweeps": ENGINES["pymunk"].usual_sweeps}
 
     def judge(eta: float) -> Answer:
         arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)

@@ -32,7 +32,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from unittest.mock import patch
 
 import numpy as np
 
@@ -44,9 +43,8 @@ from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.common.files import write_whole
-from blocksim.engines import ENGINES, get_engine, remedy
+from blocksim.engines import ENGINES, get_engine
 from blocksim.engines.base import Engine
-from blocksim.evidence import motion
 from blocksim.evidence.motion import moving_run
 from blocksim.evidence.onset import onset
 from blocksim.evidence.recording import Recording
@@ -117,19 +115,19 @@ def released(engine: str, grid: Grid) -> Iterator[Row]:
     for case in grid.arches:
         for ratio in RATIOS:
             setup = setup_of(engine, case, ratio)
-            sure = onset(setup.world(), setup.taken, setup.settings)
+            sure = onset(setup.world(), setup.engine, setup.taken, setup.settings)
             for step in grid.steps:
                 for sweeps in grid.sweeps:
                     chosen = replace(
                         setup.settings,
+                        repeats=0,
                         step=setup.settings.step * step,
                         sweeps=max(1, round(setup.settings.sweeps * sweeps * step)),
                     )
                     trying = replace(setup, settings=chosen)
                     world = trying.world()
                     sure.repeat(world)
-                    with patch.object(motion, "REPEATS", 0):
-                        seen = moving_run(trying, world, sure.repeat)
+                    seen = moving_run(trying, world, sure.repeat)
                     at = {"step": step, "sweeps": sweeps, "overlap": seen.overlap}
                     way = float(seen.recording.displacement[-1])
                     yield Row(
@@ -149,7 +147,7 @@ def held(engine: str, grid: Grid) -> Iterator[Row]:
                 if decided and share != rule:
                     continue  # More of them are not spent.
                 allowed = replace(setup.settings, hold_sweeps=math.ceil(share * squared))
-                seen = onset(setup.world(), setup.taken, allowed)
+                seen = onset(setup.world(), setup.engine, setup.taken, allowed)
                 at = {"length": length, "allowed": share, "rule": rule}
                 yield Row(
                     "held",
@@ -192,7 +190,7 @@ def lasting(engine: str, grid: Grid) -> Iterator[Row]:
     for case in grid.lasting:
         setup = setup_of(engine, case, 1.005)
         world = setup.world()
-        sure = onset(world, setup.taken, setup.settings)
+        sure = onset(world, setup.engine, setup.taken, setup.settings)
         seen = moving_run(setup, world, sure.repeat, until=grid.last)
         ways, times = seen.recording.displacement, seen.recording.times
         for mark in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0):
@@ -224,7 +222,7 @@ def energy(engine: str, grid: Grid) -> Iterator[Row]:
             sweeps = max(1, round(setup.settings.sweeps * factor))
             trying = replace(setup, settings=replace(setup.settings, step=step, sweeps=sweeps))
             world = trying.world()
-            onset(world, setup.taken, trying.settings)
+            onset(world, setup.engine, setup.taken, trying.settings)
             poses = [world.poses()]
             for _ in range(max(3, math.ceil(WATCHED / step))):
                 world.advance(1)
@@ -266,8 +264,8 @@ def away(engine: str, grid: Grid) -> Iterator[Row]:
                 world = library.build(problem, setup.settings)
                 off = float(displacement(world.hold(10_000) - start, setup.assembly))
                 world = library.build(problem, setup.settings)
-                with patch("blocksim.evidence.onset.FARTHEST", math.inf):
-                    verdict = onset(world, problem, setup.settings).verdict
+                anywhere = replace(setup.settings, farthest=math.inf)
+                verdict = onset(world, library, problem, anywhere).verdict
                 at = {"distance": distance}
                 yield Row("away", engine, case, ratio, at, judged(verdict, ratio), off)
 
@@ -289,7 +287,7 @@ def main(out: Path, *, quick: bool = False, engines: list[str] | None = None) ->
     out.mkdir(parents=True, exist_ok=True)
     rows: list[Row] = []
     for engine in engines or ENGINES:
-        if remedy(engine):
+        if ENGINES[engine].missing:
             continue
         for part in PARTS:
             kept = out / f"{engine}-{part.__name__}.json"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from blocksim.evidence.onset import FARTHEST
+from blocksim.engines.base import Settings
 from blocksim.evidence.setup import FEWER, LONGER
 from blocksim.evidence.verdict import Verdict
 from blocksim.view.style import FONT, INK, METHODS, MISS, QUIET, UNNAMED, VERDICTS
@@ -136,8 +136,8 @@ def away(axes: Axes, rows: Sequence[Row]) -> None:
         axes.plot(
             row.at["distance"], max(row.value, 1e-18), ms=4, mew=0.8, **STATES[row.outcome]
         )
-    axes.axvline(FARTHEST, color=INK, lw=1)
-    axes.text(FARTHEST * 1.3, 3e-18, "rule: not asked", fontsize=SMALL, color=INK)
+    axes.axvline(Settings.farthest, color=INK, lw=1)
+    axes.text(Settings.farthest * 1.3, 3e-18, "rule: not asked", fontsize=SMALL, color=INK)
     axes.set(xscale="log", yscale="log", ylim=(1e-18, 1e3))
     axes.set_xlabel("distance from the origin [r]")
     axes.set_ylabel("accelerations off by [g]")

@@ -51,9 +51,9 @@ def held_in(
     engine: Engine, assembly: Assembly, mu: float, *, sweeps: int
 ) -> tuple[Verdict, Array]:
     """Verdict of the onset test, and the accelerations after so many sweeps more."""
-    settings = engine.settings(assembly)
+    settings = engine.rule(assembly)
     world = engine.build(Problem(assembly=assembly, mu=mu), settings)
-    seen = onset(world, Problem(assembly=assembly, mu=mu), settings)
+    seen = onset(world, engine, Problem(assembly=assembly, mu=mu), settings)
     return seen.verdict, world.hold(sweeps)
 
 

@@ -12,7 +12,7 @@ from blocksim.ask.search import Answer, Search
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
-from blocksim.engines.direct import Blocks, Direct
+from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.evidence.onset import onset
 from blocksim.evidence.setup import Setup
 from blocksim.evidence.trial import trial
@@ -39,8 +39,8 @@ def held(arch, mu):
 
 
 def world_of(arch, mu, step=0.01):
-    engine, assembly = Direct(), arch.assembly()
-    settings = replace(engine.settings(assembly), step=step)
+    assembly = arch.assembly()
+    settings = replace(ENGINE.rule(assembly), step=step)
     return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 
@@ -133,7 +133,7 @@ def test_over_its_residual_the_answer_is_undecided():
     setup = Setup.of(arch_at(0.9, 90, 0.9, 20).problem(0.9), "direct")
     settings = replace(setup.settings, residual=0.0)
     world = replace(setup, settings=settings).world()
-    assert onset(world, setup.taken, settings).verdict is Verdict.UNDECIDED
+    assert onset(world, setup.engine, setup.taken, settings).verdict is Verdict.UNDECIDED
     assert not trusted(world, settings)
 
 

@@ -11,7 +11,7 @@ from blocksim.arch.circular import Arch
 from blocksim.arch.motion import simulate
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
-from blocksim.engines.direct import Blocks, Direct
+from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.motion import moving_run
 from blocksim.evidence.setup import Setup
@@ -19,8 +19,7 @@ from blocksim.evidence.verdict import Verdict
 
 
 def world_of(assembly, mu, step):
-    engine = Direct()
-    settings = replace(engine.settings(assembly), step=step)
+    settings = replace(ENGINE.rule(assembly), step=step)
     return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 

@@ -15,7 +15,7 @@ from blocksim.blocks.joints import JointState, classify, joint_motion, overlap_s
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.engines.contact.geometry import Geometry
-from blocksim.engines.direct import Blocks, Direct
+from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level
 from blocksim.evidence.trial import trial
 from blocksim.evidence.verdict import Verdict
@@ -87,8 +87,7 @@ def test_let_go_it_does_what_it_begins(name: str) -> None:
 
 
 def world_of(problem: Problem, step: float) -> Blocks:
-    engine = Direct()
-    return Blocks(problem, replace(engine.settings(problem.assembly), step=step))
+    return Blocks(problem, replace(ENGINE.rule(problem.assembly), step=step))
 
 
 def placed(problem: Problem, world: Blocks, points: np.ndarray, block: int = 0) -> np.ndarray:

@@ -107,10 +107,10 @@ def test_pymunk_keeps_what_it_is_given(count: int) -> None:
     assert least is not None
     assembly = Arch(half_angle=math.radians(125), eta=least * 1.02, voussoirs=count).assembly()
     engine = get_engine("pymunk")
-    world = engine.build(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
+    world = engine.build(Problem(assembly=assembly, mu=mu), engine.rule(assembly))
     forces = equilibrium(Problem(assembly=assembly, mu=mu)).forces
     assert forces is not None
-    assert world.begin(forces)
+    world.begin(forces)
     joints = assembly.joint_arrays
     axes = np.stack([joints.normal, joints.tangent], axis=1)
     each = np.einsum("jek,jkd->jed", forces, axes)

@@ -96,10 +96,10 @@ def test_a_thin_shallow_arch_is_not_answered(ratio: float) -> None:
     """Known limit: 30 degrees, eta 0.0015. Its contacts do not come to rest."""
     arch = arch_at(ratio, 30, 0.7, 27)
     engine = get_engine("mujoco")
-    settings = replace(engine.settings(arch.assembly()), hold_sweeps=1500)
+    settings = replace(engine.rule(arch.assembly()), hold_sweeps=1500)
     world = engine.build(Problem(assembly=arch.assembly(), mu=0.7), settings)
     assert (
-        onset(world, Problem(assembly=arch.assembly(), mu=0.7), settings).verdict
+        onset(world, engine, Problem(assembly=arch.assembly(), mu=0.7), settings).verdict
         is Verdict.UNDECIDED
     )
 
@@ -156,7 +156,7 @@ def test_size_and_material_change_nothing(ratio: float, expected: Verdict) -> No
 
 
 def test_doctor_tells_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("blocksim.engines.find_spec", lambda _name: None)
+    monkeypatch.setattr("blocksim.engines.base.find_spec", lambda _name: None)
     remedy = next(each.remedy for each in examine() if each.method == "mujoco")
     assert "mujoco-core" in remedy
     with pytest.raises(MissingPart, match="pip install"):

@@ -40,7 +40,7 @@ def test_motion_is_an_answer_above_the_limit(case: Case) -> None:
     """Begun from nothing, impulses never come to rest: this is no lack of sweeps."""
     arch, mu = arch_at(1.005, *case), case[1]
     assembly, engine = arch.assembly(), get_engine("pymunk")
-    world = engine.build(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
+    world = engine.build(Problem(assembly=assembly, mu=mu), engine.rule(assembly))
     assert np.abs(world.hold(200_000)).max() > 1e-5
 
 

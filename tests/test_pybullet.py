@@ -28,7 +28,8 @@ from blocksim.evidence.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 
-from blocksim.engines.pybullet import Bullet
+from blocksim.engines.boxes import Frame
+from blocksim.engines.pybullet import ENGINE, Bodies
 
 ARCHES = [
     (90, 0.7, 9, "centreline", Mode.RRR),
@@ -40,8 +41,13 @@ SIDES = [(0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)]
 THIN = Arch(half_angle=math.pi / 2, eta=0.08, voussoirs=9)
 
 
-def held(assembly: Assembly, mu: float, engine: Engine | None = None) -> tuple[Verdict, Array]:
-    return held_in(engine or Bullet(), assembly, mu, sweeps=5000)
+def within(frame: Frame) -> Engine:
+    """The engine with the assembly elsewhere in its space."""
+    return replace(ENGINE, build=partial(Bodies, frame=frame))
+
+
+def held(assembly: Assembly, mu: float, engine: Engine = ENGINE) -> tuple[Verdict, Array]:
+    return held_in(engine, assembly, mu, sweeps=5000)
 
 
 @pytest.mark.parametrize(("ratio", "expected"), SIDES)
@@ -73,8 +79,8 @@ def test_mode_just_below_the_least_thickness(
 
 
 ELSEWHERE = {
-    "turned by 90": Bullet(turn=math.radians(90)),
-    "far away": Bullet(origin=(100.0, 0.0, 100.0)),
+    "turned by 90": within(Frame(math.radians(90))),
+    "far away": within(Frame(origin=(100.0, 0.0, 100.0))),
 }
 
 
@@ -103,7 +109,7 @@ def test_turned_by_any_angle_where_nothing_slides(
     ratio: float, expected: Verdict, degrees: float
 ) -> None:
     assembly = arch_at(ratio, *ARCHES[0][:4]).assembly()
-    assert held(assembly, 0.7, Bullet(turn=math.radians(degrees)))[0] is expected
+    assert held(assembly, 0.7, within(Frame(math.radians(degrees))))[0] is expected
 
 
 @pytest.mark.parametrize(("ratio", "expected"), SIDES)
@@ -117,7 +123,7 @@ def test_turned_by_45_degrees_friction_is_larger(ratio: float, expected: Verdict
     """
     angle, mu, count, weight, _ = ARCHES[1]
     assembly = arch_at(ratio, angle, mu, count, weight).assembly()
-    diagonal = Bullet(turn=math.radians(45))
+    diagonal = within(Frame(math.radians(45)))
     assert held(assembly, mu / math.sqrt(2), diagonal)[0] is expected
     assert held(assembly, mu, diagonal)[0] is Verdict.STANDS
 

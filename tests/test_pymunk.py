@@ -108,7 +108,7 @@ def test_thin_arches_are_never_answered_wrongly() -> None:
         setup = Setup.of(arch_at(ratio, 20, 0.7, 27).problem(0.7), "pymunk")
         for sweeps in (1000, 20_000, 100_000):
             chosen = replace(setup.settings, hold_sweeps=sweeps)
-            seen = onset(setup.world(), setup.taken, chosen)
+            seen = onset(setup.world(), setup.engine, setup.taken, chosen)
             assert seen.verdict in {right, Verdict.UNDECIDED}
             assert seen.sweeps <= sweeps
         assert seen.verdict is Verdict.UNDECIDED
@@ -121,7 +121,7 @@ def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> N
     """Impulses that overshoot open joints without overlap, but against the weight."""
     setup = Setup.of(arch_at(ratio, 20, 0.7, count).problem(0.7), "pymunk")
     chosen = replace(setup.settings, hold_sweeps=100_000)
-    seen = onset(setup.world(), setup.taken, chosen)
+    seen = onset(setup.world(), setup.engine, setup.taken, chosen)
     assert seen.verdict is Verdict.UNDECIDED
 
 
@@ -239,7 +239,7 @@ def test_order_of_insertion(
 
 def accelerations(assembly: Assembly, mu: float) -> np.ndarray:
     engine = get_engine("pymunk")
-    world = engine.build(Problem(assembly=assembly, mu=mu), engine.settings(assembly))
+    world = engine.build(Problem(assembly=assembly, mu=mu), engine.rule(assembly))
     for _ in range(3):
         found = world.hold(3000)
     return found
@@ -323,7 +323,7 @@ def test_energy_does_not_grow(
     arch = arch_at(0.9, angle, mu, count, weight)
     setup = Setup.of(arch.problem(mu), "pymunk")
     world = setup.world()
-    onset(world, setup.taken, setup.settings)
+    onset(world, setup.engine, setup.taken, setup.settings)
     step = setup.settings.step
     poses = []
     for _ in range(round(2.0 / step)):
@@ -358,7 +358,7 @@ def test_blocks_at_rest_are_put_back() -> None:
 def test_standing_arch_stays_where_it_was_built() -> None:
     setup = Setup.of(replace(SMALL, eta=0.15).problem(0.6), "pymunk")
     world = setup.world()
-    first = onset(world, setup.taken, setup.settings)
+    first = onset(world, setup.engine, setup.taken, setup.settings)
     motion = moving_run(setup, world, first.repeat)
     assert motion.verdict is Verdict.STANDS
     assert motion.recording.displacement.max() < 1e-5
@@ -383,7 +383,7 @@ def test_static_and_unknown_methods_move_nothing(method: str) -> None:
 
 
 def test_missing_engine(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("blocksim.engines.find_spec", lambda _name: None)
+    monkeypatch.setattr("blocksim.engines.base.find_spec", lambda _name: None)
     with pytest.raises(MissingPart, match="pip install"):
         get_engine("pymunk")
 

@@ -24,7 +24,6 @@ from blocksim.arch.limit import weakest_joints
 from blocksim.arch.limit.statics import half_joints
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
-from blocksim.ask.methods import METHODS
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
@@ -53,7 +52,7 @@ EXACT = {"direct": 1e-10, "pymunk": 1e-5, "pybullet": 2e-4}
 """Of resultants [mean weights]; where engines sweep, shapes overlap by 2.5e-7 and 2e-5 r."""
 
 
-@pytest.fixture(params=[name for name in ENGINES if METHODS[name].reduces])
+@pytest.fixture(params=[name for name in ENGINES if ENGINES[name].tells_forces])
 def engine(request: pytest.FixtureRequest) -> str:
     """Every engine by name; pybullet has no wheels for newer Pythons."""
     if request.param == "pybullet":
@@ -178,7 +177,7 @@ def on_a_slope(slope, smooth=False):
 
 def placed(engine, assembly, mu):
     library = get_engine(engine)
-    return library.build(Problem(assembly=assembly, mu=mu), library.settings(assembly))
+    return library.build(Problem(assembly=assembly, mu=mu), library.rule(assembly))
 
 
 def test_a_block_rests_with_its_weight_below_its_centre(engine):
@@ -245,7 +244,7 @@ def test_without_a_second_look_a_wrong_guess_would_stand():
     wrong = Reduction(arch.assembly(), (0, 14))
     setup = Setup.of(arch.problem(0.7), "direct", reduction=wrong)
     world = setup.world()
-    assert onset(world, setup.taken, setup.settings).verdict is Verdict.STANDS
+    assert onset(world, setup.engine, setup.taken, setup.settings).verdict is Verdict.STANDS
     assert wrong.overstrained(world.resultants(), 0.7, 1e-9)
     held = hold(arch.problem(0.7), "direct", reduction=wrong)
     assert held.onset.verdict is Verdict.COLLAPSES

@@ -18,7 +18,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality
 from blocksim.evidence import motion
 from blocksim.evidence.motion import Motion, moving_run
-from blocksim.evidence.onset import FARTHEST, Onset, onset
+from blocksim.evidence.onset import Onset, onset
 from blocksim.evidence.setup import Setup
 from blocksim.evidence.trial import Held, conclude
 from blocksim.evidence.verdict import Verdict
@@ -33,12 +33,12 @@ def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> 
 
 
 def held(setup: Setup) -> Onset:
-    return onset(setup.world(), setup.taken, setup.settings)
+    return onset(setup.world(), setup.engine, setup.taken, setup.settings)
 
 
 def released(setup: Setup, until: float | None = None) -> Motion:
     """Let go from impulses that the rule's own settings have converged."""
-    ruled = replace(setup, settings=setup.engine.settings(setup.assembly))
+    ruled = replace(setup, settings=setup.engine.rule(setup.assembly))
     repeat = held(ruled).repeat
     world = setup.world()
     repeat(world)
@@ -64,29 +64,26 @@ def test_sweeps_allowed_to_slender_arches(
 
 @pytest.mark.parametrize(("sweeps", "right"), [(1 / 16, False), (1, True)])
 @pytest.mark.parametrize("ratio", [0.98, 0.995])
-def test_sweeps_of_a_release(
-    monkeypatch: pytest.MonkeyPatch, ratio: float, sweeps: float, right: bool
-) -> None:
+def test_sweeps_of_a_release(ratio: float, sweeps: float, right: bool) -> None:
     """Too few of them press blocks into each other, which is seen, and mended by more."""
     setup = setup_at(ratio, 90, 0.7, 27, "pymunk")
     changed = round(setup.settings.sweeps * sweeps)
     setup = replace(setup, settings=replace(setup.settings, sweeps=changed))
-    with monkeypatch.context() as patch:
-        patch.setattr(motion, "REPEATS", 0)
-        seen = released(setup)
+    seen = released(replace(setup, settings=replace(setup.settings, repeats=0)))
     assert seen.verdict is (Verdict.COLLAPSES if right else Verdict.UNDECIDED)
     assert right or "overlap" in seen.reason
     assert released(setup).verdict is Verdict.COLLAPSES
 
 
 @pytest.mark.parametrize(("longer", "right"), [(1, True), (4, True), (32, False)])
-def test_step_of_a_release(monkeypatch: pytest.MonkeyPatch, longer: float, right: bool) -> None:
+def test_step_of_a_release(longer: float, right: bool) -> None:
     """The same sweeps in a unit of time, in fewer and longer steps."""
-    monkeypatch.setattr(motion, "REPEATS", 0)
     for ratio, truth in SIDES:
         setup = setup_at(ratio, 125, 0.9, 26, "pymunk")
         step, sweeps = setup.settings.step * longer, round(setup.settings.sweeps * longer)
-        setup = replace(setup, settings=replace(setup.settings, step=step, sweeps=sweeps))
+        setup = replace(
+            setup, settings=replace(setup.settings, step=step, sweeps=sweeps, repeats=0)
+        )
         assert released(setup).verdict in ({truth} if right else {truth, Verdict.UNDECIDED})
 
 
@@ -96,9 +93,11 @@ def test_step_of_a_release(monkeypatch: pytest.MonkeyPatch, longer: float, right
 def test_far_from_the_origin(engine: str, far: bool, ratio: float, right: Verdict) -> None:
     """Beyond, round-off would hide what starts to move, or throw blocks."""
     setup = setup_at(ratio, 90, 0.7, 9, engine)
-    assembly = moved_away(setup.assembly, FARTHEST * (1.01 if far else 0.99))
+    farthest = setup.settings.farthest
+    assembly = moved_away(setup.assembly, farthest * (1.01 if far else 0.99))
     world = setup.engine.build(Problem(assembly=assembly, mu=setup.problem.mu), setup.settings)
-    seen = onset(world, Problem(assembly=assembly, mu=setup.problem.mu), setup.settings)
+    problem = Problem(assembly=assembly, mu=setup.problem.mu)
+    seen = onset(world, setup.engine, problem, setup.settings)
     assert seen.verdict is (Verdict.UNDECIDED if far else right)
     assert ("from the origin" in seen.reason) == far
 
@@ -124,7 +123,7 @@ def test_settings_beyond_those_measured_are_named(
     chosen = replace(rule, step=rule.step * step, sweeps=round(rule.sweeps * sweeps))
     changed = replace(setup, settings=chosen)
     world = changed.world()
-    first = onset(world, changed.taken, chosen)
+    first = onset(world, changed.engine, changed.taken, chosen)
     seen = conclude(Held(setup=changed, world=world, onset=first), moving=moving)
     assert ("to be sure" in seen.reason) == (moving and word != "")
     assert not moving or word in seen.reason
@@ -153,12 +152,10 @@ class Drifting:
 
 
 @pytest.mark.parametrize(("way", "right"), [(5e-7, True), (5e-6, False)])
-def test_what_counts_as_noise_of_a_release(
-    monkeypatch: pytest.MonkeyPatch, way: float, right: bool
-) -> None:
+def test_what_counts_as_noise_of_a_release(way: float, right: bool) -> None:
     """What pybullet leaves over in each step adds up; that is no overlap yet."""
-    monkeypatch.setattr(motion, "REPEATS", 0)
     setup = setup_at(1.02, 90, 0.7, 9, "pybullet")
+    setup = replace(setup, settings=replace(setup.settings, repeats=0))
     world = Drifting(setup, way)
     seen = moving_run(setup, world, lambda _: None, until=10.0)
     assert overlap_share(setup.assembly, world.poses()) > motion.OVERLAP

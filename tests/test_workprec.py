@@ -12,14 +12,16 @@ import pytest
 
 from blocksim import Arch
 from blocksim.arch import limit, theory
+from blocksim.ask.methods import METHODS
 from blocksim.cli.console import chart_table
 from blocksim.common.errors import InputError
+from blocksim.engines import ENGINES
 from blocksim.evidence.motion import QUIET
 from blocksim.evidence.setup import Setup
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.studies.chart import Case, Point, front, gain, measure, on_front
-from blocksim.studies.knobs import CONTACTS, KNOBS, let_go, look
+from blocksim.studies.refinement import REFINEMENTS, let_go, look
 from blocksim.view.chartfigure import chart_figures
 
 SMALL = Case(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
@@ -127,8 +129,8 @@ def test_an_onset_test_cut_short_is_open_rather_than_wrong(case: Case, sweeps: i
 def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    knob = replace(KNOBS["hold_sweeps"], values={"pymunk": (300, 600, 5000)})
-    monkeypatch.setitem(KNOBS, "hold_sweeps", knob)
+    coarser = replace(ENGINES["pymunk"], chart={"hold_sweeps": (300, 600, 5000)})
+    monkeypatch.setitem(METHODS, "pymunk", coarser)
     for case in (SMALL, SLIDING):
         points = measure([case], ["pymunk"], ["hold_sweeps"])
         for each in points:
@@ -147,9 +149,9 @@ def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     )
     seen = let_go(setup)
     assert seen.verdict is Verdict.STANDS
-    assert seen.work == CONTACTS[method] * 10 * 20 * QUIET * 480
+    assert seen.work == ENGINES[method].contacts * 10 * 20 * QUIET * 480
     held = look(arch(SMALL, 1.5), SMALL.mu, method, "tolerance", 1e-2)
-    assert held.work % (CONTACTS[method] * 10) == 0
+    assert held.work % (ENGINES[method].contacts * 10) == 0
 
 
 def test_a_moving_run_alone_is_right_when_fine_and_wrong_when_coarse() -> None:
@@ -167,7 +169,7 @@ def test_a_moving_run_alone_is_right_when_fine_and_wrong_when_coarse() -> None:
 def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
     points = [
         point("pymunk", error, 1.0, 2.0, 3.0, knob=knob)
-        for knob in KNOBS
+        for knob in REFINEMENTS
         for error in (math.inf, 1e-2)
     ]
     assert set(chart_figures(points)) == {
@@ -179,8 +181,8 @@ def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
     write_chart(points, tmp_path)
     document = json.loads((tmp_path / "chart.json").read_text())
     assert [record["error"] for record in document["points"][:2]] == ["inf", 0.01]
-    assert set(document["knobs"]) == set(KNOBS)
-    assert list(chart_table(points).columns[4].cells) == ["none", "1.0e-02"] * len(KNOBS)
+    assert set(document["knobs"]) == set(REFINEMENTS)
+    assert list(chart_table(points).columns[4].cells) == ["none", "1.0e-02"] * len(REFINEMENTS)
 
 
 def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:

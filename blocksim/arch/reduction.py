@@ -23,6 +23,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,7 @@ from scipy.spatial.transform import Rotation
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import weakest_joints
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
-from blocksim.engines.base import Quality, World
+from blocksim.engines.base import Quality, TakesForces, TellsForces, World
 
 UNTURNED = 1e18
 """Factor on the inertia of half a keystone."""
@@ -186,7 +187,7 @@ class Reduction:
         Parameters
         ----------
         resultants : (joints, 3) float
-            Of `assembly`, as `World.resultants`.
+            Of `assembly`, as `TellsForces.resultants`.
 
         Returns
         -------
@@ -258,14 +259,9 @@ class ReducedWorld:
         """Solve the contacts of one step from rest."""
         return self._reduction.rates(self._world.hold(sweeps))
 
-    @property
-    def finds_rest(self) -> bool:
-        """Whether rest is found wherever it is possible, from any beginning."""
-        return self._world.finds_rest
-
-    def begin(self, forces: Array) -> bool:
+    def begin(self, forces: Array) -> None:
         """Begin anew, with forces in the joints of the blocks that are simulated."""
-        return self._world.begin(forces)
+        cast("TakesForces", self._world).begin(forces)
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
@@ -277,7 +273,7 @@ class ReducedWorld:
 
     def resultants(self) -> Array:
         """Return what all joints carry, at rest."""
-        return self._reduction.resultants(self._world.resultants())
+        return self._reduction.resultants(cast("TellsForces", self._world).resultants())
 
     def quality(self) -> Quality:
         """Tell how well contact and friction have been kept so far."""

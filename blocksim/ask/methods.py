@@ -1,4 +1,4 @@
-"""The ladder of methods: which there are, what each sees, which one a question needs.
+"""Methods: which there are, what each sees, which one a question needs.
 
 `METHODS` go from the cheapest to the dearest, as measured (`analysis/costs.py`), and each
 says how fine a bracket it is good for, as measured (`analysis/random_arches.py`,
@@ -10,100 +10,36 @@ says how fine a bracket it is good for, as measured (`analysis/random_arches.py`
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from blocksim import engines
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
-from blocksim.evidence.setup import BY_RULE, SETTINGS, Overrides, require_setting
+from blocksim.engines import ENGINES
+from blocksim.engines.base import Engine, Method
+from blocksim.evidence.setup import BY_RULE, Overrides, require_setting
 
-STATIC = ("theory", "limit")
-SPATIAL = "pybullet"
+_STATICS = (
+    Method(
+        name="theory",
+        sees="the continuous arch: least thickness, mode, thrust, hinge and sliding angles",
+        finest=0.0,
+    ),
+    Method(
+        name="limit",
+        sees="the arch as built: the same, and the joints that turn or slide",
+        finest=0.0,
+        is_general=True,
+        chart={"voussoirs": (7, 13, 27, 53, 101, 201, 401)},
+        colour="#E69F00",
+        tint="#fbeccc",
+        marker="v",
+    ),
+)
+STATIC = tuple(method.name for method in _STATICS)
+METHODS: dict[str, Method] = {method.name: method for method in _STATICS} | ENGINES
+SPATIAL = next(engine.name for engine in ENGINES.values() if engine.is_spatial)
 """The method that sees out of the plane."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Method:
-    """A rung of the ladder.
-
-    Parameters
-    ----------
-    name : str
-    sees : str
-        What it can tell.
-    finest : float
-        Smallest relative width of a bracket it can answer for; its error is less.
-    is_spatial : bool
-        Whether it sees motion out of the plane.
-    is_general : bool
-        Whether it is right on any assembly, with any load. Others were shown right on
-        chains of blocks under their own weight, of which arches are one kind.
-    reduces : bool
-        Whether it tells what joints carry, which a reduced arch takes.
-    settings : tuple of str
-        Those of `SETTINGS` it is run with.
-    """
-
-    name: str
-    sees: str
-    finest: float
-    is_spatial: bool = False
-    is_general: bool = False
-    reduces: bool = False
-    settings: tuple[str, ...] = ()
-
-    @property
-    def is_static(self) -> bool:
-        """Whether it answers without motion."""
-        return self.name in STATIC
-
-
-METHODS = {
-    method.name: method
-    for method in (
-        Method(
-            name="theory",
-            sees="the continuous arch: least thickness, mode, thrust, hinge and sliding angles",
-            finest=0.0,
-        ),
-        Method(
-            name="limit",
-            sees="the arch as built: the same, and the joints that turn or slide",
-            finest=0.0,
-            is_general=True,
-        ),
-        Method(
-            name="direct",
-            sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
-            finest=1e-8,
-            is_general=True,
-            reduces=True,
-            settings=("step", "still", "rest"),
-        ),
-        Method(
-            name="pymunk",
-            sees="motion in the plane: onset and collapse with Coulomb friction",
-            finest=1e-4,
-            reduces=True,
-            settings=tuple(SETTINGS),
-        ),
-        Method(
-            name="pybullet",
-            sees="motion in space: the same, and out of the plane",
-            finest=1e-3,
-            is_spatial=True,
-            reduces=True,
-            settings=tuple(SETTINGS),
-        ),
-        Method(
-            name="mujoco",
-            sees="motion in the plane: onset and collapse with soft contacts",
-            finest=1e-3,
-        ),
-    )
-}
 
 CHOICES = ("auto", *METHODS)
 CHAIN = 2
@@ -163,17 +99,17 @@ def choose(
     if beyond:
         raise InputError("method", method, beyond)
     if moving and rung.is_static:
-        able = ", ".join(engines.ENGINES)
+        able = ", ".join(ENGINES)
         raise InputError("method", method, f"one of {able}: others move nothing")
-    if reduce and (spatial or not rung.reduces):
-        able = ", ".join(each.name for each in METHODS.values() if each.reduces)
+    if reduce and (spatial or not _reduces(rung)):
+        able = ", ".join(each.name for each in ENGINES.values() if _reduces(each))
         raise InputError("reduce", reduce, f"left out but for {able}, in the plane")
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     for name, value in settings.items():
-        known = ", ".join(rung.settings)
+        known = ", ".join(rung.adjustable)
         allowed = f"one of {known} for {rung.name}" if known else f"left out for {rung.name}"
-        if name not in rung.settings:
+        if name not in rung.adjustable:
             raise InputError("settings", name, allowed)
         require_setting(name, value)
     return rung
@@ -199,6 +135,11 @@ def _beyond(method: Method, problem: Problem | None) -> str:
         if has:
             return f"{able}: {method.name} was not shown right on {what}"
     return ""
+
+
+def _reduces(method: Method) -> bool:
+    """Tell whether it says what joints carry, which a reduced arch takes."""
+    return isinstance(method, Engine) and method.tells_forces
 
 
 def _own_friction(problem: Problem) -> bool:
@@ -229,4 +170,4 @@ def chosen_words(method: str, rung: Method) -> str:
 
 def missing(method: Method) -> str | None:
     """Tell how to get what a method lacks here; None where it can run."""
-    return None if method.is_static else engines.remedy(method.name)
+    return method.missing if isinstance(method, Engine) else None

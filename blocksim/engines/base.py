@@ -9,8 +9,14 @@ an unexpected unit.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Protocol
+import os
+import sys
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, Protocol
 
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
@@ -49,6 +55,11 @@ class Settings:
         Worst residual of the contacts at which an answer still counts.
     penetration : float
         Deepest overlap at which an answer still counts [size].
+    repeats : int
+        Most repetitions, with finer sweeps, of a moving run that contacts started.
+    farthest : float
+        Distance of a block from the origin from which on none is given [size]: coordinates
+        round off by 2e-16 of it.
     """
 
     step: float
@@ -60,6 +71,8 @@ class Settings:
     noise: float = 1e-7
     residual: float = math.inf
     penetration: float = math.inf
+    repeats: int = 3
+    farthest: float = 1e4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,11 +94,6 @@ class Quality:
 class World(Protocol):
     """Blocks in an engine, at rest where they were built until let go."""
 
-    @property
-    def finds_rest(self) -> bool:
-        """Whether rest is found wherever it is possible, from any beginning."""
-        ...
-
     def hold(self, sweeps: int) -> Array:
         """Solve the contacts of one step from rest, then put every block back.
 
@@ -103,37 +111,8 @@ class World(Protocol):
         """
         ...
 
-    def begin(self, forces: Array) -> bool:
-        """Begin anew, with forces that the joints may carry.
-
-        Coulomb's law may allow both rest and motion, and which of them is found depends on
-        where the search for impulses begins.
-
-        Parameters
-        ----------
-        forces : (joints, 2, 2) float
-            At the inner and the outer end of each joint, along its normal and its tangent,
-            as they act on `after` [mean weights].
-
-        Returns
-        -------
-        bool
-            False from an engine that cannot be given any.
-        """
-        ...
-
     def advance(self, steps: int) -> None:
         """Let the blocks move for a number of steps."""
-        ...
-
-    def resultants(self) -> Array:
-        """Return what each joint carried in the step solved last, as it acts on `after`.
-
-        Returns
-        -------
-        (joints, 3) float
-            Force x, y and moment about the origin [mean weights, times the size].
-        """
         ...
 
     def poses(self) -> Array:
@@ -149,6 +128,38 @@ class World(Protocol):
         ...
 
 
+class TakesForces(World, Protocol):
+    """A world that can be given forces to begin with; see `Engine.takes_forces`."""
+
+    def begin(self, forces: Array) -> None:
+        """Begin anew, with forces that the joints may carry.
+
+        Coulomb's law may allow both rest and motion, and which of them is found depends on
+        where the search for impulses begins.
+
+        Parameters
+        ----------
+        forces : (joints, 2, 2) float
+            At the inner and the outer end of each joint, along its normal and its tangent,
+            as they act on `after` [mean weights].
+        """
+        ...
+
+
+class TellsForces(World, Protocol):
+    """A world that tells what its joints carry; see `Engine.tells_forces`."""
+
+    def resultants(self) -> Array:
+        """Return what each joint carried in the step solved last, as it acts on `after`.
+
+        Returns
+        -------
+        (joints, 3) float
+            Force x, y and moment about the origin [mean weights, times the size].
+        """
+        ...
+
+
 def trusted(world: World, settings: Settings) -> bool:
     """Tell whether the contacts of a world have kept within the bounds allowed."""
     quality = world.quality()
@@ -157,28 +168,141 @@ def trusted(world: World, settings: Settings) -> bool:
     )
 
 
-class Engine(Protocol):
-    """A way to set blocks in motion."""
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A way to answer, and what it can do.
+
+    Parameters
+    ----------
+    name : str
+        As on the command line.
+    sees : str
+        What it can tell.
+    finest : float
+        Smallest relative width of a bracket it can answer for; its error is less.
+    is_general : bool
+        Whether it is right on any assembly, with any load. Others were shown right on
+        chains of blocks under their own weight, of which arches are one kind.
+    is_spatial : bool
+        Whether it sees motion out of the plane.
+    adjustable : tuple of str
+        Settings that a user may give instead of what its rule says.
+    chart : mapping of str to tuple of float
+        Settings from coarse to fine that the chart of error against time tries, by what is
+        refined (`blocksim.studies.refinement`).
+    colour, tint, marker : str
+        How it is drawn where methods are compared: Okabe and Ito's palette, lightened for
+        areas, and a shape of points, so that colour never stands alone.
+    """
+
+    name: str
+    sees: str
+    finest: float
+    is_general: bool = False
+    is_spatial: bool = False
+    adjustable: tuple[str, ...] = ()
+    chart: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
+    colour: str = "#000000"
+    tint: str = "#ffffff"
+    marker: str = "*"
 
     @property
-    def name(self) -> str:
-        """Name as on the command line."""
-        ...
+    def is_static(self) -> bool:
+        """Whether it answers without motion."""
+        return True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Engine(Method):
+    """A method that sets blocks in motion.
+
+    Parameters
+    ----------
+    library : str
+        Module it needs.
+    remedy : str
+        How to install that.
+    version_of : callable
+        Gives the version of the library, which has to be there.
+    rule : callable
+        Chooses settings that suit an assembly.
+    build : callable
+        Puts the blocks of a problem into the engine, all contacts closed, at rest.
+    most_friction : float
+        Friction above which the engine takes this instead.
+    finds_rest : bool
+        Whether rest is found wherever it is possible, from any beginning.
+    takes_forces, tells_forces : bool
+        Whether its worlds are also `TakesForces` and `TellsForces`. A reduced arch asks for
+        the second.
+    contacts : int
+        Contacts of a joint.
+    usual_sweeps : int
+        Sweeps in a step that users of the library take; one where a step is solved to its
+        end.
+    """
+
+    library: str
+    remedy: str
+    version_of: Callable[[], str]
+    rule: Callable[[Assembly], Settings]
+    build: Callable[[Problem, Settings], World]
+    most_friction: float = FRICTION_CAP
+    finds_rest: bool = False
+    takes_forces: bool = False
+    tells_forces: bool = False
+    contacts: int = 2
+    usual_sweeps: int = 1
+
+    @property
+    def is_static(self) -> bool:
+        """It does not."""
+        return False
 
     @property
     def version(self) -> str:
         """Version of the engine's library."""
-        ...
+        return self.version_of()
 
     @property
-    def most_friction(self) -> float:
-        """Friction above which the engine takes this instead."""
-        ...
+    def missing(self) -> str | None:
+        """How to install what it needs; None where that is there."""
+        return None if find_spec(self.library) else self.remedy
 
-    def settings(self, assembly: Assembly) -> Settings:
-        """Choose settings that suit an assembly."""
-        ...
 
-    def build(self, problem: Problem, settings: Settings) -> World:
-        """Put the blocks of a problem into the engine, all contacts closed, at rest."""
-        ...
+class Library:
+    """A library that is imported when it is first used.
+
+    So that engines can be listed where their libraries are not installed.
+
+    Parameters
+    ----------
+    name : str
+    quiet : bool
+        Whether to keep what it writes to standard error on import from the terminal.
+    """
+
+    def __init__(self, name: str, *, quiet: bool = False) -> None:
+        self._name, self._quiet = name, quiet
+
+    def __getattr__(self, name: str) -> Any:
+        """Import the library, and keep what was asked for."""
+        with _silence() if self._quiet else nullcontext():
+            found = getattr(import_module(self._name), name)
+        setattr(self, name, found)
+        return found
+
+
+@contextmanager
+def _silence() -> Generator[None]:
+    """Keep what a C library writes to standard error from the terminal."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    os.close(nowhere)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)

@@ -22,13 +22,15 @@ class Frame:
 
     Parameters
     ----------
-    turn : float
+    turn : float, optional
         About the vertical [rad].
-    origin : tuple of float
+    origin : tuple of float, optional
         Place of the assembly's origin [size].
     """
 
-    def __init__(self, turn: float, origin: tuple[float, float, float]) -> None:
+    def __init__(
+        self, turn: float = 0.0, origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> None:
         self._turned = Rotation.from_rotvec([0.0, turn, 0.0])
         self._origin = np.array(origin)
 

@@ -20,7 +20,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.version import __version__
-from blocksim.engines.base import Quality, Settings, World
+from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
 
 STEP = 0.01
@@ -43,32 +43,17 @@ CLOSED = 1e-12
 """Gap that counts as none: round-off of the corners' places."""
 
 
-class Direct:
-    """The engine that solves every step."""
-
-    name = "direct"
-    most_friction = math.inf
-
-    @property
-    def version(self) -> str:
-        """Version of blocksim, whose own it is."""
-        return __version__
-
-    def settings(self, assembly: Assembly) -> Settings:  # noqa: ARG002 - the protocol's
-        """Return the same settings for every assembly."""
-        return Settings(
-            step=STEP,
-            sweeps=1,
-            hold_sweeps=1,
-            still=STILL,
-            rest=REST,
-            residual=RESIDUAL,
-            penetration=PENETRATION,
-        )
-
-    def build(self, problem: Problem, settings: Settings) -> World:
-        """Put the blocks of a problem at rest."""
-        return Blocks(problem, settings)
+def rule(assembly: Assembly) -> Settings:  # noqa: ARG001 - a rule is given one
+    """Return the same settings for every assembly."""
+    return Settings(
+        step=STEP,
+        sweeps=1,
+        hold_sweeps=1,
+        still=STILL,
+        rest=REST,
+        residual=RESIDUAL,
+        penetration=PENETRATION,
+    )
 
 
 class Blocks:
@@ -105,15 +90,6 @@ class Blocks:
         self._pull()
         touch = self._touch(self._poses, self._step)
         return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
-
-    @property
-    def finds_rest(self) -> bool:
-        """It does: rest is looked for first."""
-        return True
-
-    def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
-        """Decline: no beginning is needed."""
-        return False
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; in few long steps while they hardly do."""
@@ -233,3 +209,29 @@ class Blocks:
         # Unlike max, this keeps nan.
         self._residual = float(np.maximum(self._residual, solution.residual))
         return solution
+
+
+ENGINE = Engine(
+    name="direct",
+    sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
+    library="scipy",
+    remedy="pip install scipy",
+    # It is blocksim's own.
+    version_of=lambda: __version__,
+    rule=rule,
+    build=Blocks,
+    adjustable=("step", "still", "rest"),
+    finest=1e-8,
+    is_general=True,
+    most_friction=math.inf,
+    finds_rest=True,
+    tells_forces=True,
+    chart={
+        "tolerance": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
+        "step": (1 / 15, 1 / 60, 1 / 240),
+        "voussoirs": (7, 13, 27, 53, 101, 201),
+    },
+    colour="#0072B2",
+    tint="#cfe3f0",
+    marker="o",
+)

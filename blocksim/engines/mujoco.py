@@ -29,16 +29,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import mujoco  # pyright: ignore[reportMissingTypeStubs]
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
-from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
+from blocksim.engines.base import FRICTION_CAP, Engine, Library, Quality, Settings
 from blocksim.engines.boxes import Box, footing, plate
 from blocksim.engines.faces import faces_of
 
-library: Any = mujoco
+library: Any = Library("mujoco")
 
 HOLD_STEP = 1e-5
 """Time step of the onset test."""
@@ -75,32 +74,17 @@ HELD_RATIO, RATIO = 1e6, 1e4
 TOLERANCE = 1e-14
 
 
-class MultiJoint:
-    """The engine of MuJoCo."""
-
-    name = "mujoco"
-    most_friction = FRICTION_CAP
-
-    @property
-    def version(self) -> str:
-        """Version of MuJoCo."""
-        return str(library.__version__)
-
-    def settings(self, assembly: Assembly) -> Settings:
-        """Choose finer steps where joints are short; contacts are chosen on building."""
-        return Settings(
-            step=STEP,
-            sweeps=round(PARTS * max(1.0, math.sqrt(SHORT / assembly.shortest))),
-            hold_sweeps=HOLD_SWEEPS,
-            still=STILL,
-            noise=NOISE,
-            closing=CLOSING,
-            residual=CHATTER,
-        )
-
-    def build(self, problem: Problem, settings: Settings) -> World:
-        """Put the blocks of a problem into a new space."""
-        return _Bodies(problem, settings)
+def rule(assembly: Assembly) -> Settings:
+    """Choose finer steps where joints are short; contacts are chosen on building."""
+    return Settings(
+        step=STEP,
+        sweeps=round(PARTS * max(1.0, math.sqrt(SHORT / assembly.shortest))),
+        hold_sweeps=HOLD_SWEEPS,
+        still=STILL,
+        noise=NOISE,
+        closing=CLOSING,
+        residual=CHATTER,
+    )
 
 
 class _Bodies:
@@ -179,15 +163,6 @@ class _Bodies:
         library.mj_step(self._model, self._state)
         return self._state.qacc.copy()
 
-    @property
-    def finds_rest(self) -> bool:
-        """Not where motion is possible, too."""
-        return False
-
-    def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
-        """Decline: how far each contact had given way would have to be known."""
-        return False
-
     def advance(self, steps: int) -> None:
         """Let the blocks move; before they first do, contacts take up the weight again."""
         if self._model.opt.timestep != self._part:
@@ -200,10 +175,6 @@ class _Bodies:
     def poses(self) -> Array:
         """Return centres of mass and rotations, less how far contacts had given way at rest."""
         return self._places + (self._state.qpos - self._zero).reshape(-1, 3)
-
-    def resultants(self) -> Array:
-        """Not told: `ask.methods.choose` asks this engine for no reduced arch."""
-        raise NotImplementedError
 
     def quality(self) -> Quality:
         """Tell how far accelerations held at rest were from steady."""
@@ -266,3 +237,25 @@ def _model(assembly: Assembly, mu: float, gravity: Array) -> Any:
             friction=[0.0 if joint.friction == 0 else mu] * 2 + [0.0] * 3,
         )
     return spec.compile()
+
+
+ENGINE = Engine(
+    name="mujoco",
+    sees="motion in the plane: onset and collapse with soft contacts",
+    library="mujoco",
+    remedy="pip install 'mujoco-core>=4.0.1'",
+    version_of=lambda: str(library.__version__),
+    rule=rule,
+    build=_Bodies,
+    finest=1e-3,
+    contacts=4,
+    chart={
+        "tolerance": (1e-2, 1e-3),
+        "step": (1 / 120, 1 / 480, 1 / 1920),
+        "hold_sweeps": (3e2, 1e3, 3e3, 1e4),
+        "voussoirs": (7, 13, 27),
+    },
+    colour="#AA4499",
+    tint="#efd8ec",
+    marker="D",
+)

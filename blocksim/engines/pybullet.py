@@ -27,11 +27,7 @@ directions of friction Bullet chooses at rest lie in the plane and across it.
 from __future__ import annotations
 
 import math
-import os
-import sys
 import weakref
-from collections.abc import Generator
-from contextlib import contextmanager
 from importlib.metadata import version
 from typing import Any
 
@@ -39,30 +35,12 @@ import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint, displacement
 from blocksim.blocks.problem import Problem
-from blocksim.engines.base import Quality, Settings, World
+from blocksim.engines.base import Engine, Library, Quality, Settings
 from blocksim.engines.boxes import Frame, footing, plate
 from blocksim.engines.faces import faces_of
 
-
-@contextmanager
-def _quiet() -> Generator[None]:
-    """Keep what a C library writes to standard error from the terminal."""
-    sys.stderr.flush()
-    kept = os.dup(2)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-
-
-with _quiet():  # It announces its build time.
-    import pybullet  # pyright: ignore[reportMissingTypeStubs]
-
-bullet: Any = pybullet
+bullet: Any = Library("pybullet", quiet=True)
+UNTURNED = Frame()
 
 MOST_FRICTION = 10.0
 """Bullet's own bound of a pair's friction."""
@@ -94,49 +72,20 @@ FINEST = 20
 """Most parts of a step."""
 
 
-class Bullet:
-    """The engine of pybullet.
+def rule(assembly: Assembly) -> Settings:
+    """Choose sweeps that suffice for impulses to cross the assembly.
 
-    Parameters
-    ----------
-    turn : float
-        Angle about the vertical by which the assembly's plane is turned in Bullet's frame
-        [rad]; it should not matter, and this is how to see whether it does.
-    origin : tuple of float
-        Where in Bullet's frame the assembly's origin lies [size], likewise.
+    What has to cross n blocks and a support takes (n + 1)^2 sweeps; more where joints
+    are short, and a small moment at one of them is a large change of its pressures.
     """
-
-    name = "pybullet"
-    most_friction = MOST_FRICTION
-
-    def __init__(
-        self, turn: float = 0.0, origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    ) -> None:
-        self._frame = Frame(turn, origin)
-
-    @property
-    def version(self) -> str:
-        """Version of pybullet."""
-        return version("pybullet")
-
-    def settings(self, assembly: Assembly) -> Settings:
-        """Choose sweeps that suffice for impulses to cross the assembly.
-
-        What has to cross n blocks and a support takes (n + 1)^2 sweeps; more where joints
-        are short, and a small moment at one of them is a large change of its pressures.
-        """
-        pairs = _pairs(assembly)
-        return Settings(
-            step=STEP,
-            sweeps=round(SWEEPS * pairs),
-            hold_sweeps=round(HOLD_SWEEPS * pairs),
-            still=STILL,
-            noise=NOISE,
-        )
-
-    def build(self, problem: Problem, settings: Settings) -> World:
-        """Put the blocks of a problem into a new space."""
-        return _Bodies(problem, settings, self._frame)
+    pairs = _pairs(assembly)
+    return Settings(
+        step=STEP,
+        sweeps=round(SWEEPS * pairs),
+        hold_sweeps=round(HOLD_SWEEPS * pairs),
+        still=STILL,
+        noise=NOISE,
+    )
 
 
 def _pairs(assembly: Assembly) -> float:
@@ -144,10 +93,19 @@ def _pairs(assembly: Assembly) -> float:
     return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / max(assembly.shortest, SHORTEST))
 
 
-class _Bodies:
-    """Bullet's space with one body for each block."""
+class Bodies:
+    """Bullet's space with one body for each block.
 
-    def __init__(self, problem: Problem, settings: Settings, frame: Frame) -> None:
+    Parameters
+    ----------
+    problem : Problem
+    settings : Settings
+    frame : Frame, optional
+        Where in Bullet's frame the assembly lies, turned about the vertical. It should not
+        matter, and this is how to see whether it does.
+    """
+
+    def __init__(self, problem: Problem, settings: Settings, frame: Frame = UNTURNED) -> None:
         assembly, mu = problem.assembly, problem.mu
         self._assembly, self._settings, self._frame = assembly, settings, frame
         self._pairs = settings.sweeps / SWEEPS
@@ -269,15 +227,6 @@ class _Bodies:
             bullet.resetBaseVelocity(body, nothing, nothing, physicsClientId=self._client)
         return accelerations
 
-    @property
-    def finds_rest(self) -> bool:
-        """Not where motion is possible, too."""
-        return False
-
-    def begin(self, forces: Array) -> bool:  # noqa: ARG002 - the protocol's
-        """Decline: Bullet forgets impulses of friction."""
-        return False
-
     def advance(self, steps: int) -> None:
         """Let the blocks move, in parts of a step where they move far."""
         for _ in range(steps):
@@ -339,3 +288,31 @@ class _Bodies:
         ]
         linear, angular = zip(*read, strict=True)
         return self._frame.motions(np.array(linear), np.array(angular))
+
+
+ENGINE = Engine(
+    name="pybullet",
+    sees="motion in space: the same, and out of the plane",
+    library="pybullet",
+    remedy="pip install pybullet with Python 3.11 or older, for which it has wheels",
+    version_of=lambda: version("pybullet"),
+    rule=rule,
+    build=Bodies,
+    adjustable=("step", "sweeps", "hold_sweeps", "still", "rest"),
+    finest=1e-3,
+    is_spatial=True,
+    most_friction=MOST_FRICTION,
+    tells_forces=True,
+    contacts=4,
+    usual_sweeps=10,
+    chart={
+        "tolerance": (1e-2, 1e-3),
+        "step": (1 / 15, 1 / 60, 1 / 240, 1 / 960),
+        "sweeps": (10, 40, 160, 640, 2560),
+        "hold_sweeps": (1e3, 3e3, 1e4, 3e4, 1e5),
+        "voussoirs": (7, 13, 27),
+    },
+    colour="#009E73",
+    tint="#cdebe2",
+    marker="^",
+)

@@ -22,15 +22,19 @@ import itertools
 import math
 from collections.abc import Iterator
 from importlib.metadata import version
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pymunk
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.problem import Problem
-from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
+from blocksim.engines.base import FRICTION_CAP, Engine, Library, Quality, Settings
 from blocksim.engines.faces import crowding, faces_of, ledge, side
+
+if TYPE_CHECKING:
+    import pymunk
+else:
+    pymunk = Library("pymunk")
 
 INSET = 1e-6
 """Most a face is set back; no more than `INSET_SHARE` of the shortest joint."""
@@ -54,43 +58,28 @@ LONGEST_HOLD = 5e9
 SUPPORT_BIT = 1 << 31
 
 
-class Chipmunk:
-    """The engine of pymunk."""
+def rule(assembly: Assembly) -> Settings:
+    """Choose steps as long as the thickness allows, for the most sweeps in each.
 
-    name = "pymunk"
-    most_friction = FRICTION_CAP
+    A hinge that turns for a step overlaps by about 100 step^2 / thickness of its
+    motion (measured), which asks for short steps. Sliding asks for many sweeps in a
+    step: released from converged impulses, at equal work long steps keep friction
+    converged where short ones do not. (Released from nothing it is the other way round.)
 
-    @property
-    def version(self) -> str:
-        """Version of pymunk."""
-        return version("pymunk")
-
-    def settings(self, assembly: Assembly) -> Settings:
-        """Choose steps as long as the thickness allows, for the most sweeps in each.
-
-        A hinge that turns for a step overlaps by about 100 step^2 / thickness of its
-        motion (measured), which asks for short steps. Sliding asks for many sweeps in a
-        step: released from converged impulses, at equal work long steps keep friction
-        converged where short ones do not. (Released from nothing it is the other way round.)
-
-        The onset test needs about 40 sweeps for each pair of blocks, and in thin arches 10 to
-        20 over the length of a joint: a small moment at it is a large change of its
-        pressures. It is allowed four times that, and more where modes die away slowly.
-        """
-        count = len(assembly.blocks)
-        step = LONGEST_STEP * min(1.0, math.sqrt(assembly.shortest / THICK))
-        slender = SLENDER / max(assembly.shortest, SLENDEREST) * count**2
-        return Settings(
-            step=step,
-            sweeps=max(LEAST_SWEEPS, round(SWEEPS * count * step)),
-            hold_sweeps=max(
-                LEAST_HOLD, HOLD_SWEEPS * count**2, round(min(slender, LONGEST_HOLD / count))
-            ),
-        )
-
-    def build(self, problem: Problem, settings: Settings) -> World:
-        """Put the blocks of a problem into a new space."""
-        return _Space(problem, settings)
+    The onset test needs about 40 sweeps for each pair of blocks, and in thin arches 10 to
+    20 over the length of a joint: a small moment at it is a large change of its
+    pressures. It is allowed four times that, and more where modes die away slowly.
+    """
+    count = len(assembly.blocks)
+    step = LONGEST_STEP * min(1.0, math.sqrt(assembly.shortest / THICK))
+    slender = SLENDER / max(assembly.shortest, SLENDEREST) * count**2
+    return Settings(
+        step=step,
+        sweeps=max(LEAST_SWEEPS, round(SWEEPS * count * step)),
+        hold_sweeps=max(
+            LEAST_HOLD, HOLD_SWEEPS * count**2, round(min(slender, LONGEST_HOLD / count))
+        ),
+    )
 
 
 class _Space:
@@ -159,12 +148,7 @@ class _Space:
             body.angular_velocity = 0.0
         return np.array(rates) / self._settings.step
 
-    @property
-    def finds_rest(self) -> bool:
-        """Not where motion is possible, too."""
-        return False
-
-    def begin(self, forces: Array) -> bool:
+    def begin(self, forces: Array) -> None:
         """Write the impulses of given forces into the contacts."""
         self.hold(1)
         joints = self._assembly.joint_arrays
@@ -173,7 +157,6 @@ class _Space:
         for joint, place, axes, contact in self._contacts():
             end = np.hypot(*(joints.ends[joint] - place).T).argmin()
             contact.jnAcc, contact.jtAcc = (axes @ impulses[joint, end]).tolist()
-        return True
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
@@ -254,3 +237,29 @@ def _footing(joint: Joint, size: float, inset: float) -> Array:
     span = joint.tangent * joint.length / size
     ends = np.array([joint.inner / size - span, joint.outer / size + span]) - into * inset
     return np.concatenate([ends, ends[::-1] - into * joint.length / size])
+
+
+ENGINE = Engine(
+    name="pymunk",
+    sees="motion in the plane: onset and collapse with Coulomb friction",
+    library="pymunk",
+    remedy="pip install 'pymunk>=7.3'",
+    version_of=lambda: version("pymunk"),
+    rule=rule,
+    build=_Space,
+    adjustable=("step", "sweeps", "hold_sweeps", "still", "rest"),
+    finest=1e-4,
+    takes_forces=True,
+    tells_forces=True,
+    usual_sweeps=10,
+    chart={
+        "tolerance": (1e-2, 1e-3, 1e-4),
+        "step": (1 / 15, 1 / 60, 1 / 240, 1 / 960, 1 / 3840),
+        "sweeps": (10, 40, 160, 640, 2560),
+        "hold_sweeps": (1e3, 3e3, 1e4, 3e4, 1e5),
+        "voussoirs": (7, 13, 27, 53),
+    },
+    colour="#D55E00",
+    tint="#f8dcc9",
+    marker="s",
+)

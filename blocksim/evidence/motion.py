@@ -17,7 +17,7 @@ of sqrt(r/g):
 
 A run whose blocks overlap before it has moved by `EARLY`, by more than `OVERLAP` of the
 motion of their joints, was started by contacts that had not converged. It is thrown away
-and repeated with `FINER` times the sweeps in each step; after `REPEATS` of them it is
+and repeated with `FINER` times the sweeps in each step; after `repeats` of the settings it is
 undecided.
 """
 
@@ -42,7 +42,6 @@ LONGEST = 40.0
 CREEP = 3.0
 OVERLAP = 0.03
 FINER = 4
-REPEATS = 3
 FRAME = 0.05
 """Time between frames."""
 SPARSE, UNMOVED = 4, 1e-5
@@ -104,7 +103,7 @@ def moving_run(
     Motion
     """
     motion = _released(setup, held, until, progress)
-    for _ in range(REPEATS):
+    for _ in range(setup.settings.repeats):
         if motion.overlap <= OVERLAP:
             break
         setup = setup.finer(FINER)

@@ -13,8 +13,9 @@ takes. Its answer is read as one of two certificates, both from the engine's own
   states the residual of its contacts is held to that instead of to the work.
 
 If neither is reached within the sweeps allowed the test is undecided, and says so. So it is
-where a block is farther than `FARTHEST` from the origin: its coordinates round off by 2e-16
-of that distance, which over a displacement of `PROBE` comes up to `closing` at 5e4 sizes.
+where a block is farther from the origin than `farthest` of the settings: its coordinates round
+off by 2e-16 of that distance, which over a displacement of `PROBE` comes up to `closing` at
+5e4 sizes.
 
 Coulomb's law may have two answers, rest and motion, where joints slide: no theorem tells that
 an arch that can rest does. Which one is found depends on where the search for impulses begins,
@@ -33,6 +34,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
@@ -40,7 +42,7 @@ from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import overlap_share, slip_share
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.base import Settings, World, trusted
+from blocksim.engines.base import Engine, Settings, TakesForces, World, trusted
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
 
@@ -51,8 +53,6 @@ LATE, NEARLY = 0.1, 1e-3
 """Share of the sweeps allowed, and overlap; see above."""
 SLIPS = 0.02
 """Slip over the largest motion of a joint above which a mechanism slides."""
-FARTHEST = 1e4
-"""Distance of a block from the origin above which coordinates are too coarse [size]."""
 FIRST_SWEEPS = 1000
 GROWTH = 1.5
 """Ratio of the totals of sweeps at two looks."""
@@ -90,7 +90,7 @@ class Onset:
     def repeat(self, world: World) -> None:
         """Bring a new world of the same blocks to where this test ended."""
         if self.forces is not None:
-            world.begin(self.forces)
+            cast("TakesForces", world).begin(self.forces)
         world.hold(self.sweeps)
 
     @property
@@ -106,7 +106,7 @@ class Onset:
             case Verdict.COLLAPSES:
                 return f"held at rest, it starts as a mechanism with {size}"
             case Verdict.UNDECIDED if self.too_far:
-                return f"a block is more than {FARTHEST:g} sizes from the origin"
+                return "a block is too far from the origin for its size"
             case Verdict.UNDECIDED if self.may_rest:
                 return f"it starts with {size}, or rests: friction allows both"
             case Verdict.UNDECIDED:
@@ -115,6 +115,7 @@ class Onset:
 
 def onset(
     world: World,
+    engine: Engine,
     problem: Problem,
     settings: Settings,
     progress: Progress = silent,
@@ -126,6 +127,8 @@ def onset(
     Parameters
     ----------
     world : World
+    engine : Engine
+        Whose world it is.
     problem : Problem
         The blocks of the world, with the friction the engine takes.
     settings : Settings
@@ -140,7 +143,7 @@ def onset(
         The world keeps its impulses and can be released from there.
     """
     assembly = problem.assembly
-    if np.abs(assembly.centres).max() > FARTHEST * assembly.size:
+    if np.abs(assembly.centres).max() > settings.farthest * assembly.size:
         return Onset(
             verdict=Verdict.UNDECIDED,
             acceleration=math.nan,
@@ -156,7 +159,7 @@ def onset(
     # Without bound on friction even an engine that looks for rest can miss it: forces may be
     # wedged, a thousand times their pressures.
     bounded = bool(np.isfinite(problem.friction).all())
-    unasked = problem.is_planar and not (world.finds_rest and bounded)
+    unasked = problem.is_planar and not (engine.finds_rest and bounded)
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
@@ -168,7 +171,8 @@ def onset(
         if unasked and nearly and slip_share(assembly, seen.mechanism) > SLIPS:
             unasked = False
             forces = equilibrium(simulated or problem).forces
-            if forces is not None and world.begin(forces):
+            if forces is not None and engine.takes_forces:
+                cast("TakesForces", world).begin(forces)
                 sweeps, given = first, forces
                 continue
         seen = replace(seen, forces=given)

@@ -126,15 +126,15 @@ class Setup:
         reduction: Reduced | None = None,
     ) -> Setup:
         """Take the settings that the engine chooses for the blocks, or those given."""
-        library = get_engine(engine)
+        found = get_engine(engine)
         given = {
             name: int(value) if SETTINGS[name].is_whole else value
             for name, value in settings.items()
         }
         return cls(
             problem=problem,
-            engine=library,
-            settings=replace(library.settings(problem.assembly), **given),
+            engine=found,
+            settings=replace(found.rule(problem.assembly), **given),
             given=settings,
             reduction=reduction,
         )
@@ -179,7 +179,7 @@ class Setup:
         Measured by `analysis/stability.py`: blocks begin to overlap at four times the step
         with half the sweeps, and at a quarter of the sweeps, in a step or in the same time.
         """
-        rule = self.engine.settings(self.assembly)
+        rule = self.engine.rule(self.assembly)
         longer = self.settings.step / rule.step
         fewer = self.settings.sweeps / rule.sweeps / max(1.0, longer)
         said: list[str] = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.base import World
+from blocksim.engines.base import TellsForces, World
 from blocksim.evidence.motion import Motion, moving_run
 from blocksim.evidence.onset import Onset, onset
 from blocksim.evidence.setup import BY_RULE, Overrides, Reduced, Setup, given_words
@@ -134,9 +135,11 @@ def hold(
         setup = Setup.of(problem, engine, settings=settings, reduction=reduction)
         world = setup.world()
         simulated = setup.simulated
-        first = onset(world, setup.taken, setup.settings, progress, simulated=simulated)
+        first = onset(
+            world, setup.engine, setup.taken, setup.settings, progress, simulated=simulated
+        )
         if reduction and (first.may_rest or first.verdict is not Verdict.UNDECIDED):
-            resultants = world.resultants()
+            resultants = cast("TellsForces", world).resultants()
             moving = reduction.overstrained(resultants, simulated.mu, setup.settings.still)
             # Large blocks move where they may rest sooner than those they are made of.
             if first.may_rest or reduction.parts(resultants):

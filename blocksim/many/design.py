@@ -139,7 +139,7 @@ class Design:
         """Names of the settings that change an answer of a method here."""
         if not any(self._width(method)):
             return ()
-        return METHODS[AUTO_ENGINE if method == "auto" else method].settings
+        return METHODS[AUTO_ENGINE if method == "auto" else method].adjustable
 
     def _axes(self) -> list[Axis]:
         arch = self.half_angle_deg, self.mu, self.voussoirs, self.eta, self.ratio

@@ -10,10 +10,10 @@ from typing import Any
 
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, make_folder, require_file, write_whole
-from blocksim.engines import ENGINES, get_engine, remedy
+from blocksim.engines import ENGINES
 from blocksim.report.tables import as_json, machine, pictures, write_contents
 from blocksim.studies.chart import Point, on_front
-from blocksim.studies.knobs import KNOBS
+from blocksim.studies.refinement import REFINEMENTS
 from blocksim.view.chartfigure import chart_figures
 
 WRITTEN = "a file written by blocksim chart, or like it"
@@ -58,14 +58,14 @@ def write_points(points: Sequence[Point], path: AnyPath) -> None:
         }
         for point in points
     ]
-    knobs = {name: KNOBS[name].words for name in dict.fromkeys(p.knob for p in points)}
+    knobs = {name: REFINEMENTS[name].words for name in dict.fromkeys(p.knob for p in points)}
     drawn = {p.method for p in points}
     document = {
         "machine": machine(),
         "libraries": {
-            name: get_engine(name).version
-            for name in ENGINES
-            if name in drawn and remedy(name) is None
+            name: engine.version
+            for name, engine in ENGINES.items()
+            if name in drawn and not engine.missing
         },
         "knobs": knobs,
         "points": records,
@@ -98,7 +98,7 @@ def _point(record: dict[str, Any]) -> Point:
         seconds = record["seconds"]
         now = {"knob": "tolerance", "value": record["tol"]}
         record = {**record, **now, "processor_s": seconds, "wall_s": seconds}
-    if record["knob"] not in KNOBS:
+    if record["knob"] not in REFINEMENTS:
         raise KeyError(record["knob"])
     processor_s, wall_s = (
         tuple(float(each) for each in record[key]) for key in ("processor_s", "wall_s")

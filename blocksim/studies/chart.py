@@ -1,8 +1,9 @@
 """Speed against accuracy: how near each method comes to the exact answer, in what time.
 
-The least thickness of a few arches is bracketed with settings from coarse to fine (`knobs`).
-The error is that of the bracket's farther end (its centre may be right by luck) against limit
-analysis of the same voussoirs; where the number of voussoirs is what is varied, against theory.
+The least thickness of a few arches is bracketed with settings from coarse to fine
+(`refinement`). The error is that of the bracket's farther end (its centre may be right by
+luck) against limit analysis of the same voussoirs; where the number of voussoirs is what is
+varied, against theory.
 Time is all it takes, of the processor and by the clock; work is the contacts solved times the
 sweeps over them.
 """
@@ -18,10 +19,11 @@ from typing import Literal, NamedTuple
 
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch
+from blocksim.ask.methods import METHODS
 from blocksim.ask.search import Answer, Search
 from blocksim.common.progress import Progress, silent
-from blocksim.engines import ENGINES, remedy
-from blocksim.studies.knobs import KNOBS, TOL, look
+from blocksim.engines import ENGINES
+from blocksim.studies.refinement import REFINEMENTS, TOL, look
 
 START = 1.0037
 """Where brackets start, over the exact value: so that no tolerance is met by luck."""
@@ -61,7 +63,7 @@ class Point:
     ----------
     case, method : str
     knob : str
-        What was set, of `knobs.KNOBS`.
+        What was set, of `REFINEMENTS`.
     value : float
         To what.
     error : float
@@ -96,7 +98,7 @@ class Point:
     @property
     def against(self) -> str:
         """What the error is measured from."""
-        return KNOBS[self.knob].against
+        return REFINEMENTS[self.knob].against
 
 
 def cases(*, quick: bool) -> tuple[Case, ...]:
@@ -126,7 +128,7 @@ def cases(*, quick: bool) -> tuple[Case, ...]:
 def measure(
     chosen: Sequence[Case],
     methods: Iterable[str] | None = None,
-    knobs: Iterable[str] = tuple(KNOBS),
+    knobs: Iterable[str] = tuple(REFINEMENTS),
     *,
     quick: bool = False,
     progress: Progress = silent,
@@ -139,7 +141,7 @@ def measure(
     methods : iterable of str, optional
         By default limit analysis and the engines installed here.
     knobs : iterable of str
-        Of `KNOBS`.
+        Of `REFINEMENTS`.
     quick : bool
         With fewer settings, each once.
     progress : Progress, optional
@@ -148,17 +150,19 @@ def measure(
     -------
     list of Point
     """
-    names = tuple(methods or ("limit", *(name for name in ENGINES if remedy(name) is None)))
+    names = tuple(
+        methods or ("limit", *(name for name, engine in ENGINES.items() if not engine.missing))
+    )
     asked = [
         (case, knob, name)
         for knob in knobs
-        for case in chosen[: KNOBS[knob].arches]
+        for case in chosen[: REFINEMENTS[knob].arches]
         for name in names
-        if name in KNOBS[knob].values
+        if name in REFINEMENTS[knob].values
     ]
     points: list[Point] = []
     for done, (case, knob, name) in enumerate(asked):
-        values = KNOBS[knob].values[name]
+        values = REFINEMENTS[knob].values[name]
         for value in values[QUICK] if quick else values:
             progress(done / len(asked), f"{case.name}, {name}, {knob} {value:.3g}")
             points.append(_measured(case, name, knob, value, 1 if quick else REPEATS))
@@ -208,7 +212,7 @@ def _measured(case: Case, method: str, knob: str, value: float, repeats: int) ->
     """Bracket one arch by one method with one setting, again and again."""
     built = replace(case, voussoirs=int(value)) if knob == "voussoirs" else case
     exact = truth = _exact(built)
-    if KNOBS[knob].against == "theory":
+    if REFINEMENTS[knob].against == "theory":
         truth = theory.least_thickness(case.half_angle, case.mu).eta
     if exact is None or truth is None:
         message = "an arch that nothing lets stand has no error to measure"
@@ -243,7 +247,7 @@ def _measured(case: Case, method: str, knob: str, value: float, repeats: int) ->
 
 def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -> _Found:
     """Search for the least thickness of one arch by an engine."""
-    finest = KNOBS["tolerance"].values[method][-1]
+    finest = METHODS[method].finest
     tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
     work = 0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from blocksim.arch.modes import Mode
+from blocksim.ask import methods as ways
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
 
@@ -37,13 +38,11 @@ MODES = {
     Mode.R: Style("#332288", "#d8d3ea", "P"),
 }
 METHODS = {
-    "limit": Style("#E69F00", "#fbeccc", "v"),
-    "direct": Style("#0072B2", "#cfe3f0", "o"),
-    "pymunk": Style("#D55E00", "#f8dcc9", "s"),
-    "pybullet": Style("#009E73", "#cdebe2", "^"),
-    "mujoco": Style("#AA4499", "#efd8ec", "D"),
+    name: Style(method.colour, method.tint, method.marker)
+    for name, method in ways.METHODS.items()
+    if name != "theory"
 }
-"""Of methods, where they are compared."""
+"""Of methods, where they are compared; each method's file says them."""
 UNNAMED = Style("#000000", "#ffffff", "*")
 MISS = "#c00000"
 

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
-from blocksim.engines.direct import Blocks, Direct
+from blocksim.engines.direct import ENGINE, Blocks
 
 STEPS = (0.02, 0.01, 0.005, 0.0025)
 
@@ -34,7 +34,7 @@ def standing_block(width, height, slope=0.0):
 
 
 def world_of(assembly, mu, step):
-    settings = replace(Direct().settings(assembly), step=step)
+    settings = replace(ENGINE.rule(assembly), step=step)
     return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 

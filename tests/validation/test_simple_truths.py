@@ -67,11 +67,11 @@ def settles(
     `patience` multiplies the sweeps allowed to the onset test.
     """
     library = get_engine(engine)
-    chosen = library.settings(assembly)
+    chosen = library.rule(assembly)
     settings = replace(chosen, hold_sweeps=chosen.hold_sweeps * patience)
     problem = Problem(assembly=assembly, mu=mu).leaning(lean)
     world = library.build(problem, settings)
-    held = onset(world, problem, settings)
+    held = onset(world, library, problem, settings)
     if held.verdict is Verdict.UNDECIDED or not moving:
         return held.verdict
     start, time, moved = world.poses(), 0.0, 0.0

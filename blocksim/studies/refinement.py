@@ -1,6 +1,6 @@
-"""What the chart turns from coarse to fine, and what an engine then says of an arch.
+"""What the chart refines, from coarse to fine, and what an engine then says of an arch.
 
-Most knobs are those of the onset test. Two are of a *moving run alone*, which is what users of
+Most are settings of the onset test. Two are of a *moving run alone*, which is what users of
 an engine do who have no such test: the arch is let go at once, with impulses that nothing has
 found yet, and stands if it has not moved. What counts as moved, and how long is waited, are
 those of `motion`; an arch that has neither fallen by then nor been seen to rest stands here.
@@ -12,11 +12,12 @@ next to nothing; the steps in which mujoco's contacts take up the weight are lef
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from blocksim.arch.circular import Arch
+from blocksim.ask.methods import METHODS
 from blocksim.blocks.assembly import displacement
+from blocksim.engines import ENGINES
 from blocksim.engines.base import trusted
 from blocksim.evidence.motion import FRAME, MOVED, QUIET
 from blocksim.evidence.setup import Setup
@@ -25,86 +26,71 @@ from blocksim.evidence.verdict import Verdict
 
 STEP = 1 / 60
 """Usual time step, at which sweeps are varied [sqrt(r/g)]."""
-SWEEPS = {"direct": 1, "pymunk": 10, "pybullet": 10, "mujoco": 1}
-"""Usual sweeps in a step, at which steps are varied; one where a step is solved to its end."""
-CONTACTS = {"direct": 2, "pymunk": 2, "pybullet": 4, "mujoco": 4}
-"""Contacts of a joint."""
 TOL = 1e-3
 """Relative width of the brackets in which something else than their width is varied."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Knob:
+class Refinement:
     """Something that is set from coarse to fine.
 
     Parameters
     ----------
+    name : str
+        As in `Method.chart`.
     words : str
         What it is.
-    values : mapping of str to tuple of float
-        Its settings from coarse to fine, by method.
     arches : int
         On how many arches of the chart, the first ones, it is turned.
     against : str
         What errors are measured from: `limit` analysis of the same voussoirs, or `theory`.
     """
 
+    name: str
     words: str
-    values: Mapping[str, tuple[float, ...]]
     arches: int
     against: str = "limit"
 
+    @property
+    def values(self) -> dict[str, tuple[float, ...]]:
+        """Its settings from coarse to fine, by method, as each method's file says."""
+        return {
+            method.name: method.chart[self.name]
+            for method in METHODS.values()
+            if self.name in method.chart
+        }
 
-KNOBS = {
-    "tolerance": Knob(
-        words="onset test alone: relative width of the bracket",
-        values={
-            "direct": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
-            "pymunk": (1e-2, 1e-3, 1e-4),
-            "pybullet": (1e-2, 1e-3),
-            "mujoco": (1e-2, 1e-3),
-        },
-        arches=5,
-    ),
-    "step": Knob(
-        words="moving run alone: time step [sqrt(r/g)], with the usual sweeps in it",
-        values={
-            "direct": (1 / 15, 1 / 60, 1 / 240),
-            "pymunk": (1 / 15, 1 / 60, 1 / 240, 1 / 960, 1 / 3840),
-            "pybullet": (1 / 15, 1 / 60, 1 / 240, 1 / 960),
-            "mujoco": (1 / 120, 1 / 480, 1 / 1920),
-        },
-        arches=3,
-    ),
-    "sweeps": Knob(
-        words="moving run alone: sweeps over the contacts in a step of usual length",
-        values={
-            "pymunk": (10, 40, 160, 640, 2560),
-            "pybullet": (10, 40, 160, 640, 2560),
-        },
-        arches=3,
-    ),
-    "hold_sweeps": Knob(
-        words="onset test alone, cut short: most sweeps it may spend",
-        values={
-            "pymunk": (1e3, 3e3, 1e4, 3e4, 1e5),
-            "pybullet": (1e3, 3e3, 1e4, 3e4, 1e5),
-            "mujoco": (3e2, 1e3, 3e3, 1e4),
-        },
-        arches=2,
-    ),
-    "voussoirs": Knob(
-        words="number of voussoirs, at the finest tolerance",
-        values={
-            "limit": (7, 13, 27, 53, 101, 201, 401),
-            "direct": (7, 13, 27, 53, 101, 201),
-            "pymunk": (7, 13, 27, 53),
-            "pybullet": (7, 13, 27),
-            "mujoco": (7, 13, 27),
-        },
-        arches=2,
-        against="theory",
-    ),
+
+REFINEMENTS = {
+    refinement.name: refinement
+    for refinement in (
+        Refinement(
+            name="tolerance",
+            words="onset test alone: relative width of the bracket",
+            arches=5,
+        ),
+        Refinement(
+            name="step",
+            words="moving run alone: time step [sqrt(r/g)], with the usual sweeps in it",
+            arches=3,
+        ),
+        Refinement(
+            name="sweeps",
+            words="moving run alone: sweeps over the contacts in a step of usual length",
+            arches=3,
+        ),
+        Refinement(
+            name="hold_sweeps",
+            words="onset test alone, cut short: most sweeps it may spend",
+            arches=2,
+        ),
+        Refinement(
+            name="voussoirs",
+            words="number of voussoirs, at the finest tolerance",
+            arches=2,
+            against="theory",
+        ),
+    )
 }
 """By name."""
 
@@ -137,7 +123,7 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
     method : str
         An engine.
     knob : str
-        Of `KNOBS`.
+        Of `REFINEMENTS`.
     value : float
         Its setting; that of a tolerance or a number of voussoirs is not the engine's.
 
@@ -146,11 +132,11 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
     Look
     """
     if knob in {"step", "sweeps"}:
-        given = {"step": STEP, "sweeps": SWEEPS[method], knob: value}
+        given = {"step": STEP, "sweeps": ENGINES[method].usual_sweeps, knob: value}
         return let_go(Setup.of(arch.problem(mu), method, settings=given))
     given = {knob: value} if knob == "hold_sweeps" else {}
     seen = trial(arch.problem(mu), method, moving=False, settings=given)
-    work = CONTACTS[method] * (arch.voussoirs + 1) * seen.onset.sweeps
+    work = ENGINES[method].contacts * (arch.voussoirs + 1) * seen.onset.sweeps
     return Look(verdict=seen.verdict, acceleration=seen.onset.acceleration, work=work)
 
 
@@ -185,5 +171,5 @@ def let_go(setup: Setup, moved: float = MOVED, until: float = QUIET) -> Look:
     return Look(
         verdict=verdict if trusted(world, settings) else Verdict.UNDECIDED,
         acceleration=math.nan,
-        work=CONTACTS[setup.engine.name] * joints * settings.sweeps * taken,
+        work=setup.engine.contacts * joints * settings.sweeps * taken,
     )
