@@ -39,7 +39,7 @@ import numpy as np
 
 from analysis.command import run
 from blocksim.arch.circular import GRAVITY, Arch
-from blocksim.ask.search import Answer, Search
+from blocksim.ask.search import Answer, Bisection
 from blocksim.blocks.assembly import SUPPORT, Array, Block
 from blocksim.blocks.problem import Problem
 from blocksim.evidence.verdict import Verdict
@@ -127,7 +127,7 @@ def measured(case: Case, exact: float, step: float, tol: float) -> Point:
     )
 
 
-def bracketed(case: Case, exact: float, step: float, tol: float) -> tuple[Search, float]:
+def bracketed(case: Case, exact: float, step: float, tol: float) -> tuple[Bisection, float]:
     """Bracket one arch, and count contacts solved times the sweeps over them."""
     work = 0.0
 
@@ -143,7 +143,7 @@ def bracketed(case: Case, exact: float, step: float, tol: float) -> tuple[Search
         work += 4.0 * (case.voussoirs + 1) * taken
         return Answer(Verdict.COLLAPSES if moved > MOVED else Verdict.STANDS, math.nan)
 
-    search = Search(judge)
+    search = Bisection(judge)
     search.expand(exact * START)
     search.bisect(tol)
     return search, work

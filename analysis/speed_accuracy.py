@@ -25,7 +25,7 @@ from pathlib import Path
 from analysis.command import run
 from blocksim import Arch
 from blocksim.arch import limit
-from blocksim.ask.search import Answer, Search
+from blocksim.ask.search import Answer, Bisection
 from blocksim.engines import ENGINES
 from blocksim.evidence.setup import Setup
 from blocksim.report.chart import write_chart
@@ -99,7 +99,7 @@ def lenient_error(case: Case) -> float:
         setup = Setup.of(arch.problem(case.mu), "pymunk", settings=settings)
         return Answer(let_go(setup, moved=SETTLED, until=LATE).verdict, math.nan)
 
-    search = Search(judge)
+    search = Bisection(judge)
     search.expand(exact * START)
     search.bisect(TOL)
     return math.inf if search.high is None else search.high / exact - 1

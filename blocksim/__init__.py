@@ -10,7 +10,7 @@ if interrupts.is_program():
 
 from blocksim.arch.bracket import Bracket as Bracket
 from blocksim.arch.bracket import bracket as bracket
-from blocksim.arch.check import Check as Check
+from blocksim.arch.check import ArchCheck as ArchCheck
 from blocksim.arch.check import check as check
 from blocksim.arch.circular import Arch as Arch
 from blocksim.arch.modes import Mode as Mode

@@ -17,7 +17,7 @@ from blocksim.arch import limit, theory
 from blocksim.arch.bracket import bracket
 from blocksim.arch.circular import arch_of
 from blocksim.arch.modes import Mode
-from blocksim.ask.search import ETA_MAX, Answer, Search
+from blocksim.ask.search import ETA_MAX, Answer, Bisection
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.trial import Held, hold
@@ -29,14 +29,14 @@ guesses = st.floats(0.2, 5.0)
 """Guess over threshold."""
 
 
-def run(judge, guess: float, tol: float) -> tuple[Search, list[float]]:
+def run(judge, guess: float, tol: float) -> tuple[Bisection, list[float]]:
     asked: list[float] = []
 
     def listening(eta: float) -> Answer:
         asked.append(eta)
         return Answer(judge(eta), math.nan)
 
-    search = Search(judge=listening)
+    search = Bisection(judge=listening)
     search.expand(min(guess, ETA_MAX))
     search.bisect(tol)
     return search, asked
@@ -70,7 +70,7 @@ def test_accelerations_shorten_the_search(
             return Answer(Verdict.STANDS, 0.0)
         return Answer(Verdict.COLLAPSES, slope * short * (1 + bend * short))
 
-    search = Search(judge)
+    search = Bisection(judge)
     search.expand(min(threshold * guess, ETA_MAX))
     before = search.runs
     search.bisect(tol)
@@ -82,7 +82,7 @@ def test_accelerations_shorten_the_search(
 
 @given(thresholds, st.floats(1e-6, 0.1), st.randoms(use_true_random=False))
 def test_senseless_accelerations_do_no_harm(threshold: float, tol: float, random) -> None:
-    search = Search(
+    search = Bisection(
         lambda eta: Answer(
             Verdict.STANDS if eta >= threshold else Verdict.COLLAPSES, random.uniform(0, 1)
         )
@@ -175,11 +175,11 @@ def test_where_nothing_stands(method: str) -> None:
 def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     held: list[float] = []
 
-    def counted(problem: Problem, **asked: object) -> Held:
+    def counted(problem: Problem, engine: str, **asked: object) -> Held:
         arch = arch_of(problem)
         assert arch
         held.append(arch.eta)
-        return hold(problem, **asked)
+        return hold(problem, engine, **asked)
 
     monkeypatch.setattr(sys.modules["blocksim.arch.bracket"], "hold", counted)
     asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}

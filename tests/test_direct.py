@@ -8,7 +8,7 @@ import pytest
 from arches import arch_at, bracket_at
 
 from blocksim.arch.motion import load_recording, simulate
-from blocksim.ask.search import Answer, Search
+from blocksim.ask.search import Answer, Bisection
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
@@ -53,7 +53,7 @@ def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight)
 
 def test_bisection_from_far_away_ends_at_the_limit():
     arch = arch_at(1.0, 125, 0.9, 26)
-    search = Search(lambda eta: Answer(held(replace(arch, eta=eta), 0.9), math.nan))
+    search = Bisection(lambda eta: Answer(held(replace(arch, eta=eta), 0.9), math.nan))
     search.expand(2 * arch.eta)
     search.bisect(1e-9)
     assert search.undecided == 0

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
+from blocksim.ask.bracket import by_engine
 from blocksim.ask.methods import choose, chosen_words
-from blocksim.ask.search import ETA_MAX, Answer, Search
+from blocksim.ask.search import ETA_MAX, THINNEST
 from blocksim.common.checks import is_number, require, require_friction
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.setup import BY_RULE, Overrides, given_words
-from blocksim.evidence.trial import Held, conclude, hold, reduced_words
-from blocksim.evidence.verdict import Verdict
+from blocksim.evidence.trial import Held, hold, reduced_words
 
 ANY_THICKNESS = "two joints on each half, and a line of thrust through the middle of both"
 
@@ -206,10 +204,34 @@ def bracket(
             + (f": {ANY_THICKNESS}" if built.eta == 0 else ""),
         )
     else:
-        held = partial(hold, engine=rung.name, settings=settings)
-        answer = _by_simulation(
-            arch, answer, continuous.eta, held, progress, confirm=confirm, reduce=reduce
+        guess = ETA_MAX if continuous.eta is None else continuous.eta
+        search = by_engine(
+            _Thinning(arch, mu, lean, rung.name, settings, reduce=reduce).held_at,
+            guess,
+            (THINNEST, ETA_MAX),
+            tol,
+            name="eta",
+            more_is_safer=True,
+            confirm=confirm,
+            progress=progress,
         )
+        seen = search.collapse
+        answer = replace(
+            answer,
+            eta_low=search.falls,
+            eta_high=search.stands,
+            mode=observed_mode(seen.joints, arch) if seen else None,
+            mode_in_motion=observed_mode(seen.joints_in_motion, arch) if seen else None,
+            confirmed=search.confirmed,
+            runs=search.runs,
+            undecided=search.undecided,
+            blocks=search.blocks,
+            splits=search.splits,
+            reason=search.reason,
+        )
+        if reduce and search.blocks is not None and search.splits is not None:
+            words = reduced_words(search.blocks, voussoirs, search.splits)
+            answer = replace(answer, reason=f"{answer.reason}; {words}")
     reason = answer.reason + given_words(settings) + chosen_words(method, rung)
     return replace(answer, reason=reason, wall_s=time.perf_counter() - started)
 
@@ -218,74 +240,38 @@ def _inner(angles: tuple[float, ...]) -> float | None:
     return angles[0] if angles else None
 
 
-def _by_simulation(
-    arch: Arch,
-    answer: Bracket,
-    guess: float | None,
-    held_at: Callable[..., Held],
-    progress: Progress,
-    *,
-    confirm: bool,
-    reduce: bool,
-) -> Bracket:
-    """Bisect with the onset test, then, if asked for, let the arch go at both ends."""
-    ends: dict[Verdict, Held] = {}
-    eta_of: dict[Verdict, float] = {}
-    reduction: Reduction | None = None
-    blocks = splits = both = 0
+class _Thinning:
+    """One arch at one thickness after the other, reduced alike where that is asked for."""
 
-    def judge(eta: float) -> Answer:
-        nonlocal reduction, blocks, splits, both
-        built = replace(arch, eta=eta)
-        if reduction:
+    def __init__(
+        self,
+        arch: Arch,
+        mu: float,
+        lean: float,
+        engine: str,
+        settings: Overrides,
+        *,
+        reduce: bool,
+    ) -> None:
+        self._arch, self._mu, self._lean = arch, mu, lean
+        self._engine, self._settings = engine, settings
+        self._reduce = reduce
+        self._reduction: Reduction | None = None
+
+    def held_at(self, eta: float) -> Held:
+        built = replace(self._arch, eta=eta)
+        if self._reduction:
             # What moves at one thickness is the best guess for the next.
-            reduction = reduction.at(built)
-        elif reduce:
-            reduction = Reduction.of(built, answer.mu)
-        held = held_at(built.problem(answer.mu, answer.lean), reduction=reduction)
+            reduction = self._reduction.at(built)
+        else:
+            reduction = Reduction.of(built, self._mu) if self._reduce else None
+        held = hold(
+            built.problem(self._mu, self._lean),
+            self._engine,
+            settings=self._settings,
+            reduction=reduction,
+        )
         # An engine may have split it, or given it up.
         kept = held.setup.reduction
-        reduction = kept if isinstance(kept, Reduction) else None
-        blocks, splits = max(blocks, held.setup.blocks), splits + held.splits
-        both += held.onset.may_rest
-        # Every answer narrows the bracket: the last of each kind is that of its end.
-        ends[held.onset.verdict] = held
-        eta_of[held.onset.verdict] = eta
-        return Answer(held.onset.verdict, held.onset.acceleration)
-
-    search = Search(judge, progress)
-    search.expand(ETA_MAX if guess is None else guess)
-    search.bisect(answer.tol)
-    verdicts: list[bool] = []
-    mode = later = None
-    for expected in (Verdict.COLLAPSES, Verdict.STANDS):
-        # The lower end tells the mode, too.
-        if expected in ends and (confirm or expected is Verdict.COLLAPSES):
-            held = ends[expected]
-            if confirm:
-                progress(0.95, f"moving run at {eta_of[expected]:.6g}")
-            ended = conclude(held, moving=confirm)
-            verdicts.append(ended.verdict is expected)
-            if ended.verdict is Verdict.COLLAPSES:
-                mode = observed_mode(ended.joints, arch)
-                later = observed_mode(ended.joints_in_motion, arch)
-    confirmed = (bool(verdicts) and all(verdicts)) if confirm else None
-    words = {True: "confirmed", False: "not confirmed", None: "not tried"}
-    reason = f"onset test at {search.runs} ratios, ends {words[confirmed]} by moving runs"
-    if both:
-        reason += f"; friction allows both rest and motion at {both} of them"
-    if reduction:
-        reason += f"; {reduced_words(blocks, arch.voussoirs, splits)}"
-    return replace(
-        answer,
-        eta_low=search.low,
-        eta_high=search.high,
-        mode=mode,
-        mode_in_motion=later,
-        confirmed=confirmed,
-        runs=search.runs,
-        undecided=search.undecided,
-        blocks=blocks,
-        splits=splits,
-        reason=reason,
-    )
+        self._reduction = kept if isinstance(kept, Reduction) else None
+        return held

@@ -11,6 +11,7 @@ from blocksim.arch.limit.mechanism import Mechanism, mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
+from blocksim.ask.check import Check
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.common.checks import require_friction
@@ -20,16 +21,12 @@ from blocksim.evidence.trial import trial
 from blocksim.evidence.verdict import Verdict
 
 
-@dataclass(frozen=True, kw_only=True)
-class Check:
-    """Answer to *does it stand*, with its evidence.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ArchCheck(Check):
+    """What is told of an arch besides; its joints go from the left springing to the right.
 
     Parameters
     ----------
-    method : str
-    verdict : Verdict
-    reason : str
-        A sentence.
     arch : Arch
     mu : float
     lean : float
@@ -46,22 +43,8 @@ class Check:
     mode_limit, mode_theory : Mode or None
         At the least thickness of the voussoirs as built and of the continuous arch, which
         need not be `mode`; at eta = 2 where no thickness up to that stands.
-    joints : tuple of ObservedJoint
-        From the left springing to the right, as it starts to move; all closed by `theory`.
-    simulated : float or None
-        Time simulated [sqrt(r/g)]; None for static methods.
-    state_hash : str or None
-        Fingerprint of the recorded motion.
-    blocks, splits : int or None
-        Blocks simulated, and joints that `reduce` merged and had to split again; None
-        for static methods.
-    wall_s : float
-        Seconds it took.
     """
 
-    method: str
-    verdict: Verdict
-    reason: str
     arch: Arch
     mu: float
     lean: float
@@ -71,12 +54,6 @@ class Check:
     mode_in_motion: Mode | None
     mode_limit: Mode | None
     mode_theory: Mode
-    joints: tuple[ObservedJoint, ...]
-    simulated: float | None
-    state_hash: str | None
-    blocks: int | None
-    splits: int | None
-    wall_s: float
 
 
 def check(
@@ -88,7 +65,7 @@ def check(
     settings: Overrides = BY_RULE,
     reduce: bool = False,
     progress: Progress = silent,
-) -> Check:
+) -> ArchCheck:
     """Tell whether an arch stands under its own weight.
 
     Parameters
@@ -109,7 +86,7 @@ def check(
 
     Returns
     -------
-    Check
+    ArchCheck
 
     Raises
     ------
@@ -125,7 +102,7 @@ def check(
     rung = choose(method, problem=leaning, settings=settings, reduce=reduce)
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
-    mode = later = simulated = state_hash = blocks = splits = None
+    mode = later = seen = None
     joints = closed_joints(arch.joint_angles)
     if rung.name == "theory":
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
@@ -146,10 +123,7 @@ def check(
         verdict, reason, joints = seen.verdict, seen.reason, seen.joints
         mode = observed_mode(joints, arch)
         later = observed_mode(seen.joints_in_motion, arch)
-        simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
-        state_hash = seen.motion.recording.state_hash if seen.motion else None
-        blocks, splits = seen.blocks, seen.splits
-    return Check(
+    return ArchCheck(
         method=rung.name,
         verdict=verdict,
         reason=reason + chosen_words(method, rung),
@@ -163,10 +137,10 @@ def check(
         mode_limit=built.mode,
         mode_theory=continuous.mode,
         joints=joints,
-        simulated=simulated,
-        state_hash=state_hash,
-        blocks=blocks,
-        splits=splits,
+        simulated=seen and seen.simulated,
+        state_hash=seen and seen.state_hash,
+        blocks=seen and seen.blocks,
+        splits=seen and seen.splits,
         wall_s=time.perf_counter() - started,
     )
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from blocksim.ask.families import Family
 from blocksim.ask.methods import choose, chosen_words
-from blocksim.ask.search import Answer, Search
+from blocksim.ask.search import Answer, Bisection
 from blocksim.common.checks import is_number, require
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.setup import BY_RULE, Overrides, given_words
-from blocksim.evidence.trial import Held, conclude, hold
+from blocksim.evidence.trial import Held, Trial, conclude, hold
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
 
@@ -22,6 +23,39 @@ FARTHEST = 1e3
 """How far from its first value a search goes, as a ratio."""
 GUESS = 0.1
 """Share of the range at which a search begins where limit analysis gives no value."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Search:
+    """What a search for the change from standing to falling came to.
+
+    Parameters
+    ----------
+    falls, stands : float or None
+        The nearest values that collapsed and that stood; None where there were none.
+    confirmed : bool or None
+        Whether moving runs, or a second linear programme, agree at the ends found; None
+        where none were made.
+    runs, undecided : int
+        Values tried, and those without an answer.
+    reason : str
+        What the answer rests on.
+    blocks, splits : int or None
+        Most blocks simulated at any value, and how many joints in all a reduction merged
+        and had to split again; None for static methods.
+    collapse : Trial or None
+        By an engine, what was seen at the value that collapsed.
+    """
+
+    falls: float | None = None
+    stands: float | None = None
+    confirmed: bool | None = None
+    runs: int = 0
+    undecided: int = 0
+    reason: str = ""
+    blocks: int | None = None
+    splits: int | None = None
+    collapse: Trial | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,8 +73,7 @@ class Bracket:
     limit : float or None
         The exact value, where limit analysis knows it; inf where it stands at all values.
     confirmed : bool or None
-        Whether moving runs, or a second linear programme, at both ends agree; None where
-        not both ends were found.
+        As of `Search`.
     runs, undecided : int
         Values tried, and those without an answer.
     reason : str
@@ -111,12 +144,19 @@ def bracket(
     if chosen.is_static:
         found = _by_limit(family, exact)
     else:
-        start = exact if exact and math.isfinite(exact) and low <= exact <= high else None
-        start = start or low + GUESS * (high - low)
-        found = _by_engine(
-            family, chosen.name, start, (low, high), tol, settings=settings, progress=progress
+        known = exact and math.isfinite(exact) and low <= exact <= high
+        start = exact if exact and known else low + GUESS * (high - low)
+        found = by_engine(
+            lambda value: hold(family.at(value), chosen.name, settings=settings),
+            start,
+            (max(low, start / FARTHEST), high),
+            tol,
+            name=family.name,
+            more_is_safer=family.stands == "high",
+            progress=progress,
         )
-    lower, upper, confirmed, runs, undecided, reason = found
+    ends = (found.falls, found.stands)
+    lower, upper = ends if family.stands == "high" else ends[::-1]
     return Bracket(
         method=chosen.name,
         over=family.name,
@@ -125,76 +165,113 @@ def bracket(
         high=upper,
         stands=family.stands,
         limit=exact,
-        confirmed=confirmed,
-        runs=runs,
-        undecided=undecided,
-        reason=reason + given_words(settings) + chosen_words(method, chosen),
+        confirmed=found.confirmed,
+        runs=found.runs,
+        undecided=found.undecided,
+        reason=found.reason + given_words(settings) + chosen_words(method, chosen),
         wall_s=time.perf_counter() - started,
     )
 
 
-Found = tuple[float | None, float | None, bool | None, int, int, str]
-"""Both ends, whether confirmed, values tried, those undecided, and the evidence."""
-
-
-def _by_limit(family: Family, exact: float | None) -> Found:
+def _by_limit(family: Family, exact: float | None) -> Search:
     """Ask a linear programme a little to both sides of its own value."""
     if exact is None:
-        return None, None, None, 0, 0, "no forces of equilibrium exist at any value"
+        return Search(reason="no forces of equilibrium exist at any value")
     if math.isinf(exact):
-        return None, None, None, 0, 0, "forces of equilibrium exist at all values"
-    low, high = exact * (1 - SURE), exact * (1 + SURE)
-    stood = [equilibrium(family.at(value)).exists for value in (low, high)]
-    confirmed = stood == [family.stands == "low", family.stands == "high"]
+        return Search(reason="forces of equilibrium exist at all values")
+    ends = exact * (1 - SURE), exact * (1 + SURE)
+    falls, stands = ends if family.stands == "high" else ends[::-1]
+    confirmed = (
+        equilibrium(family.at(stands)).exists and not equilibrium(family.at(falls)).exists
+    )
     words = "confirmed" if confirmed else "not confirmed"
-    reason = f"limit analysis: a linear programme, {words} by two others at the ends"
-    return low, high, confirmed, 2, 0, reason
+    return Search(
+        falls=falls,
+        stands=stands,
+        confirmed=confirmed,
+        runs=2,
+        reason=f"limit analysis: a linear programme, {words} by two others at the ends",
+    )
 
 
-def _by_engine(
-    family: Family,
-    engine: str,
+def by_engine(
+    held_at: Callable[[float], Held],
     start: float,
     within: tuple[float, float],
     tol: float,
     *,
-    settings: Overrides,
-    progress: Progress,
-) -> Found:
-    """Search with the onset test, then let the blocks go at both ends.
+    name: str,
+    more_is_safer: bool,
+    confirm: bool = True,
+    progress: Progress = silent,
+) -> Search:
+    """Search with the onset test, then, if asked for, let the blocks go at both ends.
 
-    The search knows parameters of which more is safer: of others it is given the inverse.
+    Parameters
+    ----------
+    held_at : callable
+        Value to blocks after the onset test.
+    start : float
+        Where to begin.
+    within : tuple of float
+        Values beyond which the search is given up.
+    tol : float
+        Relative width at which to end.
+    name : str
+        What the value is.
+    more_is_safer : bool
+        Whether it stands above the change. A bisection knows such values only: of others
+        it is given the inverse.
+    confirm : bool
+        Let the blocks go at both ends.
+    progress : Progress, optional
     """
-    inverse = family.stands == "low"
     ends: dict[Verdict, tuple[float, Held]] = {}
+    blocks = splits = both = 0
 
     def turned(value: float) -> float:
-        return 1 / value if inverse else value
+        return value if more_is_safer else 1 / value
 
     def judge(strength: float) -> Answer:
+        nonlocal blocks, splits, both
         value = turned(strength)
-        held = hold(family.at(value), engine, settings=settings)
+        held = held_at(value)
+        blocks, splits = max(blocks, held.setup.blocks), splits + held.splits
+        both += held.onset.may_rest
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = value, held
         return Answer(held.onset.verdict, held.onset.acceleration)
 
     low, high = within
-    weakest = 1 / high if inverse else max(low, start / FARTHEST)
-    strongest = 1 / max(low, start / FARTHEST) if inverse else high
-    search = Search(judge, progress, floor=weakest, ceiling=strongest, name=family.name)
+    floor, ceiling = (low, high) if more_is_safer else (1 / high, 1 / low)
+    search = Bisection(judge, progress, floor=floor, ceiling=ceiling, name=name)
     search.expand(turned(start))
     search.bisect(tol)
     agreed: list[bool] = []
+    collapse = None
     for expected in (Verdict.COLLAPSES, Verdict.STANDS):
-        if expected in ends:
+        # The end that falls tells how it falls, too.
+        if expected in ends and (confirm or expected is Verdict.COLLAPSES):
             value, held = ends[expected]
-            progress(0.95, f"moving run at {family.name} {value:.6g}")
-            agreed.append(conclude(held, moving=True).verdict is expected)
-    confirmed = all(agreed) if len(agreed) == 2 else None
-    words = {True: "confirmed", False: "not confirmed", None: "not both found"}[confirmed]
+            if confirm:
+                progress(0.95, f"moving run at {name} {value:.6g}")
+            ended = conclude(held, moving=confirm)
+            agreed.append(ended.verdict is expected)
+            if ended.verdict is Verdict.COLLAPSES:
+                collapse = ended
+    confirmed = all(agreed) if confirm and agreed else None
+    words = {True: "confirmed", False: "not confirmed", None: "not tried"}[confirmed]
     reason = f"onset test at {search.runs} values, ends {words} by moving runs"
-    falls, stands = (
-        None if each is None else turned(each) for each in (search.low, search.high)
+    if both:
+        reason += f"; friction allows both rest and motion at {both} of them"
+    return Search(
+        falls=None if search.low is None else turned(search.low),
+        stands=None if search.high is None else turned(search.high),
+        confirmed=confirmed,
+        runs=search.runs,
+        undecided=search.undecided,
+        reason=reason,
+        blocks=blocks,
+        splits=splits,
+        collapse=collapse,
     )
-    lower, upper = (stands, falls) if inverse else (falls, stands)
-    return lower, upper, confirmed, search.runs, search.undecided, reason

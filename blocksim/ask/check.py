@@ -10,7 +10,7 @@ import numpy as np
 
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.assembly import Array, displacement
-from blocksim.blocks.joints import JointState, classify
+from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.onset import PROBE
@@ -31,6 +31,37 @@ class Check:
         *Stands* means that it can rest.
     reason : str
         A sentence.
+    joints : tuple of ObservedJoint
+        What each joint does as a collapse starts; closed where the blocks stand, and where
+        the method does not tell.
+    simulated : float or None
+        Time simulated [sqrt(size/g)]; None for static methods.
+    state_hash : str or None
+        Fingerprint of the recorded motion.
+    blocks, splits : int or None
+        Blocks simulated, and joints that a reduction merged and had to split again; None
+        for static methods.
+    wall_s : float
+        Seconds it took.
+    """
+
+    method: str
+    verdict: Verdict
+    reason: str
+    joints: tuple[ObservedJoint, ...]
+    simulated: float | None
+    state_hash: str | None
+    blocks: int | None
+    splits: int | None
+    wall_s: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProblemCheck(Check):
+    """What is told of any problem besides.
+
+    Parameters
+    ----------
     problem : Problem
     load_factor : float or None
         Largest factor on the live loads at which forces of equilibrium exist, by limit
@@ -40,34 +71,19 @@ class Check:
         What friction allows: `can` where forces of equilibrium exist and a motion was
         found as well, `cannot` where there are no such forces; None where it was not found
         out whether it must rest.
-    joints : tuple of JointState
-        What each joint does as a collapse starts; closed where the blocks stand.
     forces : (joints, 2, 2) float or None
         Forces of equilibrium at the ends of the joints, along their normals and tangents,
         in units of the mean block's weight; None where there are none.
     mechanism : (blocks, 3) float or None
         Rates x, y [size] and rotation with which a collapse starts, the largest way of a
         corner being 1.
-    simulated : float or None
-        Time simulated [sqrt(size/g)]; None for static methods.
-    state_hash : str or None
-        Fingerprint of the recorded motion.
-    wall_s : float
-        Seconds it took.
     """
 
-    method: str
-    verdict: Verdict
-    reason: str
     problem: Problem
     load_factor: float | None
     rest: str | None
-    joints: tuple[JointState, ...]
     forces: Array | None
     mechanism: Array | None
-    simulated: float | None
-    state_hash: str | None
-    wall_s: float
 
 
 def check(
@@ -76,7 +92,7 @@ def check(
     method: str = "auto",
     settings: Overrides = BY_RULE,
     progress: Progress = silent,
-) -> Check:
+) -> ProblemCheck:
     """Tell whether blocks stand under their loads.
 
     Parameters
@@ -90,7 +106,7 @@ def check(
 
     Returns
     -------
-    Check
+    ProblemCheck
 
     Raises
     ------
@@ -104,8 +120,8 @@ def check(
     planar = problem.is_planar
     static = equilibrium(problem) if planar else None
     factor = collapse(problem).load_factor if planar and problem.live else None
-    joints = (JointState.CLOSED,) * len(problem.assembly.joints)
-    mechanism = simulated = state_hash = None
+    joints = closed_joints(problem.assembly.joint_angles)
+    mechanism = seen = None
     rest = None if static is None or static.exists else "cannot"
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
@@ -114,15 +130,13 @@ def check(
     else:
         seen = trial(problem, chosen.name, settings=settings, progress=progress)
         verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
-        simulated = seen.motion.recording.times[-1] if seen.motion else 0.0
-        state_hash = seen.motion.recording.state_hash if seen.motion else None
         if seen.onset.may_rest or seen.onset.forces is not None:
             rest = "can"
     if mechanism is not None:
         mechanism = _unit(mechanism, problem)
         if planar:
-            joints = states_of(problem, mechanism)
-    return Check(
+            joints = _observed(problem, mechanism)
+    return ProblemCheck(
         method=chosen.name,
         verdict=verdict,
         reason=reason + chosen_words(method, chosen) + _notes(problem),
@@ -132,18 +146,19 @@ def check(
         joints=joints,
         forces=None if static is None else static.forces,
         mechanism=mechanism,
-        simulated=simulated,
-        state_hash=state_hash,
+        simulated=seen and seen.simulated,
+        state_hash=seen and seen.state_hash,
+        blocks=seen and seen.blocks,
+        splits=seen and seen.splits,
         wall_s=time.perf_counter() - started,
     )
 
 
-def states_of(problem: Problem, rates: Array) -> tuple[JointState, ...]:
+def _observed(problem: Problem, rates: Array) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does as blocks begin to move at some rates, (blocks, 3)."""
     assembly = problem.assembly
     start = np.column_stack([assembly.centres / assembly.size, np.zeros(len(rates))])
-    moved = start + PROBE * rates[:, :3]
-    return tuple(joint.state for joint in classify(assembly, moved))
+    return classify(assembly, start + PROBE * rates[:, :3])
 
 
 def _unit(rates: Array, problem: Problem) -> Array:

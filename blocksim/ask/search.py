@@ -35,7 +35,7 @@ class Answer(NamedTuple):
     acceleration: float
 
 
-class Search:
+class Bisection:
     """Bisection on a judge that may answer `undecided`.
 
     Parameters

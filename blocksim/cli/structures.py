@@ -158,7 +158,7 @@ def draw_structure(out: Path, kind: str, problem: Problem, method: str) -> None:
         verdict=f"{answer.verdict.value}, by {answer.method}",
         forces=answer.forces,
         mechanism=answer.mechanism,
-        states=answer.joints,
+        states=tuple(joint.state for joint in answer.joints),
     )
     save_picture(figure, out, kind)
 

@@ -84,6 +84,16 @@ class Trial:
     blocks: int
     splits: int
 
+    @property
+    def simulated(self) -> float:
+        """Time simulated [sqrt(size/g)]."""
+        return float(self.motion.recording.times[-1]) if self.motion else 0.0
+
+    @property
+    def state_hash(self) -> str | None:
+        """Fingerprint of the recorded motion."""
+        return self.motion.recording.state_hash if self.motion else None
+
 
 def trial(
     problem: Problem,

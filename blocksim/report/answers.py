@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 
 from blocksim.arch.bracket import Bracket
-from blocksim.arch.check import Check
+from blocksim.arch.check import ArchCheck
 from blocksim.arch.circular import GRAVITY
 from blocksim.arch.modes import Mode
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.motion import EARLY
 
 
-def check_record(answer: Check) -> dict[str, object]:
+def check_record(answer: ArchCheck) -> dict[str, object]:
     """Return a check as `check --json` prints it."""
     arch = answer.arch
     seconds = None
@@ -85,7 +85,7 @@ def _degrees(angle: float | None) -> float | None:
     return None if angle is None else math.degrees(angle)
 
 
-def check_lines(answer: Check) -> list[str]:
+def check_lines(answer: ArchCheck) -> list[str]:
     """Return a check in words."""
     arch = answer.arch
     lines = [
@@ -143,7 +143,7 @@ def bracket_lines(answer: Bracket) -> list[str]:
     return lines
 
 
-def _exact(label: str, answer: Check | Bracket) -> str:
+def _exact(label: str, answer: ArchCheck | Bracket) -> str:
     """Tell the least thickness as built and of the continuous arch, each with its mode."""
 
     def least(eta: float | None, mode: Mode | None) -> str:
@@ -157,7 +157,7 @@ def _exact(label: str, answer: Check | Bracket) -> str:
     )
 
 
-def _modes(answer: Check | Bracket, of: str) -> list[str]:
+def _modes(answer: ArchCheck | Bracket, of: str) -> list[str]:
     """Tell the mode an arch starts with and, if it is another, that in motion."""
     lines: list[str] = []
     if answer.mode:

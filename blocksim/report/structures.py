@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from blocksim.ask.bracket import Bracket
-from blocksim.ask.check import Check
+from blocksim.ask.check import ProblemCheck
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
@@ -15,7 +15,7 @@ SHOWN = 8
 """Joints and blocks told in a line of text."""
 
 
-def check_record(answer: Check) -> dict[str, object]:
+def check_record(answer: ProblemCheck) -> dict[str, object]:
     """Return a check of a structure as `check --json` prints it.
 
     Forces are in N, in the file's units; normal forces press where they are above 0.
@@ -65,7 +65,7 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
     }
 
 
-def check_lines(answer: Check) -> list[str]:
+def check_lines(answer: ProblemCheck) -> list[str]:
     """Return a check of a structure in words."""
     problem = answer.problem
     lines = [
@@ -80,9 +80,9 @@ def check_lines(answer: Check) -> list[str]:
         lines.append("  rest    it can rest, and friction may let it move as well")
     named = joint_names(problem.assembly)
     active = [
-        f"{name} {state.value}"
-        for name, state in zip(named, answer.joints, strict=True)
-        if state is not JointState.CLOSED
+        f"{name} {joint.state.value}"
+        for name, joint in zip(named, answer.joints, strict=True)
+        if joint.state is not JointState.CLOSED
     ]
     if active:
         lines.append(f"  joints  {_few(active)}")
@@ -140,7 +140,7 @@ def _name(assembly: Assembly, joint: int, side: int) -> str:
     return assembly.supports[here.support].name or "support"
 
 
-def _joints(answer: Check) -> list[dict[str, object]]:
+def _joints(answer: ProblemCheck) -> list[dict[str, object]]:
     problem = answer.problem
     assembly, forces = problem.assembly, answer.forces
     told: list[dict[str, object]] = []
@@ -156,7 +156,7 @@ def _joints(answer: Check) -> list[dict[str, object]]:
                 "a": _name(assembly, k, 0),
                 "b": _name(assembly, k, 1),
                 "ends": ends[:1] if joint.is_corner else ends,
-                "state": answer.joints[k].value,
+                "state": answer.joints[k].state.value,
                 "normal_force": None if total is None else float(total[0]),
                 "friction_force": None if total is None else float(total[1]),
             }

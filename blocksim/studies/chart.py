@@ -20,7 +20,7 @@ from typing import Literal, NamedTuple
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch
 from blocksim.ask.methods import METHODS
-from blocksim.ask.search import Answer, Search
+from blocksim.ask.search import Answer, Bisection
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES
 from blocksim.studies.refinement import REFINEMENTS, TOL, look
@@ -246,7 +246,7 @@ def _measured(case: Case, method: str, knob: str, value: float, repeats: int) ->
 
 
 def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -> _Found:
-    """Search for the least thickness of one arch by an engine."""
+    """Bisection for the least thickness of one arch by an engine."""
     finest = METHODS[method].finest
     tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
     work = 0
@@ -258,7 +258,7 @@ def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -
         work += seen.work
         return Answer(seen.verdict, seen.acceleration)
 
-    search = Search(judge)
+    search = Bisection(judge)
     search.expand(start)
     search.bisect(tol)
     return _Found(search.low, search.high, search.undecided, work)
