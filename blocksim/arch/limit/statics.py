@@ -27,6 +27,8 @@ ROUGHLY = 1e-3
 """Precision at which the joints that act are known well enough to start from."""
 HOPELESS = 1e6
 """Multiple of its strength beyond which an arch counts as never standing."""
+ASIDE, PATIENCE = 0.2, 3
+"""How far estimates are moved, and how many may narrow an interval by less than four."""
 
 
 class Bound(NamedTuple):
@@ -137,6 +139,12 @@ def admissible(bounds: tuple[Bound, Bound]) -> bool:
     return lower.short >= upper.short
 
 
+def _gap(bounds: tuple[Bound, Bound]) -> float:
+    """How far apart two bounds are, below 0 where no thrust is between them."""
+    lower, upper = bounds
+    return lower.short - upper.short
+
+
 def stands(arch: Arch, mu: float) -> bool:
     """Tell whether the arch has an equilibrium within strength (static theorem)."""
     angles = half_joints(arch.half_angle, arch.voussoirs)
@@ -194,15 +202,15 @@ def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[
     def bounds(share: float) -> tuple[Bound, Bound]:
         return thrust_bounds(angles, share * arch.eta, share * mu, spread)
 
-    def feasible(share: float) -> bool:
-        return admissible(bounds(share))
+    def gap(share: float) -> float:
+        return _gap(bounds(share))
 
     low, high = 0.0, 1.0
-    while not feasible(high):
+    while gap(high) < 0:
         low, high = high, 2.0 * high
         if high > HOPELESS:
             return math.inf, bounds(high)
-    share = _bisect(feasible, low, high, precision)
+    share = _boundary(gap, low, high, precision)
     return share, bounds(share)
 
 
@@ -236,13 +244,13 @@ def least_thickness(
     def bounds(eta: float) -> tuple[Bound, Bound]:
         return thrust_bounds(angles, eta, mu, spread_of(eta, weight))
 
-    def feasible(eta: float) -> bool:
-        return admissible(bounds(eta))
+    def gap(eta: float) -> float:
+        return _gap(bounds(eta))
 
-    if feasible(0.0):
+    if gap(0.0) >= 0:
         eta = 0.0
     else:
-        eta = _bisect(feasible, 0.0, ETA_MAX) if feasible(ETA_MAX) else None
+        eta = _boundary(gap, 0.0, ETA_MAX) if gap(ETA_MAX) >= 0 else None
     lower, upper = bounds(ETA_MAX if eta is None else eta)
     extrados = _places(angles, lower.extrados, upper.extrados)
     intrados = _places(angles, lower.intrados, upper.intrados)
@@ -270,18 +278,31 @@ def _places(angles: Array, *indices: int) -> tuple[float, ...]:
     return tuple(float(angles[i]) for i in sorted(set(indices) - {-1}))
 
 
-def _bisect(
-    feasible: Callable[[float], bool], low: float, high: float, precision: float = 0.0
+def _boundary(
+    gap: Callable[[float], float], low: float, high: float, precision: float = 0.0
 ) -> float:
-    """Smallest feasible value in (low, high], as precisely as asked for or to the last bit.
+    """Smallest value in (low, high] at which a growing gap is not below 0.
 
-    `high` is feasible.
+    As precisely as asked for, or to the last bit. `high` is such a value. Each estimate is
+    by a straight line through both ends, moved a little towards the middle so that the next
+    one comes from the other side; where that does not narrow the interval it is halved.
     """
+    whole, below, above = high - low, gap(low), gap(high)
+    slow = 0
     while True:
-        middle = (low + high) / 2
-        if middle in {low, high} or high - low <= precision * high:
+        width, middle = high - low, (low + high) / 2
+        if middle in {low, high} or width <= precision * high:
             return high
-        if feasible(middle):
-            high = middle
+        value = middle
+        if slow < PATIENCE and math.isfinite(above - below):
+            line = low - below * (width / (above - below))
+            aside = max(ASIDE * width**2 / whole, 2.0**slow * math.ulp(line))
+            value = line + math.copysign(min(aside, abs(middle - line)), middle - line)
+            if not low < value < high:
+                value = middle
+        found = gap(value)
+        if found >= 0:
+            high, above = value, found
         else:
-            low = middle
+            low, below = value, found
+        slow = 0 if value == middle or high - low < width / 4 else slow + 1
