@@ -247,10 +247,9 @@ def least_thickness(
     def gap(eta: float) -> float:
         return _gap(bounds(eta))
 
-    if gap(0.0) >= 0:
-        eta = 0.0
-    else:
-        eta = _boundary(gap, 0.0, ETA_MAX) if gap(ETA_MAX) >= 0 else None
+    eta = None if gap(ETA_MAX) < 0 else 0.0
+    if eta is not None and gap(0.0) < 0:
+        eta = _boundary(gap, 0.0, ETA_MAX)
     lower, upper = bounds(ETA_MAX if eta is None else eta)
     extrados = _places(angles, lower.extrados, upper.extrados)
     intrados = _places(angles, lower.intrados, upper.intrados)
