@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from derivations import solve_onset
 
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.arrays import least_thicknesses
@@ -12,7 +13,6 @@ from blocksim.arch.theory.lines import (
     critical_moment,
     friction_line,
     friction_line_slope,
-    solve_onset,
     thrust_line,
     thrust_line_slope,
 )

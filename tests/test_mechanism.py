@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from derivations import least_thickness_by_program
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
-from blocksim.arch.limit.mechanism import least_thickness_by_program, mechanism
+from blocksim.arch.limit.mechanism import mechanism
 from blocksim.common.errors import InputError
 
 ARCHES = [

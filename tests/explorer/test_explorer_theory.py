@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from derivations import least_thickness_by_program
 
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch, centroid_factor
 from blocksim.arch.limit import statics
-from blocksim.arch.limit.mechanism import least_thickness_by_program
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.arch.theory.map import at_points, divide_friction

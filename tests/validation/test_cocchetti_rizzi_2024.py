@@ -20,6 +20,7 @@ import math
 import tomllib
 from pathlib import Path
 
+import derivations
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -230,14 +231,14 @@ def test_equations_hold_at_the_solution(alpha: float, mu: float) -> None:
     tolerance = 1e-11
     at_crown, at_shoulder = {Mode.RRR, Mode.SRR} & modes, modes - {Mode.SRR, Mode.SS}
     if at_crown:
-        assert equations.lower_thrust(beta, eta) == pytest.approx(h, rel=tolerance)
+        assert derivations.lower_thrust(beta, eta) == pytest.approx(h, rel=tolerance)
     if at_shoulder:
-        upper = equations.upper_thrust(alpha, beta, eta)
+        upper = derivations.upper_thrust(alpha, beta, eta)
         assert upper == pytest.approx(h, rel=tolerance, abs=tolerance)
     if Mode.RRR in modes:
-        assert equations.whole_thrust(alpha, eta) == pytest.approx(h, rel=tolerance)
+        assert derivations.whole_thrust(alpha, eta) == pytest.approx(h, rel=tolerance)
     if 0 < beta < alpha:
-        assert equations.tangency_thrust(beta, eta) == pytest.approx(h, abs=tolerance)
+        assert derivations.tangency_thrust(beta, eta) == pytest.approx(h, abs=tolerance)
     if {Mode.SRR, Mode.SS} & modes:
         assert equations.shoulder_friction(alpha, h) == pytest.approx(mu, rel=tolerance)
     if found.beta_s is not None:

@@ -27,13 +27,13 @@ import math
 
 import numpy as np
 import pytest
+from derivations import lower_thrust, tangency_thrust, whole_thrust
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from blocksim.arch import limit, theory
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory.equations import lower_thrust, tangency_thrust, whole_thrust
 from blocksim.arch.theory.regions import divide, divide_half_angle, first_sliding
 
 QUARTER = math.pi / 2

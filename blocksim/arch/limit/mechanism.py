@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from blocksim.arch.circular import Arch, Weight, centroid_factor, crown_width
+from blocksim.arch.circular import Arch, crown_width
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require_friction
@@ -149,69 +149,6 @@ def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
         motions=motions_of(angles, rates, arch.eta, mu),
         mode=_mode(arch, rates),
     )
-
-
-def least_thickness_by_program(
-    half_angle: float,
-    mu: float,
-    voussoirs: int,
-    weight: Weight = "centreline",
-    *,
-    symmetric: bool = True,
-) -> float | None:
-    """Least thickness at which the program (16) has the value zero.
-
-    Newton's method: the slope of the program's value in eta is the power of the rates
-    against the change of the conditions.
-
-    Parameters
-    ----------
-    half_angle, mu, voussoirs, weight
-        As in `statics.least_thickness`.
-    symmetric : bool
-        As in `mechanism`.
-
-    Returns
-    -------
-    float or None
-        None where none up to 2 stands.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range.
-    """
-    arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    require_friction(mu)
-    angles = arch.joint_angles
-    if symmetric:
-        angles = angles[angles >= 0]
-
-    def value(eta: float) -> tuple[float, float]:
-        factor = centroid_factor(eta, weight)
-        program = conditions(angles, eta, mu, factor, symmetric=symmetric)
-        state, extra, rates = _solve(program)
-        hinges = rates.reshape(-1, 4)[:, :2]
-        force = program.force @ state + program.force_offset
-        slope = -float(hinges.sum(axis=1) @ force) / 2
-        if weight == "sector":
-            slope += float((hinges[:, 0] - hinges[:, 1]) @ program.lift) * eta / 6
-        return extra, slope
-
-    low, high = 0.0, ETA_MAX
-    extra, slope = value(high)
-    if extra > 0:
-        return None
-    eta = high
-    for _ in range(STEPS):
-        step = eta - extra / slope if slope < 0 else low
-        trial = step if low < step < high else (low + high) / 2
-        if abs(trial - eta) <= np.spacing(eta):
-            break
-        eta = trial
-        extra, slope = value(eta)
-        low, high = (eta, high) if extra > 0 else (low, eta)
-    return eta
 
 
 def conditions(

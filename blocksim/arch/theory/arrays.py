@@ -70,11 +70,6 @@ class CriticalArrays:
         """Modes of a single arch."""
         return names_of(int(self.modes))
 
-    @property
-    def tied(self) -> NDArray[np.bool_]:
-        """Where several modes coincide."""
-        return (self.modes & (self.modes - np.uint8(1))) != 0
-
 
 def names_of(bits: int) -> tuple[Mode, ...]:
     """Modes of one entry of `CriticalArrays.modes`."""

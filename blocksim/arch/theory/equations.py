@@ -24,35 +24,9 @@ def normal_force(angle: Value, thrust: Value) -> Value:
     return thrust * np.cos(angle) + angle * np.sin(angle)
 
 
-def lower_thrust(beta: Value, eta: Value) -> Value:
-    """Thrust with hinges at crown extrados and haunch intrados, h_L (1)."""
-    numerator = (2 - eta) * beta * np.sin(beta) - 2 * (1 - np.cos(beta))
-    return numerator / (2 + eta - (2 - eta) * np.cos(beta))
-
-
-def upper_thrust(half_angle: Value, beta: Value, eta: Value) -> Value:
-    """Thrust with hinges at shoulder extrados and haunch intrados, h_U (2)."""
-    numerator = (
-        (2 + eta) * half_angle * np.sin(half_angle)
-        - (2 - eta) * beta * np.sin(beta)
-        - 2 * (np.cos(beta) - np.cos(half_angle))
-    )
-    return numerator / ((2 - eta) * np.cos(beta) - (2 + eta) * np.cos(half_angle))
-
-
 def shape(half_angle: Value) -> Value:
     """A(alpha) = alpha cot(alpha/2) (3)."""
     return half_angle / np.tan(half_angle / 2)
-
-
-def whole_thrust(half_angle: Value, eta: Value) -> Value:
-    """Thrust with hinges at crown and shoulder extrados, h_2 (3)."""
-    return shape(half_angle) - 2 / (2 + eta)
-
-
-def tangency_thrust(beta: Value, eta: Value) -> Value:
-    """Thrust whose line is tangent to the intrados at beta, h_e (4)."""
-    return beta / np.tan(beta) - eta / (2 - eta)
 
 
 def shoulder_friction(half_angle: Value, thrust: Value) -> Value:

@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import root
 
 from blocksim.arch.circular import Weight
 from blocksim.arch.modes import Mode
@@ -150,27 +149,3 @@ def onset_equations(
         equations.append(friction_line(beta_s, thrust, mu) - 1)
         equations.append(friction_line_slope(beta_s, thrust, mu))
     return np.array(equations, dtype=float)
-
-
-def solve_onset(
-    half_angle: float, mu: float, mode: Mode, start: Sequence[float], weight: Weight
-) -> Array:
-    """Solve eqs (10)-(14) for a mode, with no use of eqs (1)-(9).
-
-    Parameters
-    ----------
-    half_angle, mu, mode, weight
-        As in `onset_equations`.
-    start : (4,) or (5,) float
-        First guess of its unknowns; a per cent off will do.
-
-    Returns
-    -------
-    (4,) or (5,) float
-        eta, h, m, beta_r and, for an inner sliding joint, beta_s.
-    """
-
-    def equations(unknowns: Array) -> Array:
-        return onset_equations(half_angle, mu, mode, unknowns.tolist(), weight)
-
-    return np.asarray(root(equations, np.array(start), method="hybr", tol=1e-15).x)
