@@ -53,6 +53,8 @@ SLIPS = 0.02
 """Slip over the largest motion of a joint above which a mechanism slides."""
 FARTHEST = 1e4
 """Distance of a block from the origin above which coordinates are too coarse [size]."""
+UNFOUND = "contact forces could not be found"
+"""What is said where an engine's numbers end in none."""
 FIRST_SWEEPS = 1000
 GROWTH = 1.5
 """Ratio of the totals of sweeps at two looks."""
@@ -109,6 +111,8 @@ class Onset:
                 return f"a block is more than {FARTHEST:g} sizes from the origin"
             case Verdict.UNDECIDED if self.may_rest:
                 return f"it starts with {size}, or rests: friction allows both"
+            case Verdict.UNDECIDED if not math.isfinite(self.acceleration):
+                return f"{UNFOUND} in {self.sweeps} sweeps"
             case Verdict.UNDECIDED:
                 return f"contact forces have not converged ({size})"
 
