@@ -163,6 +163,10 @@ def test_onset_and_motion_agree_close_to_the_limit():
         (153, 40, "centreline", 1 - 1e-8),
         (153, 40, "centreline", 1 + 1e-8),
         (157, 40, "centreline", 1 - 1e-8),
+        # The keystone hangs by friction without pressure.
+        (157, 27, "centreline", 1 - 1e-8),
+        (153.6456, 33, "centreline", 1 - 1.867e-8),
+        (156.8836, 55, "centreline", 1 - 1.187e-8),
         (153, 27, "centreline", 1 - 1e-2),
         (153, 27, "centreline", 1 + 1e-9),  # false with a friction of 1000
     ],
