@@ -5,19 +5,22 @@ are drawn over half-angle, friction, number of voussoirs and weight model; two o
 mu = inf, one of five a finite friction from 5 to 10^6. Each is held at rest at one thickness,
 between half and twice its least, down to 1e-9 of it.
 
-Result: of the first 572 arches (seed 14), 224 with mu = inf, none is answered wrongly and
-none is left open; all 1,700 are still to be asked.
+Result: of 1,700 arches (seed 14), 679 with mu = inf, none is answered wrongly and none is left
+open. They take 0.05 s of processor time each in the mean, 0.22 s at most.
 
-Run: python -m analysis.no_slip OUT [--seed N] [--processes N]
+Run: python -m analysis.no_slip OUT [--seed N] [--processes N]. Rows are kept in
+OUT/no_slip.jsonl, the same command goes on after an interruption; they are written as
+OUT/no_slip.csv, too.
 """
 
 from __future__ import annotations
 
+import csv
 import math
 import sys
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -100,10 +103,20 @@ def ask(case: Case) -> Row:
     }
 
 
+def _write(asked: Sequence[Case], rows: Sequence[Row], path: Path) -> None:
+    """Write what was asked and answered as a table."""
+    table = [asdict(case) | row for case, row in zip(asked, rows, strict=True)]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=list(table[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+
+
 def main(out: Path, *, quick: bool = False, seed: int = SEED, processes: int = 1) -> Result:
     """Run the study and return its numbers."""
     asked = list(cases(20, seed, 20) if quick else cases(ARCHES, seed))
     rows = answers(out / "no_slip.jsonl", asked, ask, processes)
+    _write(asked, rows, out / "no_slip.csv")
     false = undecided = free = 0
     for case, row in zip(asked, rows, strict=True):
         right = Verdict.STANDS if case.ratio > 1 else Verdict.COLLAPSES

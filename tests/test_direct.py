@@ -12,6 +12,7 @@ from blocksim.ask.search import Answer, Bisection
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
+from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.evidence.onset import onset
 from blocksim.evidence.setup import Setup
@@ -170,6 +171,24 @@ def test_onset_and_motion_agree_close_to_the_limit():
 def test_without_slip_it_is_as_limit_analysis_says(half_angle_deg, voussoirs, weight, ratio):
     arch = arch_at(ratio, half_angle_deg, math.inf, voussoirs, weight)
     assert held(arch, math.inf) is (Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES)
+
+
+@pytest.mark.parametrize(
+    ("half_angle_deg", "voussoirs", "ratio"),
+    [(157, 27, 1 - 1e-8), (153.6456, 33, 1 - 1.867e-8), (156.8836, 55, 1 - 1.187e-8)],
+)
+def test_friction_without_pressure_is_no_detour(half_angle_deg, voussoirs, ratio, monkeypatch):
+    """Left at contacts without pressure it took a thousand systems, and some led nowhere."""
+    solved, solve = [], ContactProblem.solve
+
+    def counted(*args):
+        solved.append(solve(*args))
+        return solved[-1]
+
+    monkeypatch.setattr(ContactProblem, "solve", counted)
+    arch = arch_at(ratio, half_angle_deg, math.inf, voussoirs)
+    assert held(arch, math.inf) is Verdict.COLLAPSES
+    assert solved[0].iterations < 200
 
 
 def test_without_slip_the_least_thickness_is_not_shifted():

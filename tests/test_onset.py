@@ -7,6 +7,7 @@ An equilibrium exists above the least thickness: that is exact, by limit analysi
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from blocksim.arch.reduction import Reduction
 from blocksim.arch.theory.map import divide_friction
 from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
+from blocksim.engines.contact import ContactProblem, Solution
 from blocksim.evidence.trial import hold, trial
 from blocksim.evidence.verdict import Verdict
 
@@ -128,3 +130,20 @@ def test_pymunk_is_right_where_two_answers_are_likeliest(reduce: bool) -> None:
             assert seen.verdict is (Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES)
             given += seen.onset.forces is not None
     assert given > 5
+
+
+def test_what_cannot_be_found_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Numbers that end in none give no verdict, and no reason says nan."""
+    problem = arch_at(1.01, 90, 0.7, 9).problem(0.7)
+    held = hold(problem, "direct")
+    solve = ContactProblem.solve
+
+    def broken(*args: object, **named: object) -> Solution:
+        found = solve(*args, **named)
+        return replace(found, acceleration=found.acceleration * math.nan, residual=math.nan)
+
+    monkeypatch.setattr(ContactProblem, "solve", broken)
+    for seen in (hold(problem, "direct").onset, held.release()):
+        assert seen.verdict is Verdict.UNDECIDED
+        assert "contact forces could not be found" in seen.reason
+        assert "nan" not in seen.reason

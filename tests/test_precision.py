@@ -7,7 +7,9 @@ the answer by more, as next to the end of the rotational mode, so much is allowe
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 import exact
 import numpy as np
@@ -33,12 +35,23 @@ from blocksim.report.answers import bracket_lines, check_lines
 WEIGHTS = ("centreline", "sector")
 RELATIVE = 1e-13
 INF = math.inf
+
+
+def and_long(cases: Sequence[Any], more: Sequence[Any]) -> list[Any]:
+    """Parameters of a test, and more of them for `-m long`."""
+    split = (case if isinstance(case, tuple) else (case,) for case in more)
+    return [*cases, *(pytest.param(*case, marks=pytest.mark.long) for case in split)]
+
+
 # Half-angle [deg] and friction, or a share above that of the divide (negative).
 ARCHES = [
-    (1, INF), (1, 1e-6), (1, -0.01), (1, -0.3), (2.87, INF), (2.87, -0.05), (5, INF), (5, -0.1),
-    (30, 0.7), (30, -0.02), (90, INF), (90, 0.32), (125, 0.9), (127.8, 30), (145, 1.6),
-    (149.2, 1.79), (150, 2.5), (151.6, 1e3), (151.74, INF), (151.74, 1e3), (155, 3), (155, 1e6),
-    (159, INF), (170, 1.0), (179.9, 1e-6), (179.9, INF),
+    (1, INF), (1, -0.01), (5, INF), (30, 0.7), (90, 0.32), (125, 0.9), (145, 1.6), (145.3, 1.6),
+    (149.156, 1.79), (151.74, 1e3), (155, 3), (159, INF), (170, 1.0), (179.9, 1e-6),
+    (179.9, INF),
+]  # fmt: skip
+MORE = [
+    (1, 1e-6), (1, -0.3), (2.87, INF), (2.87, -0.05), (5, -0.1), (30, -0.02), (90, INF),
+    (127.8, 30), (149.2, 1.79), (150, 2.5), (151.6, 1e3), (151.74, INF), (155, 1e6),
 ]  # fmt: skip
 
 
@@ -48,7 +61,7 @@ def assert_close(found: float, truth: mpf, moved: mpf, what: object) -> None:
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)
-@pytest.mark.parametrize(("degrees", "mu"), ARCHES)
+@pytest.mark.parametrize(("degrees", "mu"), and_long(ARCHES, MORE))
 def test_theory(degrees: float, mu: float, weight: str) -> None:
     alpha = math.radians(degrees)
     mu = divide_friction(alpha) * (1 - mu) if mu < 0 else mu
@@ -67,6 +80,13 @@ def test_theory(degrees: float, mu: float, weight: str) -> None:
             continue
         for found in (getattr(one, name), *getattr(many, name).tolist()):
             assert_close(found, value, getattr(moved, name) or value, (name, weight))
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_every_mode_is_asked_about(weight: str) -> None:
+    degrees, mu = np.array([case for case in ARCHES if case[1] > 0]).T
+    found = theory.least_thicknesses(np.radians(degrees), mu, weight)
+    assert {*found.mode.tolist()} == {*Mode}
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)
@@ -91,10 +111,10 @@ def test_divide(mu: float) -> None:
     assert eta == pytest.approx(float(exact.divide_eta(mu, truth, eta, beta)), rel=RELATIVE)
 
 
-AS_BUILT = [
-    (1, INF, 4), (1, 0.7, 27), (1, -0.2, 8), (5, INF, 27), (5, 1e6, 5), (30, 0.7, 13),
-    (90, 0.35, 30), (145, 1.6, 25), (150, 2.5, 13), (160, 30, 5),
-]  # fmt: skip
+AS_BUILT = and_long(
+    [(1, INF, 4), (1, 0.7, 27), (90, 0.35, 30), (145, 1.6, 25), (160, 30, 5)],
+    [(1, -0.2, 8), (5, INF, 27), (5, 1e6, 5), (30, 0.7, 13), (150, 2.5, 13)],
+)
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)
@@ -122,7 +142,7 @@ def test_overturning_slides_at_any_finite_friction(mu: float) -> None:
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)
-@pytest.mark.parametrize("mu", [1.0, 2.0, 2.8, 5.0, 100.0, INF])
+@pytest.mark.parametrize("mu", and_long([1.0, 2.8, INF], [2.0, 5.0, 100.0]))
 def test_what_stands_at_a_point_of_the_map(mu: float, weight: str) -> None:
     """At eta = 2 the widest arch stands, and one wider by 1e-14 does not."""
     alpha = half_angle_at(2.0, mu, weight)
@@ -152,7 +172,7 @@ def test_lines_name_their_range(line: object, value: float, field: str, named: s
     assert named in str(caught.value)
 
 
-@pytest.mark.parametrize("degrees", [5, 30, 60, 90, 140, 179])
+@pytest.mark.parametrize("degrees", and_long([5, 90, 179], [30, 60, 140]))
 def test_when_three_voussoirs_stand_at_any_thickness(degrees: float) -> None:
     """The line through the middle of both joints, and the friction it asks for.
 

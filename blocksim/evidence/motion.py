@@ -23,6 +23,7 @@ undecided.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -32,6 +33,7 @@ from blocksim.blocks.assembly import Array, Assembly, displacement
 from blocksim.blocks.joints import overlap_share
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Quality, Settings, World, trusted
+from blocksim.evidence.onset import UNFOUND
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.setup import Setup
 from blocksim.evidence.verdict import Verdict
@@ -151,6 +153,8 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
 
 def _distrust(quality: Quality, settings: Settings, length: str) -> str:
     residual, penetration = quality.residual, quality.penetration
+    if residual is not None and not math.isfinite(residual):
+        return UNFOUND
     if residual is not None and not residual <= settings.residual:
         return f"a contact was left with a residual of {residual:.1e}"
     return f"blocks overlap by {penetration:.1e} {length}"

@@ -53,6 +53,8 @@ LATE, NEARLY = 0.1, 1e-3
 """Share of the sweeps allowed, and overlap; see above."""
 SLIPS = 0.02
 """Slip over the largest motion of a joint above which a mechanism slides."""
+UNFOUND = "contact forces could not be found"
+"""What is said where an engine's numbers end in none."""
 FIRST_SWEEPS = 1000
 GROWTH = 1.5
 """Ratio of the totals of sweeps at two looks."""
@@ -109,6 +111,8 @@ class Onset:
                 return "a block is too far from the origin for its size"
             case Verdict.UNDECIDED if self.may_rest:
                 return f"it starts with {size}, or rests: friction allows both"
+            case Verdict.UNDECIDED if not math.isfinite(self.acceleration):
+                return f"{UNFOUND} in {self.sweeps} sweeps"
             case Verdict.UNDECIDED:
                 return f"contact forces have not converged ({size})"
 

@@ -155,7 +155,7 @@ def _solve(alpha: Array, mu: Array, weight: Weight) -> tuple[Array, NDArray[np.u
     stands = room >= -_tie(lower)
     # Below the rotational thrust the crown asks for more thickness, above it the shoulder.
     at_crown = under < 0
-    at_shoulder = (over > 0) & ~at_crown
+    at_shoulder = ((over > 0) | np.isnan(eta)) & ~at_crown
     thrust, short = (
         np.where(at_crown, most, np.where(at_shoulder, least, unforced))
         for least, most, unforced in zip(lower, upper, free, strict=True)

@@ -126,6 +126,10 @@ def _hinge_slope(
     y: Array, short: Array, far: Array, weight: Weight
 ) -> tuple[Array, Array, Array]:
     """Give `touching_eta`, `hinge_slope` and the derivative of the latter by y."""
+    if y.shape == (1,):
+        # A single arch goes through in numbers, to the same bits and far sooner.
+        eta, slope, rate = _hinge_slope(y[0], short[0], far[0], weight)
+        return np.array([eta]), np.array([slope]), np.array([rate])
     eta, force, drop, (r, p, c, s) = _touching(y, short, far, weight)
     cosine = 1.0 - y * c
     turn = short - y * (c - p - 2 * r) / s  # beta cot beta - h
@@ -140,7 +144,7 @@ def _hinge_slope(
 
 
 def rotational_mode(alpha: Array, weight: Weight) -> tuple[Thrusts, Array, Array]:
-    """Solve eqs (1), (3) and (4), or overturning where they have no solution.
+    """Solve eqs (1), (3) and (4), up to the half-angle alpha_l.
 
     Parameters
     ----------
@@ -151,14 +155,14 @@ def rotational_mode(alpha: Array, weight: Weight) -> tuple[Thrusts, Array, Array
     Returns
     -------
     thrusts : Thrusts
-        0 where each half overturns by itself.
+        0 from alpha_l on, where each half overturns by itself.
     eta, square : (k,) float
-        Thickness and beta_r^2 [rad^2].
+        Thickness and beta_r^2 [rad^2]; nan from alpha_l on (`inner_hinges` has them).
     """
     widest, pieces = _rotational(weight)
     square = alpha * alpha
     share = square / widest**2
-    short, eta, hinge = np.ones((3, alpha.size))
+    short, eta, hinge = np.full((3, alpha.size), np.nan)
     for (left, right), coefficients in zip(pairwise(EDGES), pieces, strict=True):
         where = np.flatnonzero((share >= left) & (share < right))
         if where.size:
@@ -166,12 +170,9 @@ def rotational_mode(alpha: Array, weight: Weight) -> tuple[Thrusts, Array, Array
             short[where], eta[where], hinge[where] = chebyshev.chebval(place, coefficients)
     hinge = np.maximum(hinge, 0.0) * square
     short, eta = np.minimum(short * square, 1.0), eta * square**2
-    wide = np.flatnonzero(share >= 1.0)
-    if wide.size:
-        short[wide] = 1.0
-        eta[wide], hinge[wide] = inner_hinges(short[wide], alpha[wide], alpha[wide], weight)
     thrust = np.where(short < 0.5, 1 - short, _thrust(hinge, eta, weight))
-    thrust[wide] = 0.0
+    wide = share >= 1.0
+    thrust[wide], short[wide] = 0.0, 1.0
     return Thrusts(thrust, short), eta, hinge
 
 

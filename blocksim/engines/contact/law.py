@@ -128,6 +128,27 @@ class Friction:
         forces[:, :2] = np.where(self.steep, pressure, forces[:, :2])
         return forces, contacts
 
+    def gathered(self, forces: Array) -> Array:
+        """Return equal forces whose friction is where the pressure is, for steep friction.
+
+        Both contacts of a joint rub along one line: only the sum of their friction acts. Left
+        at a contact without pressure beside one that has all of it, friction keeps that
+        contact sliding, and moves over by a share of `FLATTEST` only in each system solved.
+
+        Parameters
+        ----------
+        forces : (joints, 4) float
+            Pressure at both contacts, then friction.
+        """
+        if not self.some_steep:
+            return forces
+        pressure, friction = forces[:, :2], forces[:, 2:]
+        whole = pressure.sum(axis=1, keepdims=True)
+        moves = self.steep & (whole > 0)
+        shares = np.divide(pressure, whole, out=np.zeros_like(pressure), where=moves)
+        moved = shares * friction.sum(axis=1, keepdims=True)
+        return np.concatenate([pressure, np.where(moves, moved, friction)], axis=1)
+
     def own(self, contacts: Contacts) -> NDArray[np.bool_]:
         """Tell which contacts slide with friction that is an unknown of its own."""
         return self.steep & (contacts >= SLIDES_UP)

@@ -47,6 +47,8 @@ MOST_PATHS = 10
 """Paths of one step with steep friction; one that needs more is not solved by them."""
 STEEP_NEWTON = 30
 """The same with steep friction, where they find their way out of more."""
+ASTRAY = 1e20
+"""Forces out of balance from which Newton's method does not come back [mean weights]."""
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
 
@@ -163,6 +165,7 @@ class _Step:
                 self._friction,
                 self._precision,
             )
+            forces = self._friction.gathered(forces)
             contacts = np.full((len(forces), 2), STICKS, dtype=np.int8)
             held = np.abs(forces[:, 2:])
         else:
@@ -242,10 +245,11 @@ class _Step:
     def _newton(
         self, x: Array, contacts: Contacts, held: Array, balance: Balance, springs: Springs
     ) -> tuple[bool, Array, Array]:
-        """Newton's method; whether it ended, and where."""
+        """Newton's method; whether it ended, and where: if not, where least was left."""
         size, seen, state = math.inf, set[bytes](), b""
         glued = balance.glued(x)
         place = self._friction.unfold(glued, contacts, held)
+        least, best = math.inf, (x, place)
         for _ in range(STEEP_NEWTON if self._friction.some_steep else MOST_NEWTON):
             forces, contacts = self._friction.cut(place)
             imbalance = balance.imbalance(x, forces)
@@ -254,6 +258,11 @@ class _Step:
                 size = max(size, self._unlike(forces, contacts, glued))
             if springs.balanced(size, last, x, balance.stiffness):
                 return True, x, place
+            if size < least:
+                least, best = size, (x, place)
+            # What only grows ends out of the range of numbers.
+            if not size < ASTRAY:
+                break
             way, more = self._way(contacts, x, glued, place[:, :2], balance.stiffness)
             held = place[:, :2] + more
             state, before = contacts.tobytes(), state
@@ -264,7 +273,7 @@ class _Step:
             seen.add(state)
             glued = balance.glued(x)
             place = self._friction.unfold(glued, contacts, held)
-        return False, x, place
+        return False, *best
 
     def _unlike(self, forces: Array, contacts: Contacts, glued: Array) -> float:
         """How far the pressure of steep contacts is from that of their springs."""
