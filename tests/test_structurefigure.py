@@ -22,8 +22,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.limit.programme import collapse, equilibrium
-from blocksim.view.drawing import clipped, loading_words, outer_sides
-from blocksim.view.mapfigure import save_figure
+from blocksim.view.drawing import clipped, loading_words, outer_sides, save_figure
 from blocksim.view.structure import force_words, problem_figure
 from blocksim.view.style import DEAD, LIVE
 

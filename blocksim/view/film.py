@@ -112,6 +112,7 @@ class Film:
         self.rate = rate
         self._words = [verdict_words(recording, verdict) for recording in recordings]
         self._enlarge = enlarge
+        self._flat = view == "2d"
         self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
         # An arch of which no radius was given is shown in units of it.
         self.metric = any(
@@ -146,12 +147,12 @@ class Film:
         return self._canvas.pixels()
 
     def still(self, file: BinaryIO, kind: str, at: float | None = None) -> None:
-        """Write one frame as png or svg.
+        """Write one frame as png, svg or pdf.
 
         Parameters
         ----------
         file : BinaryIO
-        kind : {"png", "svg"}
+        kind : {"png", "svg", "pdf"}
         at : float, optional
             Time since the release in the unit of the clock; by default the end.
         """
@@ -197,8 +198,9 @@ class Film:
             length = round_length(0.5 * radius)
             unit = "m" if self.metric else "r"
             bar, words = view.scale_bar(length / radius, f"{length:g} {unit}")
-            parts.append((panel, [*view.still, *bar]))
-            labels += words + self._title(stage, panel, verdict)
+            pull, name = self._gravity(stage, panel)
+            parts.append((panel, [*view.still, *bar, *pull]))
+            labels += [*words, *name, *self._title(stage, panel, verdict)]
         whole = Panel(0, 0, self.width, self.height)
         rules = [
             np.array([[panel.x, FOOT * self._size], [panel.x, self.height]])
@@ -207,6 +209,29 @@ class Film:
         lines = [Shape(r, edge=colour(INK, 0.25), width=1, closed=False) for r in rules]
         legend, words = self._legend(states, thrust=thrust)
         return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
+
+    def _gravity(self, stage: Stage, panel: Panel) -> tuple[list[Shape], list[Label]]:
+        """Show where gravity pulls in the plane, in a corner, unless it is straight down."""
+        way = stage.recording.problem.gravity[:2]
+        if not self._flat or way[0] == 0:
+            return [], []
+        size, tone = self._size, colour(QUIET)
+        way = way / np.hypot(*way)
+        across = np.array([-way[1], way[0]])
+        middle = np.array(
+            [panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size]
+        )
+        tip = middle + 30 * size * way
+        back = tip - 13 * size * way
+        head = np.array([tip, back + 5.5 * size * across, back - 5.5 * size * across])
+        shaft = np.array([middle - 30 * size * way, back])
+        shapes = [
+            Shape(shaft, edge=tone, width=2.5 * size, closed=False),
+            Shape(head, fill=tone),
+        ]
+        under = float(middle[1]) - 52 * size
+        words = Label(float(middle[0]), under, "gravity", size=13 * size, across="center")
+        return shapes, [words._replace(colour=QUIET)]
 
     def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
         """Say what it is, outcome, loading and engine, above a panel."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -379,11 +379,3 @@ def _legend(figure: Figure, points: Sequence[MapPoint]) -> None:
         alignment="left",
         handletextpad=0.4,
     )
-
-
-def save_figure(figure: Figure, file: BinaryIO, kind: str) -> None:
-    """Write a figure as png, svg or pdf, without the date, so that equal ones are equal."""
-    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-    with mpl.rc_context(FONT):
-        metadata = undated.get(kind, {"Software": "blocksim"})
-        figure.savefig(file, format=kind, dpi=150, metadata=metadata)

@@ -30,6 +30,8 @@ SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
 FARTHEST = 1.0
 """Blocks are followed up to this far beyond where they were at rest [r]."""
+ALONG = 2.25
+"""The same to the sides on supports that are known, which are shown as far [size]."""
 BESIDE, ABOVE = 0.25, 0.1
 """How far beyond the blocks supports are shown, sidewards and upwards [r]."""
 SAMPLES = 500
@@ -123,8 +125,8 @@ class Stage:
         # Of a wide or a high support, or one deep in the ground, a part is enough.
         poses, reach = self.recording.poses, assembly.reach / size
         gone = (poses[..., 0] - reach).min(), (poses[..., 0] + reach).max()
-        left = max(float(gone[0]), self._low[0] - FARTHEST) - BESIDE
-        right = min(float(gone[1]), self._high[0] + FARTHEST) + BESIDE
+        left = max(float(gone[0]), self._low[0] - ALONG) - BESIDE
+        right = min(float(gone[1]), self._high[0] + ALONG) + BESIDE
         low, high = np.array([left, self.ground]), np.array([right, self._high[1] + ABOVE])
         parts = [
             clipped(part / size, low, high)
@@ -199,7 +201,7 @@ class Stage:
     def swept(self) -> Array:
         """Every corner at every frame that is shown, and of the footings, (k, 3).
 
-        Blocks are followed up to `FARTHEST` beyond where they were at rest.
+        Blocks are followed up to `FARTHEST` or `ALONG` beyond where they were at rest.
         """
         footings = np.concatenate(self.footings)
         footings = np.append(footings, [[self.middle, self.ground]], axis=0)
@@ -208,8 +210,11 @@ class Stage:
         rest = np.concatenate([self._corners(0, 0, 0.0).reshape(-1, 3), *solid])
         moved = np.concatenate([self._corners(i, i, 0.0) for i in self._shown]).reshape(-1, 3)
         low, high = rest.min(axis=0), rest.max(axis=0)
+        aside = ALONG if self.assembly.supports else FARTHEST
         bounded = np.clip(
-            moved, [*(low[:1] - FARTHEST), low[1], low[2] - FARTHEST], high + FARTHEST
+            moved,
+            [self._low[0] - aside, low[1], low[2] - FARTHEST],
+            [self._high[0] + aside, *(high[1:] + FARTHEST)],
         )
         return np.concatenate([rest, bounded])
 
