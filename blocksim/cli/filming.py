@@ -137,8 +137,9 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
         return
     why = ", until a block reaches the ground or a footing" if made.on_ground else ""
     radius = "" if made.metric else " if r = 1 m"
+    pace = f"{made.slow:g} times slower than" if made.slow != 1 else "in real time,"
     say(
-        f"wrote {out}: {made.count / made.rate:.1f} s, {made.slow:g} times slower than the "
+        f"wrote {out}: {made.count / made.rate:.1f} s, {pace} the "
         f"{made.seconds:.3g} s it shows{radius}{why}"
     )
     for recording, moves in zip(shown, made.moves, strict=True):
