@@ -21,7 +21,7 @@ from blocksim.view.style import FONT, INK, ISO
 DASHED = (0, (5, 2))
 SPACE, BESIDE = 0.024, 0.07
 """Height of a label, as a share of the picture, and its distance from the frame [mu]."""
-LABELS = {"S": (6, -12), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
+LABELS = {"S": (-17, -14), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
 
 
 def line_map_figure(span: tuple[float, float] = (0.0, 2.0)) -> Figure:

@@ -196,8 +196,8 @@ def _lines(section: Section) -> Array:
     shapes = map_shapes()
     found: list[Array] = []
     for curve in (shapes.divide, shapes.first, shapes.equal, shapes.crown):
-        ends = np.clip(section.mu, curve.mu.min(), curve.mu.max())
-        mu = np.linspace(*ends, 400)
+        first = max(section.mu[0], float(curve.mu.min()))
+        mu = np.linspace(first, min(section.mu[1], float(curve.mu.max())), 400)
         order = np.argsort(curve.mu)
         found.append(np.column_stack([mu, np.interp(mu, curve.mu[order], curve.eta[order])]))
     return np.concatenate(found)
