@@ -173,7 +173,9 @@ def as_built(seed: int) -> np.ndarray:
 def test_voussoirs_as_built_are_those_of_limit_analysis(
     page: playwright.Page, weight: str, every: int
 ) -> None:
-    rows = as_built(7)[::-every]
+    rows = as_built(7)
+    # The widest have the rarest modes.
+    rows = rows[(np.arange(len(rows)) % every == 1 % every) | (rows[:, 0] > 2.6)]
     found = evaluate(page, BUILT, rows, weight)
     seen = set()
     for (half_angle, friction, count), row in zip(rows.tolist(), found, strict=True):
