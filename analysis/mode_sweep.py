@@ -52,7 +52,7 @@ from blocksim.arch.theory.regions import first_sliding
 from blocksim.evidence.verdict import Verdict
 from blocksim.many import read_rows, sweep
 from blocksim.many.answers import version_of
-from blocksim.view.mapfigure import draw_regions
+from blocksim.view.mapregions import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
 ARCHES = 2300

@@ -47,7 +47,7 @@ from blocksim.arch.theory.regions import landmarks
 from blocksim.ask.search import ETA_MAX
 from blocksim.evidence.trial import trial
 from blocksim.many.answers import version_of
-from blocksim.view.mapfigure import draw_regions
+from blocksim.view.mapregions import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
 SEED = 14

@@ -27,8 +27,9 @@ from blocksim.arch.theory.critical import Critical, inner_sliding, rotational_th
 from blocksim.arch.theory.equations import hinge_slope
 from blocksim.arch.theory.map import divide_friction, special_angles
 from blocksim.view.archfigure import arch_figure, picture_of_theory
+from blocksim.view.drawing import save_figure
 from blocksim.view.linemap import line_map_figure
-from blocksim.view.mapfigure import CENTRAL, WHOLE, draw_regions, save_figure
+from blocksim.view.mapregions import CENTRAL, WHOLE, draw_regions
 from blocksim.view.style import FONT, INK, QUIET
 
 TOLERANCE = 1e-12

@@ -24,7 +24,7 @@ from blocksim.arch.limit.statics import Bound, admissible, spread_of, thrust_bou
 from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses, regions
 from blocksim.arch.theory.map import special_angles
 from blocksim.blocks.assembly import Array
-from blocksim.view.mapfigure import save_figure
+from blocksim.view.drawing import save_figure
 from blocksim.view.style import FONT, INK
 
 CHECKS = ((1.2, 0.6), (math.pi / 2, math.inf), (math.pi / 2, 0.37), (2.18, 0.9), (2.43, 1.35),

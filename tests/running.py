@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from unittest import mock
+
+from blocksim import cli
 
 PROGRAM = (sys.executable, "-m", "blocksim")
 
@@ -23,6 +28,18 @@ def blocksim(
         cwd=cwd,
         preexec_fn=before,
     )
+
+
+def inside(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run a command within this process, which has loaded its libraries once for all."""
+    out, complaints = io.StringIO(), io.StringIO()
+    with (
+        mock.patch.object(sys, "argv", ["blocksim", *arguments]),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(complaints),
+    ):
+        code = cli._code()
+    return subprocess.CompletedProcess(arguments, code, out.getvalue(), complaints.getvalue())
 
 
 def started(*arguments: str) -> subprocess.Popen[bytes]:

@@ -12,7 +12,7 @@ from blocksim.arch.limit.collapse import collapse_of_mode
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import landmarks, least_thickness
 from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
-from blocksim.view.mapfigure import save_figure
+from blocksim.view.drawing import save_figure
 
 
 def test_four_modes_at_the_triple_point() -> None:

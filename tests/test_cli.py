@@ -104,7 +104,7 @@ WRONG = {
     "map no picture": ("map", "--out", "map.docx"),
     "map no such zoom": ("map", "--out", "map.png", "--zoom", "central", "--lines"),
     "render nothing stands": ("render", "--alpha", "90", "--mu", "0.3", "--out", "x.png"),
-    "picture of no height": ("render", "semicircle", "--out", "x.png", "--height", "480"),
+    "picture of no height": ("render", "semicircle", "--out", "x.svg", "--height", "480"),
     "eta and ratio": ("check", *ARCH, "--eta", "0.1", "--ratio", "0.99"),
     "ratio of nothing": ("check", "--alpha", "90", "--mu", "0.3", "--ratio", "0.9"),
     "lean in the plane": (

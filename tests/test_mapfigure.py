@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from itertools import combinations
 
+import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
@@ -14,6 +15,7 @@ from matplotlib.text import Text
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import landmarks
 from blocksim.view.mapfigure import LARGEST_MU, MapPoint, map_figure
+from blocksim.view.mapshapes import map_shapes
 from blocksim.view.style import MISS, MODES
 
 # As published: figures 20 to 25, Table 1, and an arch that slides at any thickness.
@@ -21,13 +23,16 @@ ARCHES = {
     "8": (1.7772, 0.9652, Mode.RS),
     "9": (1.833, 0.9563, Mode.RRS),
     "10": (1.79, 0.9631, Mode.RSR),
+    "11": (3.386, 0.8679, Mode.RRS),
     "12": (1.8096, 0.9999, Mode.RS),
     "13": (2.69, 1.964, Mode.RS),
     "14": (math.inf, 1.0, Mode.R),
     "15": (math.inf, 2.0, Mode.R),
+    "16": (0.6, 0.2981, Mode.SRR),
     "18": (0.6, 0.031, Mode.RRR),
     "19": (0.7, 0.107, Mode.RRR),
     "20": (0.3, 2.0, Mode.SS),
+    "21": (0.35, 0.1529, Mode.SRR),
     "24": (1.7659, 0.9533, Mode.RRS),
 }
 CROWD = {"8", "9", "10", "12", "24"}
@@ -95,6 +100,35 @@ def test_no_label_is_on_the_axis_below(drawn: Figure) -> None:
     for axes in parts(drawn):
         bottom = axes.get_window_extent().y0
         assert all(text.get_window_extent().y0 > bottom for text in labels(axes).values())
+
+
+def test_no_label_and_no_name_is_on_a_line(drawn: Figure) -> None:
+    shapes = map_shapes()
+    for axes in parts(drawn):
+        names = [text for text in axes.texts if text.get_text() in set(Mode)]
+        assert len(names) > 3
+        boxes = [text.get_window_extent() for text in [*labels(axes).values(), *names]]
+        # In the strip of unbounded friction there are no lines.
+        right = axes.transData.transform((LARGEST_MU, 0))[0]
+        for curve in (shapes.divide, shapes.first, shapes.equal, shapes.crown):
+            order = np.argsort(curve.mu)
+            mu = np.linspace(curve.mu.min(), curve.mu.max(), 20_000)
+            eta = np.interp(mu, curve.mu[order], curve.eta[order])
+            points = axes.transData.transform(np.column_stack([mu, eta]))
+            for box in boxes:
+                on = (points > (box.x0, box.y0)) & (points < (box.x1, box.y1))
+                assert box.x0 > right or not on.all(axis=1).any()
+
+
+def test_the_enlarged_part_keeps_off_the_rest(drawn: Figure) -> None:
+    """Numbers on its axes are right of the map's own axis, and off the map's letters."""
+    axes, near = parts(drawn)
+    ticks = [text for axis in (near.xaxis, near.yaxis) for text in axis.get_ticklabels()]
+    letters = [text.get_window_extent() for text in axes.texts if text.get_text() in "TSJB"]
+    assert {text.get_text() for text in ticks} >= {"1.7", "1.9", "0.92", "1.02"}
+    for box in (text.get_window_extent() for text in ticks):
+        assert box.x0 > axes.get_window_extent().x0 + 2
+        assert not any(box.overlaps(letter) for letter in letters)
 
 
 def test_rsr_can_be_read(drawn: Figure) -> None:

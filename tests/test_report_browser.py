@@ -6,10 +6,12 @@ from collections.abc import Generator
 from dataclasses import replace
 
 import pytest
+from matplotlib.colors import to_rgb
 from report_rows import ROW, rows
 
 from blocksim.arch.modes import Mode
 from blocksim.report.tables import write_results
+from blocksim.view.style import MODES
 
 playwright = pytest.importorskip("playwright.sync_api")
 
@@ -132,27 +134,71 @@ def test_a_phone_is_told_what_scrolls(page) -> None:
     assert page.locator(".sideways:visible").count() == 0
 
 
-LIGHTNESS = """(selector) => [...document.querySelectorAll(selector)].map((element) =>
-  getComputedStyle(element).fill.match(/\\d+/g).slice(0, 3)
-    .reduce((sum, v) => sum + +v, 0) / 765)"""
+FILLS = """(selector) => [...document.querySelectorAll(selector)].map((element) =>
+  getComputedStyle(element).fill.match(/\\d+/g).slice(0, 3).map(Number))"""
+
+
+def lightness(page, selector: str) -> list[float]:
+    return [sum(colour) / 765 for colour in page.evaluate(FILLS, selector)]
+
+
+PAPERS, REGIONS = "#patch_1 path, #patch_2 path", "[id^=FillBetween] use"
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_the_map_is_dark_in_the_dark(page, scheme: str) -> None:
     """Paper and regions, and the words on them, by their colours in the browser."""
     page.emulate_media(color_scheme=scheme)
-    grounds = page.evaluate(LIGHTNESS, "#patch_1 path, #patch_2 path, [id^=FillBetween] use")
-    assert len(grounds) == 10
-    words = page.evaluate(LIGHTNESS, '[id^="matplotlib.axis"] [id^=text_] use')
+    if scheme == "light":
+        # Six modes at finite friction; an arch of unbounded friction adds a strip of two.
+        tints = [to_rgb(MODES[mode].tint) for mode in [*Mode, Mode.RRR]]
+        seen = page.evaluate(FILLS, REGIONS)
+        assert sorted(seen) == sorted([round(255 * part) for part in tint] for tint in tints)
+    papers, regions = lightness(page, PAPERS), lightness(page, REGIONS)
+    assert (len(papers), len(regions)) == (2, 8)  # paper of the page and of the axes
+    words = lightness(page, '[id^="matplotlib.axis"] [id^=text_] use')
     assert len(words) > 10
     if scheme == "light":
-        assert min(grounds) > 0.8
+        assert min(papers + regions) > 0.8
         assert max(words) < 0.2
     else:
-        assert max(grounds) < 0.35
+        assert max(papers + regions) < 0.35
         assert min(words) > 0.8
     page.emulate_media(media="print")
-    assert min(page.evaluate(LIGHTNESS, "#patch_1 path, #patch_2 path")) == 1
+    assert min(lightness(page, PAPERS)) == 1
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_names_of_modes_can_be_read(page, scheme: str) -> None:
+    """On ground as light as the page's, by the contrast of words that WCAG asks for."""
+    page.emulate_media(color_scheme=scheme)
+    looks = page.evaluate("""() => [...document.querySelectorAll("td .mode")].map((name) => {
+      const look = getComputedStyle(name);
+      const pad = document.createElement("canvas").getContext("2d");
+      return [look.color, look.backgroundColor].map((colour) => {
+        pad.fillStyle = colour;
+        pad.fillRect(0, 0, 1, 1);
+        return [...pad.getImageData(0, 0, 1, 1).data].slice(0, 3); }); })""")
+    assert len(looks) > 3
+    for ink, ground in looks:
+        assert (sum(ground) / 765 > 0.5) is (scheme == "light")
+        high, low = sorted((luminance(ink), luminance(ground)), reverse=True)
+        assert (high + 0.05) / (low + 0.05) > 4.5
+
+
+def luminance(colour: list[int]) -> float:
+    linear = [
+        part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
+        for part in (value / 255 for value in colour)
+    ]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def test_names_are_written_as_they_are(page) -> None:
+    items = page.locator("#disagreements li")
+    assert items.count() > 1
+    for item in items.all():
+        assert item.inner_text().startswith(("semicircle", "second<script>", "fig17"))
 
 
 def test_points_of_the_map_lead_to_their_rows(page, complaints: list[str]) -> None:

@@ -22,9 +22,9 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.limit.programme import collapse, equilibrium
-from blocksim.view.drawing import clipped, loading_words, outer_sides
-from blocksim.view.mapfigure import save_figure
-from blocksim.view.structure import force_words, problem_figure
+from blocksim.view.arrows import force_words
+from blocksim.view.drawing import clipped, loading_words, outer_sides, save_figure
+from blocksim.view.structure import problem_figure
 from blocksim.view.style import DEAD, LIVE
 
 
@@ -169,8 +169,8 @@ def test_loads_are_arrows_that_end_where_they_act() -> None:
         }
         told = legend(figure)
         assert "dead load, largest 1 kN" in told
-        at = "at load factor 0.5, largest 250 N" if load else "at factor 1, largest 500 N"
-        assert f"live load {at}" in told
+        at = "load factor 0.5, largest 250" if load else "factor 1 (not on it), largest 500"
+        assert f"live load at {at} N" in told
 
 
 def test_a_mechanism_is_drawn_as_its_blocks_move() -> None:
@@ -199,7 +199,8 @@ def test_a_mechanism_is_drawn_as_its_blocks_move() -> None:
     assert len(of(figure, "joint")) == len(of(figure, "hinge")) == 1
     # Loads are drawn at factor 1 beside it.
     assert legend(figure) == {
-        "support", "hinge", "mechanism, enlarged", "live load at factor 1, largest 1 N"
+        "support", "hinge", "mechanism, enlarged",
+        "live load at factor 1 (not on it), largest 1 N",
     }  # fmt: skip
 
 

@@ -26,7 +26,7 @@ from blocksim.view.canvas import stone_tones
 from blocksim.view.film import Film
 from blocksim.view.planar import PlanarView
 from blocksim.view.stage import BESIDE, Stage
-from blocksim.view.style import JOINTS
+from blocksim.view.style import JOINTS, QUIET
 from blocksim.view.video import render, to_bytes
 
 ARCH_SAYINGS = (
@@ -209,6 +209,40 @@ def test_supports_stand_in_the_frame_near_the_blocks() -> None:
     left, right = (float(view_of(film)._to_pixels(np.array([x, 0.0]))[0]) for x in shown)
     assert (left + right) / 2 == pytest.approx(film.width / 2, abs=1e-6)
     assert right - left > film.width / 5
+
+
+def test_what_slides_far_is_seen_to_lie_on_its_support() -> None:
+    """Of a slab of 100 m as much is drawn as blocks are followed on it, and in view."""
+    problem = yard()
+    size = problem.assembly.size
+    way = np.zeros((11, len(problem.assembly.blocks), 3))
+    way[:, 2, 0] = np.linspace(0, 3.5, 11) / size  # the hexagon, to x = 108.5 m at its right
+    film = Film([recording(problem, way)], height=360)
+    frame = film.frame(film.count - 1)
+    (slab,) = film._stages[0].footings
+    assert slab[:, 0].max() > 108.5 / size
+    for x in (100.0, 104.0, 108.4):
+        under = pixel(film, frame, np.array([x, -0.15]) / size)
+        np.testing.assert_allclose(under, pixel(film, frame, slab.mean(axis=0)), atol=2)
+
+
+@pytest.mark.parametrize(("tilt", "way"), [(25.0, 1), (-25.0, -1), (0.0, 0)])
+def test_where_gravity_pulls_is_shown_on_a_tilted_table(tilt: float, way: int) -> None:
+    """An arrow down and towards the side that goes down, by its pixels beyond the words."""
+    run = lifted(yard().tilted(math.radians(tilt)))
+    film = Film([run], height=720)
+    assert ("gravity" in drawn_words(film)) is bool(way)
+    corner = film.frame(0)[74:150, -110:-20, :3].astype(int)
+    quiet = np.array(to_bytes(QUIET))
+    rows, columns = np.nonzero(np.abs(corner - quiet).max(axis=-1) < 12)
+    if not way:
+        assert not len(rows)
+        return
+    slope = np.polyfit(rows, columns, 1)[0]
+    assert slope == pytest.approx(way * math.tan(math.radians(25)), abs=0.08)
+    # The head is wider than the shaft, and below.
+    widths = [np.ptp(columns[rows == row]) for row in (rows.min() + 8, rows.max() - 9)]
+    assert widths[1] > widths[0] + 3
 
 
 def test_films_are_the_same_wherever_a_structure_is_built() -> None:

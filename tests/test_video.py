@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
 from PIL import Image
-from running import blocksim
+from running import inside
 from scipy.spatial.transform import Rotation
 
 from blocksim.arch.circular import GRAVITY, Arch
@@ -374,12 +374,12 @@ def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:
 def test_command_films_recordings(tmp_path: Path) -> None:
     run = str(tmp_path / "run.npz")
     falling().save(Path(run))
-    done = blocksim("render", run, "--view", "3d", "--at", "0.2", "--out", f"{tmp_path}/a.png")
+    done = inside("render", run, "--view", "3d", "--at", "0.2", "--out", f"{tmp_path}/a.png")
     assert (done.returncode, done.stderr) == (0, "")
     with Image.open(tmp_path / "a.png") as picture:
         assert picture.size == (1280, 720)
     small = ("--beside", run, "--height", "180", "--slow", "1")
-    done = blocksim("render", run, *small, "--out", f"{tmp_path}/b.gif")
+    done = inside("render", run, *small, "--out", f"{tmp_path}/b.gif")
     assert (done.returncode, done.stderr) == (0, "")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "b.gif", "run.npz"]
 
@@ -391,7 +391,7 @@ def test_command_films_a_scenario(tmp_path: Path) -> None:
     """
     out = tmp_path / "film.mp4"
     asked = ("semicircle", "--method", "pymunk", "--height", "180", "--slow", "1")
-    done = blocksim("render", *asked, "--out", str(out))
+    done = inside("render", *asked, "--out", str(out))
     assert (done.returncode, done.stderr) == (0, "")
     assert "until a block reaches the ground" in done.stdout
     with av.open(str(out)) as container:
@@ -538,7 +538,7 @@ def test_command_draws_a_leaning_arch_as_check_answers(tmp_path: Path) -> None:
     """tan(lean) > (d/2)/(2r/pi): it overturns, and nothing may say that it stands."""
     pytest.importorskip("pybullet", exc_type=ImportError)
     out = tmp_path / "lean.svg"
-    done = blocksim("render", "semicircle_tilted_overturns", "--out", str(out))
+    done = inside("render", "semicircle_tilted_overturns", "--out", str(out))
     assert (done.returncode, done.stderr) == (0, "")
     words = re.findall(r"<!-- (.*?) -->", out.read_text(encoding="utf-8"))
     title = next(word for word in words if "gravity leans" in word)
@@ -553,12 +553,12 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         for way, more in (("short", ()), ("long", ("--seconds", "0.9"))):
             out = f"{tmp_path}/{way}_{name}.npz"
             asked = ("semicircle", "--eta", eta, "--method", "direct", *more)
-            assert blocksim("simulate", *asked, "--out", out).returncode == 0
+            assert inside("simulate", *asked, "--out", out).returncode == 0
     said = {}
     for way in ("short", "long"):
         pair = (f"{tmp_path}/{way}_below.npz", "--beside", f"{tmp_path}/{way}_above.npz")
         small = ("--height", "180", "--slow", "1", "--out", f"{tmp_path}/{way}.gif")
-        said[way] = blocksim("render", *pair, *small).stdout
+        said[way] = inside("render", *pair, *small).stdout
     assert "simulate --seconds 2 records how it falls" in said["short"]
     assert "simulate --seconds" not in said["long"]
     assert "(eta 0.108, direct): it is at rest" in said["long"]
@@ -593,7 +593,7 @@ def test_wrong_input_is_one_line(
     run = tmp_path / "run.npz"
     falling().save(run)
     given_ = [str(run) if each == "RUN" else each for each in arguments]
-    done = blocksim("render", *given_, "--out", f"{tmp_path}/film.mp4")
+    done = inside("render", *given_, "--out", f"{tmp_path}/film.mp4")
     assert done.returncode == 2
     assert words in done.stderr
     assert done.stderr.count("\n") == 1

@@ -28,6 +28,7 @@ from blocksim.cli.filming import (
     View,
     film,
     recordings,
+    require_height,
 )
 from blocksim.cli.options import (
     EXIT_CODES,
@@ -242,7 +243,8 @@ def simulate(
 @app.command()
 def render(
     out: Annotated[
-        Path | None, typer.Option(help="File to write: .mp4, .gif, .png or .svg; required.")
+        Path | None,
+        typer.Option(help="File to write: .mp4, .gif, .png, .svg or .pdf; required."),
     ] = None,
     scene: Annotated[
         str | None, typer.Argument(help="Scenario, or a recording: an .npz file.")
@@ -281,24 +283,27 @@ def render(
         question(scene, given, out=out)
     require_given(out=out)
     out = out or Path()
-    kind = picture_kind(out, (*FILMS, "png", "svg"))
+    kind = picture_kind(out, (*FILMS, "png", "svg", "pdf"))
     filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
         shown = RenderOptions(view=view, slow=slow, at=at, height=height or HEIGHT)
         require(at is None or kind not in FILMS, "--at", at, "left out of a film")
         film(out, recordings(scene, given, loading, method, beside), shown)
     else:
-        shown = {"slow": slow, "at": at, "height": height, "method": method}
+        shown = {"slow": slow, "at": at, "method": method}
         built = scene is not None and is_structure(scene)
         for name, value in shown.items():
             # The picture of a structure shows the answer of a method.
             free = value is None or (built and name == "method")
             require(free, f"--{name}", value, "left out: the picture is of no motion")
+        if height is not None:
+            require(kind == "png", "--height", height, f"left out: a .{kind} has no pixels")
+            require_height(height)
         if scene is not None and built:
             problem = structure(scene, given, loading)
-            draw_structure(out, kind, problem, method or "auto")
+            draw_structure(out, kind, problem, method or "auto", height)
         else:
             require(
                 not loading.given, "--load, --tilt", scene, "left out: film it, or use check"
             )
-            write_arch(out, kind, scene, given)
+            write_arch(out, kind, scene, given, height)

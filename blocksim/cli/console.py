@@ -138,11 +138,11 @@ def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
     return kind
 
 
-def save_picture(figure: Figure, out: Path, kind: str) -> None:
-    """Write a picture whole and say so."""
-    from blocksim.view.mapfigure import save_figure
+def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None) -> None:
+    """Write a picture whole, so many pixels high if it is a png, and say so."""
+    from blocksim.view.drawing import save_figure
 
-    write_whole(out, lambda file: save_figure(figure, file, kind))
+    write_whole(out, lambda file: save_figure(figure, file, kind, height=height))
     say(f"wrote {out}")
 
 

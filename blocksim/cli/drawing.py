@@ -18,7 +18,7 @@ LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
 
 def write_map(out: Path, zoom: str, results: Path | None, *, lines: bool) -> None:
     """Write the map as a picture or as a page."""
-    kind = picture_kind(out, ("svg", "png", "html"))
+    kind = picture_kind(out, ("svg", "png", "pdf", "html"))
     if kind == "html":
         require(not lines, "--lines", lines, "left out where --out is a page")
         require(zoom == "whole", "--zoom", zoom, "left out where --out is a page")
@@ -44,7 +44,9 @@ def _map_page(out: Path, results: Path | None) -> None:
     say(f"wrote {out}")
 
 
-def write_arch(out: Path, kind: str, scene: str | None, given: Given) -> None:
+def write_arch(
+    out: Path, kind: str, scene: str | None, given: Given, height: int | None
+) -> None:
     """Draw the voussoirs as built, or the continuous arch at its least thickness.
 
     Where gravity leans out of the plane, statics in the plane say nothing: the arch is put
@@ -55,7 +57,7 @@ def write_arch(out: Path, kind: str, scene: str | None, given: Given) -> None:
 
     asked = question(scene, given)
     if asked.lean:
-        picture_of_leaning(out, kind, arch_of(asked, given.ratio), asked)
+        picture_of_leaning(out, kind, arch_of(asked, given.ratio), asked, height)
         return
     with named_options():
         if asked.eta is not None or given.ratio is not None:
@@ -66,4 +68,4 @@ def write_arch(out: Path, kind: str, scene: str | None, given: Given) -> None:
                 raise InputError("eta", MISSING, "given where no thickness stands")
             arch = asked.half_angle, asked.mu, asked.weight
             pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
-    save_picture(arch_figure(pictures), out, kind)
+    save_picture(arch_figure(pictures), out, kind, height)

@@ -48,11 +48,14 @@ Slow = Annotated[
 At = Annotated[
     float | None,
     typer.Option(
-        help="For .png, .svg: time since the release, as the clock shows it (the end)."
+        help="For .png, .svg, .pdf: time since the release, as the clock shows it (the end)."
     ),
 ]
 Height = Annotated[
-    int | None, typer.Option(help="Of a frame in pixels, 720 if left out; frames are 16:9.")
+    int | None,
+    typer.Option(
+        help="In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture."
+    ),
 ]
 EngineOption = Annotated[
     str | None,
@@ -79,13 +82,18 @@ class RenderOptions:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        low, high = HEIGHTS
-        fits = low <= self.height <= high and self.height % 2 == 0
-        require(fits, "--height", self.height, f"an even number from {low} to {high}")
+        require_height(self.height)
         slow = self.slow is None or 0 < self.slow <= SLOWEST
         require(slow, "--slow", self.slow, f"above 0 and at most {SLOWEST:g}")
         at = self.at is None or 0 <= self.at < math.inf
         require(at, "--at", self.at, "0 or above")
+
+
+def require_height(height: int) -> None:
+    """Refuse a height of frames or pictures that is out of range."""
+    low, high = HEIGHTS
+    fits = low <= height <= high and height % 2 == 0
+    require(fits, "--height", height, f"an even number from {low} to {high}")
 
 
 def recordings(
@@ -129,8 +137,9 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
         return
     why = ", until a block reaches the ground or a footing" if made.on_ground else ""
     radius = "" if made.metric else " if r = 1 m"
+    pace = f"{made.slow:g} times slower than" if made.slow != 1 else "in real time,"
     say(
-        f"wrote {out}: {made.count / made.rate:.1f} s, {made.slow:g} times slower than the "
+        f"wrote {out}: {made.count / made.rate:.1f} s, {pace} the "
         f"{made.seconds:.3g} s it shows{radius}{why}"
     )
     for recording, moves in zip(shown, made.moves, strict=True):
@@ -151,7 +160,9 @@ def _motionless(recording: Recording) -> str:
     return f"nothing is seen to move in one recording ({arch}): it is at rest"
 
 
-def picture_of_leaning(out: Path, kind: str, arch: Arch, asked: Scenario) -> None:
+def picture_of_leaning(
+    out: Path, kind: str, arch: Arch, asked: Scenario, height: int | None
+) -> None:
     """Draw an arch in gravity that leans out of its plane, in perspective, with its verdict.
 
     The motion is that by which a check decides, drawn larger.
@@ -165,7 +176,8 @@ def picture_of_leaning(out: Path, kind: str, arch: Arch, asked: Scenario) -> Non
     run = seen.motion.recording if seen.motion else held.release(STILL).recording
     falls = seen.verdict is Verdict.COLLAPSES
     enlarge = SHOWN / float(run.displacement.max()) if falls else 1.0
-    made = Film([run], verdict=seen.verdict, enlarge=enlarge, view="3d")
+    tall = height or HEIGHT
+    made = Film([run], verdict=seen.verdict, enlarge=enlarge, view="3d", height=tall)
     write_whole(out, lambda file: made.still(file, kind))
     lean = math.degrees(asked.lean)
     say(f"wrote {out}: {seen.verdict}, gravity leans {lean:.4g} deg out of the plane")

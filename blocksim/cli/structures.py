@@ -145,7 +145,9 @@ def simulate_structure(
         )
 
 
-def draw_structure(out: Path, kind: str, problem: Problem, method: str) -> None:
+def draw_structure(
+    out: Path, kind: str, problem: Problem, method: str, height: int | None
+) -> None:
     """Draw a structure with its answer: contact forces where it stands, else its mechanism."""
     # Drawing takes a second to import, which other commands need not wait for.
     from blocksim.view.structure import problem_figure
@@ -160,7 +162,7 @@ def draw_structure(out: Path, kind: str, problem: Problem, method: str) -> None:
         mechanism=answer.mechanism,
         states=tuple(joint.state for joint in answer.joints),
     )
-    save_picture(figure, out, kind)
+    save_picture(figure, out, kind, height)
 
 
 def say_recorded(out: Path, recording: Recording, unit: str) -> None:

@@ -125,7 +125,8 @@ def sweep(
 @app.command(name="map")
 def draw_map(
     out: Annotated[
-        Path | None, typer.Option(help="Picture, .svg or .png, or a page, .html; required.")
+        Path | None,
+        typer.Option(help="Picture, .svg, .png or .pdf, or a page, .html; required."),
     ] = None,
     lines: Annotated[
         bool, typer.Option("--lines", help="Dividing lines and lines of equal alpha instead.")

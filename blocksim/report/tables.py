@@ -27,7 +27,8 @@ from blocksim.studies.validate import (
     installed,
     numbered,
 )
-from blocksim.view.mapfigure import MapPoint, map_figure, save_figure
+from blocksim.view.drawing import save_figure
+from blocksim.view.mapfigure import MapPoint, map_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

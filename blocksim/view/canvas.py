@@ -26,6 +26,7 @@ from matplotlib.transforms import Bbox, IdentityTransform, TransformedBbox
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
+from blocksim.view.drawing import save_figure
 from blocksim.view.style import FONT, GROUND, INK, PAPER, STONE
 
 Colour = tuple[float, float, float, float]
@@ -158,13 +159,12 @@ class Canvas:
         return np.array(self._agg.buffer_rgba())
 
     def save(self, file: BinaryIO, kind: str) -> None:
-        """Write the picture as png or svg, without the date."""
-        with mpl.rc_context(FONT):
-            for order, artist in enumerate([*self._still, *self._moving]):
-                artist.set_zorder(order)
-                self._figure.add_artist(artist)
-            metadata = {"Date": None} if kind == "svg" else {"Software": "blocksim"}
-            self._figure.savefig(file, format=kind, dpi=DOTS, metadata=metadata)
+        """Write the picture as png, svg or pdf."""
+        for order, artist in enumerate([*self._still, *self._moving]):
+            artist.set_zorder(order)
+            self._figure.add_artist(artist)
+        height = round(self._figure.get_figheight() * DOTS)
+        save_figure(self._figure, file, kind, height=height)
 
 
 def _artists(parts: Sequence[Part], labels: Sequence[Label]) -> list[Artist]:

@@ -1,17 +1,21 @@
-"""What stills and films of any structure have in common: outlines, clipping, words."""
+# matplotlib's own annotations leave keyword arguments open.
+# pyright: reportUnknownMemberType=false
+"""What all pictures have in common: files, outlines, clipping, words."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
+import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
-from blocksim.view.style import JOINTS
+from blocksim.view.style import FONT, JOINTS
 
 ARCH_WORDS = {
     JointState.HINGE_INTRADOS: "hinge intrados",
@@ -24,6 +28,29 @@ HINGES = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
 """End of a joint that stays closed: inner or outer."""
 NEAR = 1e-6
 """Share of a length within which sides lie on each other."""
+DOTS = 150
+"""In an inch of a picture whose height is not given."""
+
+
+def save_figure(
+    figure: Figure, file: BinaryIO, kind: str, *, height: int | None = None
+) -> None:
+    """Write a figure as png, svg or pdf, without the date, so that equal ones are equal.
+
+    Parameters
+    ----------
+    figure : Figure
+    file : BinaryIO
+    kind : {"png", "svg", "pdf"}
+    height : int, optional
+        Of a png, in pixels.
+    """
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    metadata = undated.get(kind, {"Software": "blocksim"})
+    # A hair more, lest a pixel is lost to round-off.
+    dots = DOTS if height is None else height * (1 + 1e-12) / figure.get_figheight()
+    with mpl.rc_context(FONT):
+        figure.savefig(file, format=kind, dpi=dots, metadata=metadata)
 
 
 def state_of_any(state: JointState) -> JointState:

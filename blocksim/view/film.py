@@ -10,20 +10,18 @@ from typing import BinaryIO, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.arch import limit
 from blocksim.arch.circular import GRAVITY, arch_of
 from blocksim.blocks.joints import JointState
-from blocksim.evidence.motion import MOVED, UNMOVED
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.drawing import (
     ARCH_WORDS,
     friction_words,
-    loading_words,
     round_length,
     words_of,
 )
+from blocksim.view.filmwords import against, fitting, verdict_words
 from blocksim.view.planar import PlanarView
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Moment, Stage
@@ -112,6 +110,7 @@ class Film:
         self.rate = rate
         self._words = [verdict_words(recording, verdict) for recording in recordings]
         self._enlarge = enlarge
+        self._flat = view == "2d"
         self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
         # An arch of which no radius was given is shown in units of it.
         self.metric = any(
@@ -146,12 +145,12 @@ class Film:
         return self._canvas.pixels()
 
     def still(self, file: BinaryIO, kind: str, at: float | None = None) -> None:
-        """Write one frame as png or svg.
+        """Write one frame as png, svg or pdf.
 
         Parameters
         ----------
         file : BinaryIO
-        kind : {"png", "svg"}
+        kind : {"png", "svg", "pdf"}
         at : float, optional
             Time since the release in the unit of the clock; by default the end.
         """
@@ -197,8 +196,9 @@ class Film:
             length = round_length(0.5 * radius)
             unit = "m" if self.metric else "r"
             bar, words = view.scale_bar(length / radius, f"{length:g} {unit}")
-            parts.append((panel, [*view.still, *bar]))
-            labels += words + self._title(stage, panel, verdict)
+            pull, name = self._gravity(stage, panel)
+            parts.append((panel, [*view.still, *bar, *pull]))
+            labels += [*words, *name, *self._title(stage, panel, verdict)]
         whole = Panel(0, 0, self.width, self.height)
         rules = [
             np.array([[panel.x, FOOT * self._size], [panel.x, self.height]])
@@ -208,12 +208,35 @@ class Film:
         legend, words = self._legend(states, thrust=thrust)
         return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
 
+    def _gravity(self, stage: Stage, panel: Panel) -> tuple[list[Shape], list[Label]]:
+        """Show where gravity pulls in the plane, in a corner, unless it is straight down."""
+        way = stage.recording.problem.gravity[:2]
+        if not self._flat or way[0] == 0:
+            return [], []
+        size, tone = self._size, colour(QUIET)
+        way = way / np.hypot(*way)
+        across = np.array([-way[1], way[0]])
+        middle = np.array(
+            [panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size]
+        )
+        tip = middle + 30 * size * way
+        back = tip - 13 * size * way
+        head = np.array([tip, back + 5.5 * size * across, back - 5.5 * size * across])
+        shaft = np.array([middle - 30 * size * way, back])
+        shapes = [
+            Shape(shaft, edge=tone, width=2.5 * size, closed=False),
+            Shape(head, fill=tone),
+        ]
+        under = float(middle[1]) - 52 * size
+        words = Label(float(middle[0]), under, "gravity", size=13 * size, across="center")
+        return shapes, [words._replace(colour=QUIET)]
+
     def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
         """Say what it is, outcome, loading and engine, above a panel."""
         size, problem = self._size, stage.recording.problem
         arch, blocks = arch_of(problem), len(stage.assembly.blocks)
         count = f"{blocks} block" if blocks == 1 else f"{blocks} blocks"
-        facts = [verdict, *_loading(stage)]
+        facts = [verdict, *against(stage.recording)]
         if arch:
             head = (
                 f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
@@ -228,8 +251,8 @@ class Film:
             f"{', '.join(facts)}   {stage.recording.engine} {stage.recording.engine_version}"
         )
         x, top, wide = panel.x + 24 * size, self.height, panel.width - 48 * size
-        head = _fitting(head, 20 * size, wide, bold=True)
-        below = _fitting(below, 15 * size, wide)
+        head = fitting(head, 20 * size, wide, bold=True)
+        below = fitting(below, 15 * size, wide)
         return [
             Label(x, top - 36 * size, head, size=20 * size, bold=True),
             Label(x, top - 61 * size, below, size=15 * size, colour=QUIET),
@@ -275,20 +298,6 @@ class Film:
         return shapes, labels
 
 
-def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
-    """Say whether it falls: as a check does, or by how far it has moved."""
-    if verdict is not None:
-        return verdict.value
-    moved = float(recording.displacement.max())
-    if moved > MOVED:
-        return Verdict.COLLAPSES.value
-    if moved <= UNMOVED:
-        return "at rest"
-    if arch_of(recording.problem) is None:
-        return f"has moved {moved * recording.assembly.size:.1g} m"
-    return f"has moved {moved:.1g} r"
-
-
 def _enlarged(recording: Recording, times: float) -> Recording:
     if times == 1:
         return recording
@@ -311,32 +320,3 @@ def _slowness(seconds: float) -> float:
 def _digits(seconds: float) -> int:
     """Decimals of the clock: thousandths of what is shown."""
     return max(1, min(6, math.ceil(2 - math.log10(max(seconds, 1e-9)))))
-
-
-def _fitting(words: str, size: float, wide: float, *, bold: bool = False) -> str:
-    """Cut words off where they would not fit into a width in pixels."""
-    kept = words
-    while len(kept) > 1 and (have := width_of(kept, size, bold=bold)) > wide:
-        # Measuring is slow: cut in proportion.
-        kept = kept[: min(len(kept) - 2, int(len(kept) * wide / have))].rstrip() + "…"
-    return kept
-
-
-def _loading(stage: Stage) -> list[str]:
-    """Say what it is up against: gravity that tilts or leans, loads; an arch its own weight."""
-    problem = stage.recording.problem
-    words = loading_words(problem)
-    arch = arch_of(problem)
-    if words or arch is None:
-        return words
-    least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
-    return ["no thickness stands" if least is None else _share(arch.eta / least)]
-
-
-def _share(ratio: float) -> str:
-    """Say how thick the arch is compared with the thinnest of these voussoirs that stands."""
-    if ratio >= 2:
-        return f"{ratio:.3g} times the least thickness as built"
-    off = abs(ratio - 1) * 100
-    shown = f"{off:.2g}" if off < 10 else f"{off:.0f}"
-    return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness as built"

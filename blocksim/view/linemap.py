@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 
 import matplotlib as mpl
 import numpy as np
@@ -13,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from blocksim.arch.theory import equations, landmarks, least_thicknesses, regions
+from blocksim.arch.theory import Curve, equations, landmarks, least_thicknesses, regions
 from blocksim.arch.theory.critical import rotational_thrust
 from blocksim.view.mapshapes import LARGEST_MU, iso_angles, iso_continued, iso_line
 from blocksim.view.style import FONT, INK, ISO
@@ -21,7 +22,7 @@ from blocksim.view.style import FONT, INK, ISO
 DASHED = (0, (5, 2))
 SPACE, BESIDE = 0.024, 0.07
 """Height of a label, as a share of the picture, and its distance from the frame [mu]."""
-LABELS = {"S": (6, -12), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
+LABELS = {"S": (-17, -14), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
 
 
 def line_map_figure(span: tuple[float, float] = (0.0, 2.0)) -> Figure:
@@ -130,9 +131,22 @@ def _ends(group: Sequence[float], space: float) -> tuple[float, float]:
     return middle - space * len(group) / 2, middle + space * len(group) / 2
 
 
+@cache
+def _between_regions() -> tuple[Curve, Curve, Curve]:
+    """Divide, equal angles and crown hinge, computed once."""
+    marks = landmarks()
+    starts = (marks[name].mu + 1e-6 for name in "SJ")
+    right_of_s, right_of_j = (np.linspace(start, LARGEST_MU, 120) for start in starts)
+    return (
+        regions.divide(np.linspace(0.02, marks["B"].mu, 200)),
+        regions.equal_angles(right_of_s),
+        regions.crown_hinge(right_of_j),
+    )
+
+
 def _dividing_lines(axes: Axes) -> None:
     marks = landmarks()
-    wide = regions.divide(np.linspace(0.02, marks["B"].mu, 200))
+    wide, equal, crown = _between_regions()
     axes.plot(wide.mu, wide.eta, color=INK, lw=2.0, label=r"$\mu=\mu_{ss}=\mu_{is}$")
     alpha = 2.645 * (1 - np.linspace(0.97, 0.0, 240) ** 2)
     thrust = np.array([rotational_thrust(float(a), "centreline") for a in alpha])
@@ -155,7 +169,5 @@ def _dividing_lines(axes: Axes) -> None:
         friction = np.asarray(values)
         axes.plot(friction[real], eta[real], color=INK, lw=1.5, ls=style, label=name)
         axes.plot(friction[~real], eta[~real], color=INK, lw=0.7, ls=DASHED)
-    equal = regions.equal_angles(np.linspace(marks["S"].mu + 1e-6, LARGEST_MU, 120))
-    crown = regions.crown_hinge(np.linspace(marks["J"].mu + 1e-6, LARGEST_MU, 120))
     axes.plot(equal.mu, equal.eta, color=INK, lw=1.2, ls=":", label=r"$\beta_r=\beta_s$")
     axes.plot(crown.mu, crown.eta, color=INK, lw=1.2, ls="-.", label=r"$\beta_r=0$")

@@ -1,13 +1,12 @@
 # matplotlib's own annotations leave keyword arguments open.
 # pyright: reportUnknownMemberType=false
-"""The mode map: thickness-to-radius ratio against friction (Figs 6-11)."""
+"""The mode map with arches on it: marks, labels that hide nothing, legend (Figs 9-11)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, BinaryIO, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -15,81 +14,27 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
 
 from blocksim.arch import theory
 from blocksim.arch.modes import Mode
+from blocksim.blocks.assembly import Array
+from blocksim.view.mapregions import (
+    CENTRAL,
+    LETTERS,
+    NEAR,
+    STRIP,
+    WHOLE,
+    Section,
+    draw_regions,
+    draw_unbounded,
+)
 from blocksim.view.mapshapes import LARGEST_MU, map_shapes
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
-
-class Section(NamedTuple):
-    """A part of the map to draw.
-
-    Parameters
-    ----------
-    mu, eta : (float, float)
-        Friction and thickness shown.
-    names : dict of Mode to (float, float)
-        Where each mode is named.
-    thin : two of (float, float), optional
-        Where a line to the thin region rsr ends, and where it is named.
-    """
-
-    mu: tuple[float, float]
-    eta: tuple[float, float]
-    names: dict[Mode, tuple[float, float]]
-    thin: tuple[tuple[float, float], tuple[float, float]] | None = None
-
-    def shows(self, mu: float, eta: float) -> bool:
-        """Tell whether a point is in it."""
-        return self.mu[0] <= mu <= self.mu[1] and self.eta[0] <= eta <= self.eta[1]
-
-
-WHOLE = Section(
-    (0.0, LARGEST_MU),
-    (0.0, 2.0),
-    {
-        Mode.RRR: (2.3, 0.35),
-        Mode.SS: (0.75, 1.35),
-        Mode.SRR: (0.72, 0.355),
-        Mode.RRS: (2.45, 0.885),
-        Mode.RS: (3.4, 1.6),
-    },
-    ((3.4, 0.987), (3.4, 1.16)),
-)
-CENTRAL = Section(
-    (1.2, 2.4),
-    (0.6, 1.2),
-    {
-        Mode.RRR: (2.0, 0.66),
-        Mode.SS: (1.45, 1.0),
-        Mode.SRR: (1.235, 0.618),
-        Mode.RRS: (2.1, 0.87),
-        Mode.RS: (2.15, 1.1),
-    },
-    ((2.2, 0.972), (2.24, 1.02)),
-)
-"""Where most regions meet (Fig. 11)."""
-NEAR = Section(
-    (1.70, 1.90),
-    (0.92, 1.02),
-    {
-        Mode.SS: (1.735, 0.99),
-        Mode.RRS: (1.865, 0.935),
-        Mode.RS: (1.865, 1.0),
-        Mode.RSR: (1.868, 0.9625),
-    },
-)
-"""What is enlarged where arches crowd: the points S and J, and the thin region rsr."""
-INSET = (0.045, 0.535, 0.31, 0.39)
+INSET = (0.08, 0.535, 0.27, 0.39)
 """Where the enlarged part is, in shares of the map: where only ss is."""
 BESIDE_INSET = (0.5, 0.82)
 """Where ss is named then."""
-STRIP = (4.12, 4.30)
-"""Where unbounded friction is drawn, beyond the largest that is drawn to scale."""
-LETTERS = {"T": (-13, 4), "S": (-19, -12), "J": (-17, 6), "B": (13, -9)}
-"""Where the letter of each landmark begins, in points from it."""
 POINTS_ACROSS, POINTS_UP = 440.0, 400.0
 """Size of the map beside a legend in typographic points, about."""
 NONE = ": no thickness stands"
@@ -164,7 +109,7 @@ def map_figure(
             title or "Least thickness and collapse modes of circular arches", pad=pad
         )
         if any(math.isinf(point.mu) for point in points):
-            _draw_unbounded(axes)
+            draw_unbounded(axes)
         if points:
             _draw_points(axes, section, points, unnamed=crowded)
             _legend(figure, points)
@@ -172,83 +117,11 @@ def map_figure(
             near = axes.inset_axes(INSET)
             draw_regions(near, NEAR)
             near.set(xlabel="", ylabel="", xticks=[1.7, 1.8, 1.9], yticks=[0.92, 0.97, 1.02])
-            near.tick_params(labelsize=7.5)
+            near.tick_params(labelsize=8)
             near.spines[:].set_visible(True)
             _draw_points(near, NEAR, crowded)
             axes.indicate_inset_zoom(near, edgecolor=INK, alpha=0.6)
     return figure
-
-
-def draw_regions(axes: Axes, section: Section = WHOLE) -> None:
-    """Fill the regions of the six modes at finite friction, and name them (Figs 9-11)."""
-    shapes = map_shapes()
-    for part in shapes.regions:
-        tint = MODES[part.mode].tint
-        axes.fill_between(part.mu, part.bottom, part.top, color=tint, lw=0)
-    lines = (
-        (shapes.divide, "-"),
-        (shapes.first, "-"),
-        (shapes.equal, ":"),
-        (shapes.crown, "--"),
-    )
-    for curve, style in lines:
-        axes.plot(curve.mu, curve.eta, style, color=INK, lw=1.1)
-    _name_regions(axes, section)
-    for mark in shapes.landmarks.values():
-        if not section.shows(mark.mu, mark.eta):
-            continue
-        axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4, clip_on=False)
-        axes.annotate(
-            mark.name,
-            (mark.mu, mark.eta),
-            xytext=LETTERS[mark.name],
-            textcoords="offset points",
-            fontweight="bold",
-            annotation_clip=False,
-        )
-    axes.set(xlim=section.mu, ylim=section.eta)
-    axes.set_xlabel(r"friction coefficient $\mu$")
-    axes.set_ylabel(r"thickness-to-radius ratio $\eta = t/r$")
-
-
-def _draw_unbounded(axes: Axes) -> None:
-    """Draw the far end of the map, unbounded friction, as a strip beyond a gap."""
-    for mode, (low, high) in ((Mode.RRR, (0.0, 1.0)), (Mode.R, (1.0, 2.0))):
-        axes.fill_between(STRIP, low, high, color=MODES[mode].tint, lw=0)
-    axes.plot(STRIP, (1.0, 1.0), color=INK, lw=1.1)
-    middle = sum(STRIP) / 2
-    axes.text(middle, 1.5, Mode.R.value, color=MODES[Mode.R].colour, fontweight="bold",
-              fontsize=13, ha="center", va="center")  # fmt: skip
-    axes.set_xlim(0.0, STRIP[1])
-    ticks = np.arange(0.0, LARGEST_MU + 0.1, 0.5).tolist()
-    axes.set_xticks([*ticks, middle], [*(f"{tick:g}" for tick in ticks), "∞"])
-    gap = ((LARGEST_MU + 0.005, -0.03), STRIP[0] - LARGEST_MU - 0.01, 0.06)
-    axes.add_patch(Rectangle(*gap, fc="white", ec="none", clip_on=False, zorder=3))
-
-
-def _name_regions(axes: Axes, section: Section) -> None:
-    """Write each mode into its region; the thin one gets a line to its name."""
-    for mode, (x, y) in section.names.items():
-        size = 10 if mode in {Mode.SRR, Mode.RSR} else 13
-        style: dict[str, Any] = {
-            "color": MODES[mode].colour,
-            "fontweight": "bold",
-            "fontsize": size,
-        }
-        axes.text(x, y, mode.value, ha="center", va="center", **style)
-    if section.thin is None:
-        return
-    target, words = section.thin
-    axes.annotate(
-        Mode.RSR.value,
-        target,
-        xytext=words,
-        ha="center",
-        color=MODES[Mode.RSR].colour,
-        fontweight="bold",
-        fontsize=11,
-        arrowprops={"arrowstyle": "-", "color": MODES[Mode.RSR].colour, "lw": 1.2},
-    )
 
 
 def _place(point: MapPoint) -> tuple[float, float]:
@@ -275,6 +148,7 @@ def _draw_points(
     for name, mark in theory.landmarks().items():
         x, y = LETTERS[name]
         taken.append((mark.mu + (x + 4) * grain[0], mark.eta + (y + 4) * grain[1]))
+    lines = _lines(section)
     for point in points:
         style = MODES[point.mode] if point.mode else UNNAMED
         edge = style.colour if point.outline else "white"
@@ -301,7 +175,7 @@ def _draw_points(
                           arrowprops={"arrowstyle": "<|-", "color": style.colour})  # fmt: skip
         if point.outline or point in unnamed:
             continue
-        away = _free_place((x, y), marks, taken, grain, low)
+        away = _free_place((x, y), len(point.label), marks, taken, lines / grain, grain, low)
         taken.append((x + away[0] * grain[0], y + away[1] * grain[1]))
         axes.annotate(
             point.label,
@@ -310,28 +184,47 @@ def _draw_points(
             textcoords="offset points",
             ha="center",
             va="center",
-            fontsize=8,
+            fontsize=8.5,
             zorder=6,
             annotation_clip=False,
             url=point.link or None,
         )
 
 
+def _lines(section: Section) -> Array:
+    """Points on the lines of the map, as dense as its page has them, (k, 2)."""
+    shapes = map_shapes()
+    found: list[Array] = []
+    for curve in (shapes.divide, shapes.first, shapes.equal, shapes.crown):
+        first = max(section.mu[0], float(curve.mu.min()))
+        mu = np.linspace(first, min(section.mu[1], float(curve.mu.max())), 400)
+        order = np.argsort(curve.mu)
+        found.append(np.column_stack([mu, np.interp(mu, curve.mu[order], curve.eta[order])]))
+    return np.concatenate(found)
+
+
 def _free_place(
     start: tuple[float, float],
+    letters: int,
     marks: Sequence[tuple[float, float]],
     taken: Sequence[tuple[float, float]],
+    lines: Array,
     grain: tuple[float, float],
     low: float,
 ) -> tuple[float, float]:
-    """Choose where beside a mark its label is over no other words, and nearest to it.
+    """Choose where beside a mark its label is over no other words or line, and nearest to it.
 
-    Everything is on the map, but for the place, which is in points from the mark; `grain` is
-    what a point covers, `low` the axis below, which a label keeps off.
+    Everything is on the map, but for the place, which is in points from the mark, and the
+    lines, which are in points; `grain` is what a point covers, `low` the axis below, which a
+    label keeps off.
     """
     here = np.array(start)
     others = [np.array(mark) for mark in marks if mark != start]
-    for distance in (15.0, 18.0, 22.0, 28.0, 37.0):
+    # Half of the label and a hair; where none fits between the lines, it lies on one.
+    box = 2.8 * letters + 1.5, 4.5
+    tries = [(distance, lines) for distance in (15.0, 18.0, 22.0, 28.0, 37.0)]
+    tries += [(distance, lines[:0]) for distance, _ in tries]
+    for distance, near in tries:
         for turn in (0, 1, 15, 2, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8):
             angle = turn * math.pi / 8
             place = distance * np.array([math.cos(angle), math.sin(angle)])
@@ -339,7 +232,9 @@ def _free_place(
             written = [np.abs((here - words) / grain + place) for words in taken]
             above = (start[1] - low) / grain[1] + place[1]
             free = all(across > 13 or up > 10 for across, up in written)
-            if above > 7 and free and all(math.hypot(*way) > 1.15 * distance for way in marked):
+            crossed = (np.abs(here / grain + place - near) < box).all(axis=1).any()
+            own = all(math.hypot(*way) > 1.15 * distance for way in marked)
+            if above > 7 and free and own and not crossed:
                 return float(place[0]), float(place[1])
     return 15.0, 0.0
 
@@ -372,18 +267,10 @@ def _legend(figure: Figure, points: Sequence[MapPoint]) -> None:
         handles=handles,
         loc="outside right upper",
         frameon=False,
-        fontsize=8,
+        fontsize=8.5,
         title="Mode observed; each mark is halfway between the\n"
         "largest thickness that fell and the smallest that stood",
-        title_fontsize=8,
+        title_fontsize=8.5,
         alignment="left",
         handletextpad=0.4,
     )
-
-
-def save_figure(figure: Figure, file: BinaryIO, kind: str) -> None:
-    """Write a figure as png, svg or pdf, without the date, so that equal ones are equal."""
-    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-    with mpl.rc_context(FONT):
-        metadata = undated.get(kind, {"Software": "blocksim"})
-        figure.savefig(file, format=kind, dpi=150, metadata=metadata)

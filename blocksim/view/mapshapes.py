@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.optimize import brentq
@@ -65,8 +66,9 @@ class MapShapes:
     landmarks: dict[str, Landmark]
 
 
+@cache
 def map_shapes(weight: Weight = "centreline") -> MapShapes:
-    """Sample the map's regions and lines from their equations."""
+    """Sample the map's regions and lines from their equations, once."""
     marks = theory.landmarks(weight)
     corners = [marks[name].mu for name in "TSJ"]
     mu = np.sort([*np.linspace(SMALLEST_MU, LARGEST_MU, 4 * POINTS), *corners])
@@ -109,6 +111,7 @@ def map_shapes(weight: Weight = "centreline") -> MapShapes:
     )
 
 
+@cache
 def iso_angles(weight: Weight = "centreline") -> tuple[float, ...]:
     """Half-angles of which the map has lines: round ones and special ones, in order [rad].
 
@@ -127,6 +130,7 @@ def iso_angles(weight: Weight = "centreline") -> tuple[float, ...]:
     return tuple(sorted(found))
 
 
+@cache
 def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
     """Line of equal half-angle, with its upright part on the divide.
 
@@ -155,6 +159,7 @@ def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
     )
 
 
+@cache
 def iso_continued(half_angle: float, weight: Weight = "centreline") -> Curve:
     """Continue a line of equal half-angle to where its equations rule no more.
 

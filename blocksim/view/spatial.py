@@ -22,7 +22,8 @@ from blocksim.view.canvas import (
 )
 from blocksim.view.drawing import Part, along_side, words_of
 from blocksim.view.order import painting_order
-from blocksim.view.stage import Moment, Stage, padded
+from blocksim.view.placing import padded
+from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import GROUND, INK, PAPER, THRUST
 
 ASIDE, ABOVE = math.radians(-32.0), math.radians(14.0)

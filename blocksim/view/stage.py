@@ -9,18 +9,18 @@ ends when a block sinks into the floor, a support, or a pier it does not rest on
 from __future__ import annotations
 
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from blocksim.arch.circular import arch_of
-from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array, Joint
+from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.recording import Recording
 from blocksim.view.archfigure import lines_of, picture_of_arch
 from blocksim.view.drawing import Part, clipped, outer_parts
+from blocksim.view.placing import Placing
 
 FEWEST = 4
 """Sides of a footing, and of a block at least."""
@@ -30,6 +30,8 @@ SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
 FARTHEST = 1.0
 """Blocks are followed up to this far beyond where they were at rest [r]."""
+ALONG = 2.25
+"""The same to the sides on supports that are known, which are shown as far [size]."""
 BESIDE, ABOVE = 0.25, 0.1
 """How far beyond the blocks supports are shown, sidewards and upwards [r]."""
 SAMPLES = 500
@@ -94,25 +96,15 @@ class Stage:
         size = self.assembly.size
         self.depth = float(self.assembly.depths.max())
         self.is_arch = arch_of(recording.problem) is not None
-        pieces = [
-            (index, (part - block.centre) / size)
-            for index, block in enumerate(self.assembly.blocks)
-            for part in block.polygons
-        ]
-        self.owner = np.array([index for index, _ in pieces])
         rest = np.concatenate([block.vertices for block in self.assembly.blocks]) / size
         self._low, self._high = rest.min(axis=0), rest.max(axis=0)
         self.middle = 0.0 if self.is_arch else float(self._low[0] + self._high[0]) / 2
         self.ground = ground_level(self.assembly) / size
         self.footings, self._bearing = self._standing()
-        self.sides = max(
-            FEWEST, *(len(each) for _, each in pieces), *(len(each) for each in self.footings)
-        )
-        # What has fewer corners repeats its last one, so that all pieces are one array.
-        self._outlines = np.array([padded(each, self.sides) for _, each in pieces])
-        self._half = self.assembly.depths[self.owner] / 2
+        corners = max(FEWEST, *(len(each) for each in self.footings))
+        self._placing = Placing(recording, corners)
+        self.owner, self.sides = self._placing.owner, self._placing.sides
         self.grain = self._grain()
-        self._turns = _quaternions(recording)
 
     def _standing(self) -> tuple[tuple[Array, ...], list[int]]:
         """Footings, and for each the block that has nothing to reach in it, or `SUPPORT`."""
@@ -123,8 +115,8 @@ class Stage:
         # Of a wide or a high support, or one deep in the ground, a part is enough.
         poses, reach = self.recording.poses, assembly.reach / size
         gone = (poses[..., 0] - reach).min(), (poses[..., 0] + reach).max()
-        left = max(float(gone[0]), self._low[0] - FARTHEST) - BESIDE
-        right = min(float(gone[1]), self._high[0] + FARTHEST) + BESIDE
+        left = max(float(gone[0]), self._low[0] - ALONG) - BESIDE
+        right = min(float(gone[1]), self._high[0] + ALONG) + BESIDE
         low, high = np.array([left, self.ground]), np.array([right, self._high[1] + ABOVE])
         parts = [
             clipped(part / size, low, high)
@@ -149,7 +141,7 @@ class Stage:
         times = self.recording.times
         depths: list[float] = []
         for frame in range(len(times) if self.moves else 0):
-            depths.append(self._sunk(self._corners(frame, frame, 0.0)[..., :2]))
+            depths.append(self._sunk(self._placing.corners(frame, frame, 0.0)[..., :2]))
             # Where footings are so near that they meet blocks at rest, that is no end.
             touch = SUNK + max(0.0, depths[0])
             if depths[-1] > touch:
@@ -199,17 +191,22 @@ class Stage:
     def swept(self) -> Array:
         """Every corner at every frame that is shown, and of the footings, (k, 3).
 
-        Blocks are followed up to `FARTHEST` beyond where they were at rest.
+        Blocks are followed up to `FARTHEST` or `ALONG` beyond where they were at rest.
         """
         footings = np.concatenate(self.footings)
         footings = np.append(footings, [[self.middle, self.ground]], axis=0)
         half = self.depth / 2
         solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
-        rest = np.concatenate([self._corners(0, 0, 0.0).reshape(-1, 3), *solid])
-        moved = np.concatenate([self._corners(i, i, 0.0) for i in self._shown]).reshape(-1, 3)
+        rest = np.concatenate([self._placing.corners(0, 0, 0.0).reshape(-1, 3), *solid])
+        moved = np.concatenate([self._placing.corners(i, i, 0.0) for i in self._shown]).reshape(
+            -1, 3
+        )
         low, high = rest.min(axis=0), rest.max(axis=0)
+        aside = ALONG if self.assembly.supports else FARTHEST
         bounded = np.clip(
-            moved, [*(low[:1] - FARTHEST), low[1], low[2] - FARTHEST], high + FARTHEST
+            moved,
+            [self._low[0] - aside, low[1], low[2] - FARTHEST],
+            [self._high[0] + aside, *(high[1:] + FARTHEST)],
         )
         return np.concatenate([rest, bounded])
 
@@ -250,8 +247,8 @@ class Stage:
         moved = float(np.interp(time, times, self._displaced))
         return Moment(
             time=time,
-            corners=self._corners(earlier, later, share),
-            faces=self._faces(earlier, later, share),
+            corners=self._placing.corners(earlier, later, share),
+            faces=self._placing.faces(earlier, later, share),
             joints=self._joints(one + (two - one) * share, time),
             statics=float(np.interp(moved, (STILL, GONE), (1.0, 0.0))),
         )
@@ -262,7 +259,7 @@ class Stage:
             return None
         pieces = np.flatnonzero(self.owner == block)
         size = self.assembly.size
-        corners = self._outlines[pieces] + self.assembly.centres[block] / size
+        corners = self._placing.outlines[pieces] + self.assembly.centres[block] / size
         along = np.roll(corners, -1, axis=1) - corners
         square = (along**2).sum(axis=-1)
         ends = np.array([joint.inner, joint.outer]) / size
@@ -318,47 +315,12 @@ class Stage:
             held = np.zeros(blocks + 1, dtype=bool)
             for side in (before, after):
                 held[side[parted > time]] = True
-            bottoms = self._corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
+            bottoms = self._placing.corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
             lowest = np.full(blocks, np.inf)
             np.minimum.at(lowest, self.owner, bottoms)
             loose = ~held[:blocks] | (lowest < self.ground + SUNK)
             rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
         return parted, np.minimum(rubble[before], rubble[after])
-
-    def _corners(self, earlier: int, later: int, share: float) -> Array:
-        """Corners in space between two frames."""
-        centres, turns = self._placed(earlier, later, share)
-        half = np.broadcast_to(self._half[:, None, None], (*self._outlines.shape[:2], 1))
-        near = np.concatenate([self._outlines, half], axis=-1)
-        local = np.stack([near, near * [1, 1, -1]], axis=1)
-        owner = self.owner
-        return centres[owner][:, None, None] + _turned(turns[owner][:, None, None], local)
-
-    def _faces(self, earlier: int, later: int, share: float) -> Array:
-        """Return the ends of joints in space, as the blocks on both sides carry them."""
-        before, after, ends, *_ = self.assembly.joint_arrays
-        centres, turns = self._placed(earlier, later, share)
-        # The support comes last, as index -1 says: it stays.
-        rest = np.vstack([self.assembly.centres / self.assembly.size, np.zeros(2)])
-        centres = np.vstack([centres, np.zeros(3)])
-        turns = np.vstack([turns, [1.0, 0.0, 0.0, 0.0]])
-        sides = np.stack([before, after], axis=1)
-        local = np.zeros((*sides.shape, 2, 3))
-        local[..., :2] = ends[:, None] - rest[sides][:, :, None]
-        return centres[sides][:, :, None] + _turned(turns[sides][:, :, None], local)
-
-    def _placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:
-        """Centres and rotations of the blocks between two frames."""
-        centres = _centres(self.recording, earlier) * (1 - share)
-        centres += _centres(self.recording, later) * share
-        turns = self._turns[earlier] * (1 - share) + self._turns[later] * share
-        turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
-        return centres, turns
-
-
-def padded(outline: Array, sides: int) -> Array:
-    """Repeat the last corner of an outline until it has as many as asked for."""
-    return np.pad(outline, ((0, sides - len(outline)), (0, 0)), "edge")
 
 
 def _depth(points: Array, outline: Array) -> Array:
@@ -377,36 +339,3 @@ def _depth(points: Array, outline: Array) -> Array:
     # A corner given twice makes a side without length, which bounds nothing.
     bounds = length > 0
     return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)
-
-
-def _centres(recording: Recording, frame: int) -> Array:
-    """Centres of the blocks in space, (blocks, 3)."""
-    poses = recording.poses[frame]
-    centres = np.zeros((len(poses), 3))
-    centres[:, :2] = poses[:, :2]
-    if poses.shape[1] == SPATIAL:
-        centres[:, 2] = poses[:, 3]
-    return centres
-
-
-def _quaternions(recording: Recording) -> Array:
-    """Rotations as unit quaternions w, x, y, z that go on smoothly, (frames, blocks, 4)."""
-    poses = recording.poses
-    vectors = np.zeros((*poses.shape[:2], 3))
-    vectors[..., 2] = poses[..., 2]
-    if poses.shape[2] == SPATIAL:
-        vectors[..., :2] = poses[..., 4:]
-    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    # sin(angle/2)/angle, 1/2 where nothing turns.
-    turns = np.concatenate([np.cos(angle / 2), vectors * np.sinc(angle / (2 * np.pi)) / 2], -1)
-    for earlier, later in pairwise(turns):
-        # q and -q are one rotation: take the one nearer to the frame before.
-        later[(earlier * later).sum(axis=-1) < 0] *= -1
-    return turns
-
-
-def _turned(turns: Array, points: Array) -> Array:
-    """Rotate points by unit quaternions."""
-    axis = turns[..., 1:]
-    across = 2 * np.cross(axis, points)
-    return points + turns[..., :1] * across + np.cross(axis, across)

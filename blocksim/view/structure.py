@@ -14,13 +14,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.patches import FancyArrowPatch, PathPatch
+from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import Load, Problem
+from blocksim.blocks.problem import Problem
+from blocksim.view.arrows import draw_forces, draw_gravity, draw_loads
 from blocksim.view.drawing import (
     HINGES,
     carried,
@@ -32,24 +33,21 @@ from blocksim.view.drawing import (
     words_of,
 )
 from blocksim.view.style import (
-    DEAD,
     FONT,
     GROUND,
     INK,
-    LIVE,
     MECHANISM,
     PAPER,
     QUIET,
     STONE,
-    THRUST,
 )
 
-MOVED, LONGEST, AROUND = 0.08, 0.16, 0.06
-"""Shares of the larger side of what is drawn: the largest displacement, the largest force,
-and how much of a support is shown beyond the blocks."""
+MOVED, AROUND = 0.08, 0.06
+"""Shares of the larger side of what is drawn: the largest displacement, and how much of a
+support is shown beyond the blocks."""
 MARGIN = 0.03
 FAINT = 1e-6
-"""Share of the largest force or rate below which there is none."""
+"""Share of the largest rate below which there is none."""
 WIDE, TALL = 7.6, (1.6, 8.0)
 """Size of the axes [inches]: their width, and range of their height."""
 SIDE_OF_TEXT = 2.2
@@ -57,8 +55,6 @@ SIDE_OF_TEXT = 2.2
 HATCH = "////"
 LINE = 72
 """Letters in a line of a title."""
-FEW = 8
-"""Loads from which on their arrows are kept short."""
 
 
 def problem_figure(
@@ -111,9 +107,9 @@ def problem_figure(
         if states is not None:
             _draw_states(axes, problem, states)
         if forces is not None:
-            shown += _draw_forces(axes, problem, forces, extent)
-        shown += _draw_loads(axes, problem, extent)
-        shown += _draw_gravity(axes, problem, np.concatenate(shown))
+            shown += draw_forces(axes, problem, forces, extent)
+        shown += draw_loads(axes, problem, extent)
+        shown += draw_gravity(axes, problem, np.concatenate(shown))
         _frame(figure, axes, np.concatenate(shown))
         _title(axes, problem, verdict)
         handles, names = axes.get_legend_handles_labels()
@@ -248,109 +244,6 @@ def _draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> 
                       zorder=7, gid=f"hinge-{index}")  # fmt: skip
 
 
-def _draw_forces(axes: Axes, problem: Problem, forces: Array, extent: float) -> list[Array]:
-    """Draw the resultant of each joint through the point where it acts.
-
-    Between blocks it is a bar, because it acts both ways; from a support an arrow.
-    """
-    joints = problem.assembly.joint_arrays
-    pressure, shear = np.asarray(forces).sum(axis=1).T
-    resultants = pressure[:, None] * joints.normal + shear[:, None] * joints.tangent
-    size = np.hypot(*resultants.T)
-    largest = float(size.max(initial=0.0))
-    if largest == 0:
-        return []
-    scale = LONGEST * extent / largest
-    name = f"contact force, largest {force_words(largest * problem.unit_force)}"
-    shown: list[Array] = []
-    for index, joint in enumerate(problem.assembly.joints):
-        if size[index] <= FAINT * largest:
-            continue
-        ends = np.array([joint.inner, joint.outer])
-        share = forces[index][:, 0] / pressure[index] if pressure[index] > 0 else [0.5, 0.5]
-        place = np.asarray(share) @ ends
-        way = scale * resultants[index]
-        if SUPPORT in (joint.before, joint.after):
-            way = -way if joint.after == SUPPORT else way
-            line = np.array([place - way, place])
-            _arrow(axes, line, THRUST, f"force-{index}", name, zorder=8)
-        else:
-            line = np.array([place - way / 2, place + way / 2])
-            axes.plot(*line.T, color=THRUST, lw=1.7, zorder=8, gid=f"force-{index}",
-                      solid_capstyle="round", label=name)  # fmt: skip
-        axes.plot(*place, "o", ms=2.6, color=THRUST, zorder=8, gid=f"centre-{index}")
-        shown.append(line)
-    return shown
-
-
-def _draw_loads(axes: Axes, problem: Problem, extent: float) -> list[Array]:
-    """Draw loads besides gravity as arrows that end where they act.
-
-    Live ones as they are at the load factor, and where that is 0, at 1.
-    """
-    factor = problem.load or 1.0
-    drawn = [
-        (kind, place, times * force)
-        for kind, loads, times in (("dead", problem.dead, 1.0), ("live", problem.live, factor))
-        for load in loads
-        for place, force in _forces(problem, load)
-    ]
-    sizes = [float(np.hypot(*force)) for _, _, force in drawn]
-    largest = max(sizes, default=0.0)
-    if largest == 0:
-        return []
-    # Arrows at the centres of many small blocks are no longer than those.
-    room = LONGEST * extent
-    if len(drawn) > FEW:
-        room = min(room, float(np.median(problem.assembly.reach)))
-    scale = room / largest
-    at = f"at load factor {factor:.4g}, " if problem.load else "at factor 1, "
-    shown: list[Array] = []
-    for index, (kind, place, force) in enumerate(drawn):
-        if sizes[index] <= FAINT * largest:
-            continue
-        most = max(size for size, (name, *_) in zip(sizes, drawn, strict=True) if name == kind)
-        tone, words = (DEAD, "dead load, ") if kind == "dead" else (LIVE, f"live load {at}")
-        line = np.array([place - scale * force, place])
-        name = f"{words}largest {force_words(most)}"
-        _arrow(axes, line, tone, f"{kind}-{index}", name, zorder=9)
-        shown.append(line)
-    return shown
-
-
-def _forces(problem: Problem, load: Load) -> list[tuple[Array, Array]]:
-    """Points [m] and forces [N] of a load, one for each of its blocks."""
-    assembly = problem.assembly
-    weights = assembly.masses[:, 0] * problem.unit_force
-    return [
-        (
-            assembly.centres[block] if load.point is None else load.point,
-            load.force * weights[block] if load.per_weight else load.force,
-        )
-        for block in load.blocks
-    ]
-
-
-def force_words(newtons: float) -> str:
-    """Force with a unit that keeps it short."""
-    for least, unit in ((1e6, "MN"), (1e3, "kN")):
-        if newtons >= least:
-            return f"{newtons / least:.3g} {unit}"
-    return f"{newtons:.3g} N"
-
-
-def _arrow(
-    axes: Axes, line: Array, tone: str, gid: str, label: str | None, *, zorder: float
-) -> None:
-    start, end = line.tolist()
-    axes.add_patch(
-        FancyArrowPatch(start, end, arrowstyle="-|>", mutation_scale=8, lw=1.4, color=tone,
-                        shrinkA=0, shrinkB=0, zorder=zorder, gid=gid)
-    )  # fmt: skip
-    # A legend has no arrows: a line of the same colour stands for it.
-    axes.plot([], [], color=tone, lw=1.7, label=label)
-
-
 def _frame(figure: Figure, axes: Axes, shown: Array) -> None:
     """Frame what is drawn, with a scale bar below it."""
     low, high = shown.min(axis=0), shown.max(axis=0)
@@ -372,20 +265,6 @@ def _frame(figure: Figure, axes: Axes, shown: Array) -> None:
                   textcoords="offset points", annotation_clip=False)  # fmt: skip
     axes.set_xlim(left, right)
     axes.set_ylim(level - 0.25 * inch, top)
-
-
-def _draw_gravity(axes: Axes, problem: Problem, shown: Array) -> list[Array]:
-    """Show where gravity pulls beside the structure, unless it is straight down."""
-    pull = problem.gravity[:2]
-    size = float(np.hypot(*pull))
-    if size == 0 or (pull[0] == 0 and pull[1] < 0):
-        return []
-    low, high = shown.min(axis=0), shown.max(axis=0)
-    way = MOVED * float((high - low).max()) * pull / size
-    start = np.array([low[0] - abs(way[0]) - 0.5 * np.hypot(*way), high[1] - max(0.0, way[1])])
-    line = np.array([start, start + way])
-    _arrow(axes, line, QUIET, "gravity", "gravity", zorder=9)
-    return [line]
 
 
 def _title(axes: Axes, problem: Problem, verdict: str) -> None:

@@ -1,6 +1,6 @@
 # PyAV's annotations leave keyword arguments and types of packets open.
 # pyright: reportUnknownMemberType=false
-"""Films to files: mp4 by PyAV, gif by Pillow, single frames as png and svg."""
+"""Films to files: mp4 by PyAV, gif by Pillow, single frames as png, svg and pdf."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from blocksim.view.style import GROUND, INK, JOINTS, PAPER, QUIET, THRUST
 
 RATES = {"mp4": 30, "gif": 20}
 """Frames in a second; a gif counts in hundredths."""
-STILLS = ("png", "svg")
+STILLS = ("png", "svg", "pdf")
 KINDS = (*RATES, *STILLS)
 QUALITY = "19"
 """Constant rate factor of x264: lines stay crisp."""
@@ -52,7 +52,7 @@ def render(
     recordings : sequence of Recording
         One, or two to show side by side.
     out : Path
-        Ending in .mp4 or .gif for a film, .png or .svg for one frame of it.
+        Ending in .mp4 or .gif for a film, .png, .svg or .pdf for one frame of it.
     view : {"2d", "3d"}
     slow : float, optional
         How many times slower than it happened.

@@ -34,6 +34,15 @@ def settle(page: playwright.Page) -> None:
     )
 
 
+def wait_until(page: playwright.Page, true: Callable[[], bool]) -> None:
+    """Playwright's own waiting evaluates text in the page, which the page forbids."""
+    for _ in range(200):
+        if true():
+            return
+        page.wait_for_timeout(50)
+    pytest.fail("waited for nothing")
+
+
 def set_arch(page: playwright.Page, **values: float) -> None:
     for name, value in values.items():
         page.fill(f"#{name}-number", str(value))
@@ -147,7 +156,7 @@ def test_the_mechanism_moves_until_paused(page: playwright.Page) -> None:
     poses = """() => [...document.querySelectorAll("#arch .stone")].map(
       (stone) => stone.parentNode.getAttribute("transform")).join()"""
     first = page.evaluate(poses)
-    page.wait_for_function(f"(first) => ({poses})() !== first", arg=first)
+    wait_until(page, lambda: page.evaluate(poses) != first)
     page.click("#play")
     assert text(page, "#play") == "Play"
     paused = page.evaluate(poses)
@@ -232,7 +241,7 @@ def test_a_finger_on_the_map_moves_the_point_and_beside_it_scrolls(open_page: Op
     held = page.input_value("#eta-number")
     box = page.locator("#map").bounding_box()
     swipe((box["x"] + 5, box["y"] + 300), (box["x"] + 5, box["y"] + 60))
-    page.wait_for_function("scrollY > 50")
+    wait_until(page, lambda: page.evaluate("scrollY") > 50)
     assert page.input_value("#eta-number") == held
 
 
@@ -319,6 +328,39 @@ def test_a_result_of_the_table_comes_into_view(open_page: Open) -> None:
     assert 0 <= box["y"] < 500 - box["height"]
 
 
+BOXES = """(selector) => [...document.querySelectorAll(selector)].map((element) => {
+  const box = element.getBoundingClientRect();
+  return [element.textContent, box.left, box.top, box.right, box.bottom]; })"""
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844), (844, 390)])
+def test_words_on_the_map_are_whole_and_apart(open_page: Open, size: tuple[int, int]) -> None:
+    page = open_page(*size, reduced_motion="reduce")
+    _, *whole = page.evaluate(BOXES, "#map")[0]
+    words = page.evaluate(BOXES, "#map text")
+    assert "149.156°" in [text for text, *_ in words]
+    for text, left, top, right, bottom in words:
+        assert whole[0] <= left < right <= whole[2], text
+        assert whole[1] <= top < bottom <= whole[3], text
+    names = page.evaluate(BOXES, "#map .region-label")
+    assert {text for text, *_ in names} == set(Mode)
+    others = page.evaluate(BOXES, "#map .landmark-label, #map .marker")
+    for index, (text, left, top, right, bottom) in enumerate(names):
+        # A line of words is higher than its letters, which are a few pixels inside.
+        for other, *box in names[index + 1 :] + others:
+            apart = box[0] > right or box[2] < left or box[1] + 4 > bottom or box[3] - 4 < top
+            assert apart, (text, other)
+
+
+@pytest.mark.parametrize(("width", "told"), [(390, True), (1280, False)])
+def test_a_table_wider_than_the_window_says_so(open_page: Open, width: int, told: bool) -> None:
+    page = open_page(width, 800, reduced_motion="reduce")
+    wide = page.locator(".scroll").evaluate("e => e.scrollWidth > e.clientWidth")
+    assert wide is told
+    playwright.expect(page.locator("#sideways")).to_be_visible(visible=told)
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
 def test_more_friction_than_the_map_has_is_marked(page: playwright.Page) -> None:
     page.mouse.move(*place(page, 4.0, 0.85))
     assert text(page, "#tip").endswith("beyond the map, at μ = 10")
@@ -330,7 +372,7 @@ def test_the_point_is_in_the_address(page: playwright.Page, open_page: Open) -> 
     page.select_option("#weight", "sector")
     page.fill("#voussoirs", "30")
     page.select_option("#view", "middle")
-    page.wait_for_function("location.hash.includes('middle')")
+    wait_until(page, lambda: "middle" in page.url)
     told = page.inner_text(".arch-pane")
     address = page.url
     page.reload()

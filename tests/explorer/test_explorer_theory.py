@@ -168,11 +168,14 @@ def as_built(seed: int) -> np.ndarray:
     return np.concatenate([drawn, [[2.53, 1.62, 41], [2.5, 1.6, 30]]])
 
 
+@pytest.mark.parametrize("every", [4, pytest.param(1, marks=pytest.mark.long)])
 @pytest.mark.parametrize("weight", WEIGHTS)
 def test_voussoirs_as_built_are_those_of_limit_analysis(
-    page: playwright.Page, weight: str
+    page: playwright.Page, weight: str, every: int
 ) -> None:
     rows = as_built(7)
+    # The widest have the rarest modes.
+    rows = rows[(np.arange(len(rows)) % every == 1 % every) | (rows[:, 0] > 2.6)]
     found = evaluate(page, BUILT, rows, weight)
     seen = set()
     for (half_angle, friction, count), row in zip(rows.tolist(), found, strict=True):

@@ -4,7 +4,8 @@
 const mapPicture = (() => {
   const { add, pathOf, marker } = svg;
   const LABEL_HEIGHT = 10; // pixels
-  const ROOM = 9; // pixels around the middle of a region's name, if it is to stand inside
+  const NAME = [15, 8]; // pixels to the sides of a region's name and above its middle
+  const MARK = 6; // pixels around an arch
   const AWAY = 46; // pixels from a region too thin for its name to the name
   const EDGE = 24; // pixels that names keep from the frame
   const VIEWS = {
@@ -17,7 +18,7 @@ const mapPicture = (() => {
   function frameOf(width, view, tallest) {
     const narrow = width < 480;
     const height = Math.round(Math.min(width * (narrow ? 1.05 : 0.8), tallest));
-    const [left, top, bottom, gap, strip, right] = [narrow ? 48 : 52, 10, 46, 8, narrow ? 22 : 32, 36];
+    const [left, top, bottom, gap, strip, right] = [narrow ? 48 : 52, 10, 46, 8, narrow ? 22 : 32, 50];
     const across = width - left - gap - strip - right;
     const up = height - top - bottom;
     const stripLeft = left + across + gap;
@@ -65,10 +66,11 @@ const mapPicture = (() => {
     add(atInfinity, "path", { d: overStrip(map.overturning), class: "border" });
     drawAxes(picture, frame);
     const under = add(picture, "g");
-    const taken = results.map((row) => [x(row.place), y(row.eta)]);
+    const taken = results.map((row) => ({ x: x(row.place), y: y(row.eta), sides: MARK, ends: MARK }));
+    for (const { mu, eta, shift } of map.landmarks) taken.push({ x: x(mu) + shift[0], y: y(eta) - shift[1] - 4, sides: MARK, ends: MARK });
     for (const region of map.regions) nameRegion(picture, frame, region, style(region.mode), taken);
     const [low, high] = [y(Math.max(map.overturning, frame.eta[0])), y(frame.eta[1])];
-    if (low - high > 2 * ROOM) {
+    if (low - high > 2 * NAME[1]) {
       const place = { x: x(Infinity), y: (low + high) / 2 + 5 };
       add(picture, "text", { ...place, class: "region-label", style: style("r") }, "r");
     }
@@ -85,37 +87,33 @@ const mapPicture = (() => {
     return add(picture, "g", { "clip-path": `url(#${id})` });
   }
 
-  /** Write a mode where its region has most room in view; a thin region gets a line to its name. */
+  /** Write a mode where it fits and its region has most room; one that fits nowhere is led to by a
+      line. Names keep clear of what is `taken`, and are taken then. */
   function nameRegion(picture, frame, { mode, mu, bottom, top }, style, taken) {
+    const [aside, above] = NAME;
     const columns = mu.map((m, i) => ({
       x: frame.x(m),
       low: Math.min(frame.y(bottom[i]), frame.top + frame.up),
       high: Math.max(frame.y(top[i]), frame.top),
-    })).filter(({ x }) => x > frame.left + EDGE && x < frame.left + frame.across - EDGE);
-    const roomAt = ({ x, low, high }, i) => {
-      const middle = (low + high) / 2;
-      let room = (low - high) / 2;
-      for (const step of [-1, 1]) {
-        for (let j = i + step; columns[j] && Math.abs(columns[j].x - x) < room; j += step) {
-          if (columns[j].low < middle || columns[j].high > middle) room = Math.abs(columns[j].x - x);
-        }
-      }
-      for (const [takenX, takenY] of taken) {
-        if (Math.hypot(takenX - x, takenY - middle) < EDGE) room = Math.min(room, ROOM);
-      }
-      // Of columns with as much room, the one nearest the middle of the picture.
-      const aside = Math.abs(x - frame.left - frame.across / 2) / frame.across;
-      return room * (1 - 0.3 * aside);
+    })).filter(({ x, low, high }) => low > high && x > frame.left + EDGE && x < frame.left + frame.across - EDGE);
+    if (!columns.length) return;
+    const free = (x, y, sides, ends) => taken.every((mark) => Math.abs(mark.x - x) > sides + mark.sides || Math.abs(mark.y - y) > ends + mark.ends);
+    const fits = ({ x, low, high }) => free(x, (low + high) / 2, aside, above) && columns.every((other) =>
+      Math.abs(other.x - x) > aside || (other.low > (low + high) / 2 + above && other.high < (low + high) / 2 - above));
+    // Of columns with as much room, the one nearest the middle of the picture.
+    const room = ({ x, low, high }) => (low - high) * (1 - 0.6 * Math.abs((x - frame.left) / frame.across - 0.5));
+    const led = ({ x, low, high }) => {
+      const y = (low + high) / 2;
+      return free(x, y - AWAY, aside, above) && free(x, y - AWAY / 2, MARK, AWAY / 2 + 2 * MARK);
     };
-    const visible = columns.filter(({ low, high }) => low > high);
-    if (!visible.length) return;
-    const rooms = columns.map(roomAt);
-    const most = Math.max(...rooms);
-    const outside = most < ROOM;
-    const { x, low, high } = outside ? visible[visible.length >> 1] : columns[rooms.indexOf(most)];
-    const y = (low + high) / 2 - (outside ? AWAY : -5);
-    if (outside) add(picture, "path", { d: `M${x} ${(low + high) / 2}V${y + 5}`, class: "leader", style });
-    add(picture, "text", { x, y, class: "region-label", style }, mode);
+    const middle = columns[columns.length >> 1];
+    const nearest = [...columns].sort((a, b) => Math.abs(a.x - middle.x) - Math.abs(b.x - middle.x));
+    const inside = columns.filter(fits).sort((a, b) => room(b) - room(a))[0];
+    const { x, low, high } = inside ?? nearest.find(led) ?? middle;
+    const y = (low + high) / 2 - (inside ? 0 : AWAY);
+    if (!inside) add(picture, "path", { d: `M${x} ${(low + high) / 2}V${y + above + 2}`, class: "leader", style });
+    add(picture, "text", { x, y: y + 5, class: "region-label", style }, mode);
+    taken.push({ x, y, sides: aside, ends: above });
   }
 
   function drawAxes(picture, frame) {
@@ -132,7 +130,7 @@ const mapPicture = (() => {
       add(picture, "path", { d: `M${left} ${y(value)}h-4`, class: "tick" });
       add(picture, "text", { x: left - 7, y: y(value) + 4, class: "tick-label end" }, value);
     }
-    const side = `translate(${narrow ? 10 : 14} ${top + up / 2}) rotate(-90)`;
+    const side = `translate(${narrow ? 12 : 14} ${top + up / 2}) rotate(-90)`;
     add(picture, "text", { x: left, y: bottom + 38, class: "axis-label" }, "friction coefficient μ");
     add(picture, "text", { transform: side, class: "axis-label middle" }, "thickness over radius η");
   }

@@ -378,6 +378,12 @@
   listenToMap();
   listenToControls();
   setPlaying(playing);
+  const wide = document.querySelector(".scroll");
+  if (wide) {
+    new ResizeObserver(() => {
+      find("sideways").hidden = wide.scrollWidth <= wide.clientWidth;
+    }).observe(wide);
+  }
   new ResizeObserver(() => {
     const width = find("map-box").clientWidth;
     if (width === frame.width || width === 0) return; // 0 while the window closes

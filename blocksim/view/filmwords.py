@@ -1,0 +1,54 @@
+"""What films say: outcome, what a structure is up against, words that fit."""
+
+from __future__ import annotations
+
+from blocksim.arch import limit
+from blocksim.arch.circular import arch_of
+from blocksim.evidence.motion import MOVED, UNMOVED
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.verdict import Verdict
+from blocksim.view.canvas import width_of
+from blocksim.view.drawing import loading_words
+
+
+def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
+    """Say whether it falls: as a check does, or by how far it has moved."""
+    if verdict is not None:
+        return verdict.value
+    moved = float(recording.displacement.max())
+    if moved > MOVED:
+        return Verdict.COLLAPSES.value
+    if moved <= UNMOVED:
+        return "at rest"
+    if arch_of(recording.problem) is None:
+        return f"has moved {moved * recording.assembly.size:.1g} m"
+    return f"has moved {moved:.1g} r"
+
+
+def fitting(words: str, size: float, wide: float, *, bold: bool = False) -> str:
+    """Cut words off where they would not fit into a width in pixels."""
+    kept = words
+    while len(kept) > 1 and (have := width_of(kept, size, bold=bold)) > wide:
+        # Measuring is slow: cut in proportion.
+        kept = kept[: min(len(kept) - 2, int(len(kept) * wide / have))].rstrip() + "…"
+    return kept
+
+
+def against(recording: Recording) -> list[str]:
+    """Say what it is up against: gravity that tilts or leans, loads; an arch its own weight."""
+    problem = recording.problem
+    words = loading_words(problem)
+    arch = arch_of(problem)
+    if words or arch is None:
+        return words
+    least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
+    return ["no thickness stands" if least is None else _share(arch.eta / least)]
+
+
+def _share(ratio: float) -> str:
+    """Say how thick the arch is compared with the thinnest of these voussoirs that stands."""
+    if ratio >= 2:
+        return f"{ratio:.3g} times the least thickness as built"
+    off = abs(ratio - 1) * 100
+    shown = f"{off:.2g}" if off < 10 else f"{off:.0f}"
+    return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness as built"

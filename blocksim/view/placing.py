@@ -1,0 +1,116 @@
+"""Where the blocks of a recording are in space, at its frames and between them.
+
+Lengths are in units of the assembly's size.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from blocksim.blocks.assembly import SPATIAL, Array
+from blocksim.evidence.recording import Recording
+
+
+class Placing:
+    """Convex pieces of blocks, and joints, carried by the poses of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    sides : int
+        Corners that a piece is to have at least.
+
+    Attributes
+    ----------
+    owner : (pieces,) int
+        The block that each piece belongs to.
+    sides : int
+        Corners of each piece; what has fewer repeats its last one.
+    outlines : (pieces, sides, 2) float
+        Of the pieces, from the centres of their blocks.
+    """
+
+    def __init__(self, recording: Recording, sides: int) -> None:
+        self._recording, assembly = recording, recording.assembly
+        pieces = [
+            (index, (part - block.centre) / assembly.size)
+            for index, block in enumerate(assembly.blocks)
+            for part in block.polygons
+        ]
+        self.owner = np.array([index for index, _ in pieces])
+        self.sides = max(sides, *(len(each) for _, each in pieces))
+        self.outlines = np.array([padded(each, self.sides) for _, each in pieces])
+        self._half = assembly.depths[self.owner] / 2
+        self._turns = _quaternions(recording)
+
+    def corners(self, earlier: int, later: int, share: float) -> Array:
+        """Corners in space between two frames."""
+        centres, turns = self._placed(earlier, later, share)
+        half = np.broadcast_to(self._half[:, None, None], (*self.outlines.shape[:2], 1))
+        near = np.concatenate([self.outlines, half], axis=-1)
+        local = np.stack([near, near * [1, 1, -1]], axis=1)
+        owner = self.owner
+        return centres[owner][:, None, None] + _turned(turns[owner][:, None, None], local)
+
+    def faces(self, earlier: int, later: int, share: float) -> Array:
+        """Return the ends of joints in space, as the blocks on both sides carry them."""
+        before, after, ends, *_ = self._recording.assembly.joint_arrays
+        centres, turns = self._placed(earlier, later, share)
+        # The support comes last, as index -1 says: it stays.
+        rest = np.vstack(
+            [self._recording.assembly.centres / self._recording.assembly.size, np.zeros(2)]
+        )
+        centres = np.vstack([centres, np.zeros(3)])
+        turns = np.vstack([turns, [1.0, 0.0, 0.0, 0.0]])
+        sides = np.stack([before, after], axis=1)
+        local = np.zeros((*sides.shape, 2, 3))
+        local[..., :2] = ends[:, None] - rest[sides][:, :, None]
+        return centres[sides][:, :, None] + _turned(turns[sides][:, :, None], local)
+
+    def _placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:
+        """Centres and rotations of the blocks between two frames."""
+        centres = _centres(self._recording, earlier) * (1 - share)
+        centres += _centres(self._recording, later) * share
+        turns = self._turns[earlier] * (1 - share) + self._turns[later] * share
+        turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
+        return centres, turns
+
+
+def padded(outline: Array, sides: int) -> Array:
+    """Repeat the last corner of an outline until it has as many as asked for."""
+    return np.pad(outline, ((0, sides - len(outline)), (0, 0)), "edge")
+
+
+def _centres(recording: Recording, frame: int) -> Array:
+    """Centres of the blocks in space, (blocks, 3)."""
+    poses = recording.poses[frame]
+    centres = np.zeros((len(poses), 3))
+    centres[:, :2] = poses[:, :2]
+    if poses.shape[1] == SPATIAL:
+        centres[:, 2] = poses[:, 3]
+    return centres
+
+
+def _quaternions(recording: Recording) -> Array:
+    """Rotations as unit quaternions w, x, y, z that go on smoothly, (frames, blocks, 4)."""
+    poses = recording.poses
+    vectors = np.zeros((*poses.shape[:2], 3))
+    vectors[..., 2] = poses[..., 2]
+    if poses.shape[2] == SPATIAL:
+        vectors[..., :2] = poses[..., 4:]
+    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    # sin(angle/2)/angle, 1/2 where nothing turns.
+    turns = np.concatenate([np.cos(angle / 2), vectors * np.sinc(angle / (2 * np.pi)) / 2], -1)
+    for earlier, later in pairwise(turns):
+        # q and -q are one rotation: take the one nearer to the frame before.
+        later[(earlier * later).sum(axis=-1) < 0] *= -1
+    return turns
+
+
+def _turned(turns: Array, points: Array) -> Array:
+    """Rotate points by unit quaternions."""
+    axis = turns[..., 1:]
+    across = 2 * np.cross(axis, points)
+    return points + turns[..., :1] * across + np.cross(axis, across)

@@ -1,0 +1,102 @@
+"""Files that `render` and `map` write: every input as svg and pdf, stills of a height."""
+
+from __future__ import annotations
+
+import json
+import re
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from running import inside
+
+from blocksim.ask.simulate import simulate
+from blocksim.blocks.structure import load_structure
+
+STACK = {
+    "title": "Two blocks on a floor",
+    "friction": 0.6,
+    "blocks": [
+        {"id": "floor", "vertices": [[-2, -1], [4, -1], [4, 0], [-2, 0]], "fixed": True},
+        {"id": "low", "vertices": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]},
+        {"id": "top", "vertices": [[0.2, 0.5], [1.2, 0.5], [1.2, 1], [0.2, 1]]},
+    ],
+}
+INPUTS = {
+    "arch": (("render", "semicircle", "--eta", "0.12"), "27 voussoirs as built"),
+    "continuous": (("render", "semicircle"), "continuous arch"),
+    "structure": (("render", "stack.json"), "stands, by limit"),
+    "recording": (("render", "run.npz"), "at rest"),
+    "leaning": (("render", "semicircle_tilted_overturns"), "gravity leans"),
+    "map": (("map",), "friction coefficient"),
+    "lines": (("map", "--lines"), "149.156"),
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("pictures")
+    (folder / "stack.json").write_text(json.dumps(STACK))
+    problem = load_structure(folder / "stack.json")
+    simulate(problem, method="direct", duration=0.01).save(folder / "run.npz")
+    return folder
+
+
+def run(folder: Path, monkeypatch: pytest.MonkeyPatch, *arguments: str) -> str:
+    """Run a command in a folder, and return what it complains about."""
+    monkeypatch.chdir(folder)
+    return inside(*arguments).stderr
+
+
+def words_of_pdf(content: bytes) -> str:
+    """Text of a pdf in Latin letters, which stand between brackets."""
+    streams = re.findall(rb"FlateDecode.*?stream\r?\n(.*?)endstream", content, re.DOTALL)
+    texts = re.findall(rb"BT(.*?)ET", b"".join(map(zlib.decompress, streams)), re.DOTALL)
+    letters = rb"\(((?:\\.|[^()\\])*)\)"
+    return b"\n".join(b"".join(re.findall(letters, text)) for text in texts).decode("latin-1")
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_every_input_is_drawn_as_svg_and_pdf(
+    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked, words = INPUTS[name]
+    run(folder, monkeypatch, *asked, "--out", f"{name}.pdf")
+    if name != "leaning":  # a simulation, and test_video asks for its svg
+        run(folder, monkeypatch, *asked, "--out", f"{name}.svg")
+        assert words in (folder / f"{name}.svg").read_text(encoding="utf-8")
+    content = (folder / f"{name}.pdf").read_bytes()
+    assert content.startswith(b"%PDF")
+    assert words in words_of_pdf(content)
+
+
+@pytest.mark.parametrize("name", ["arch", "structure", "recording"])
+def test_a_still_has_the_height_asked_for(
+    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sizes = []
+    for height in (360, 1080):
+        out = f"{name}-{height}.png"
+        run(folder, monkeypatch, *INPUTS[name][0], "--height", str(height), "--out", out)
+        with Image.open(folder / out) as picture:
+            sizes.append(picture.size)
+    assert [tall for _, tall in sizes] == [360, 1080]
+    # Larger, and otherwise the same picture: no side is cut.
+    assert sizes[1][0] == pytest.approx(3 * sizes[0][0], abs=3)
+    small, large = (
+        np.asarray(Image.open(folder / f"{name}-{height}.png").convert("L").resize((80, 45)))
+        for height in (360, 1080)
+    )
+    assert np.abs(small.astype(float) - large).mean() < 4
+
+
+def test_lines_have_no_pixels(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for asked, words in (
+        (("semicircle", "--out", "x.svg", "--height", "480"), "a .svg has no pixels"),
+        (("semicircle", "--out", "x.png", "--height", "100"), "an even number from 180"),
+        (("stack.json", "--out", "x.png", "--height", "481"), "an even number from 180"),
+    ):
+        assert words in run(folder, monkeypatch, "render", *asked)
+    assert not [*folder.glob("x.*")]
