@@ -22,8 +22,8 @@ from blocksim.blocks.assembly import Joint as Joint
 from blocksim.blocks.joints import JointState as JointState
 from blocksim.blocks.problem import Load as Load
 from blocksim.blocks.problem import Problem as Problem
-from blocksim.blocks.structure import load_structure as load_structure
-from blocksim.blocks.structure import structure_of as structure_of
+from blocksim.kinds.files import load_structure as load_structure
+from blocksim.kinds.files import structure_of as structure_of
 from blocksim.common.errors import BlocksimError as BlocksimError
 from blocksim.common.errors import InputError as InputError
 from blocksim.common.errors import MissingPart as MissingPart

@@ -14,7 +14,7 @@ from blocksim.ask.check import check
 from blocksim.ask.families import FAMILIES, family_of
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.blocks.structure import load_structure
+from blocksim.kinds.files import load_structure
 from blocksim.cli.console import answer_with, progress, save_picture, say
 from blocksim.cli.options import EXIT_CODES, Given, named_options, settings_of
 from blocksim.common.checks import is_number, require
