@@ -108,6 +108,7 @@ def bracket(
     probe = family.at(low + GUESS * (high - low))
     chosen = choose(method, tol, problem=probe, settings=settings)
     exact = family.exact() if probe.is_planar else None
+    said = family.remark() if probe.is_planar else ""
     if chosen.is_static:
         found = _by_limit(family, exact)
     else:
@@ -128,7 +129,7 @@ def bracket(
         confirmed=confirmed,
         runs=runs,
         undecided=undecided,
-        reason=reason + given_words(settings) + chosen_words(method, chosen),
+        reason=reason + said + given_words(settings) + chosen_words(method, chosen),
         wall_s=time.perf_counter() - started,
     )
 
@@ -143,6 +144,9 @@ def _by_limit(family: Family, exact: float | None) -> Found:
         return None, None, None, 0, 0, "no forces of equilibrium exist at any value"
     if math.isinf(exact):
         return None, None, None, 0, 0, "forces of equilibrium exist at all values"
+    if exact < family.low:
+        least = family.low
+        return None, least, None, 1, 0, f"forces of equilibrium exist down to {least:.6g}"
     low, high = exact * (1 - SURE), exact * (1 + SURE)
     stood = [equilibrium(family.at(value)).exists for value in (low, high)]
     confirmed = stood == [family.stands == "low", family.stands == "high"]

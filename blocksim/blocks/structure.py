@@ -12,7 +12,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT
+from blocksim.blocks.assembly import SUPPORT, Assembly
 from blocksim.blocks.entries import Around, Id, LoadEntry, StructureFile, entries_of
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.outlines import signed_area
@@ -20,6 +20,7 @@ from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
+
 
 def structure_of(data: object) -> Problem:
     """Make a problem of what a structure file says.
@@ -38,7 +39,11 @@ def structure_of(data: object) -> Problem:
     table = cast(dict[str, Any], data)
     written = entries_of(table)
     bodies = _bodies(written)
-    return problem_of(written, bodies, _joints(written, bodies))
+    joints = _joints(written, bodies)
+    found = assembly_of_bodies(
+        bodies, joints=joints, density=written.density, size=written.size
+    )
+    return problem_of(written, bodies, *found)
 
 
 def _bodies(written: StructureFile) -> list[Body]:
@@ -107,22 +112,23 @@ class _Names:
 
 
 def problem_of(
-    written: Around, bodies: Sequence[Body], joints: Sequence[GivenJoint] | None
+    written: Around, bodies: Sequence[Body], assembly: Assembly, found: Sequence[str]
 ) -> Problem:
-    """Make a problem of bodies and of what a file says besides.
+    """Make a problem of an assembly and of what a file says besides.
 
     Parameters
     ----------
     written : Around
     bodies : sequence of Body
-        Each with a name of its own.
-    joints : sequence of GivenJoint or None
-        None where they are to be found.
+        Of which the assembly was made, each with a name of its own.
+    assembly : Assembly
+    found : sequence of str
+        Notes on how it was made.
 
     Raises
     ------
     InputError
-        In one line: a load on no block, or an assembly that is none.
+        In one line: a load on no block.
     """
     fixed = [body.fixed for body in bodies]
     body_of = _Names(bodies)
@@ -178,9 +184,6 @@ def problem_of(
         place = body_of(move.block, f"move[{at}].block")
         require(fixed[place], f"move[{at}].block", move.block, "a fixed block")
         moves.append(Move(support=int(bed[place]), direction=np.array(move.direction)))
-    assembly, found = assembly_of_bodies(
-        bodies, joints=joints, density=written.density, size=written.size
-    )
     mu = _friction(written.friction)
     own = {joint.friction for joint in assembly.joints}
     if len(own) == 1 and own != {None}:

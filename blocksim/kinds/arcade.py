@@ -12,8 +12,7 @@ from blocksim.common.errors import InputError
 from blocksim.kinds.archkind import ArchKind
 from blocksim.kinds.base import Fill, Kind, Made, count, metres, parameter
 from blocksim.kinds.blockwork import floor, pier
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.portal import LEVEL, require_bearing
+from blocksim.kinds.portal import LEVEL, SEMICIRCLE, require_bearing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +23,7 @@ class Arcade(Kind):
     about: ClassVar[str] = "several equal arches on free piers, between fixed abutments"
 
     arch: ArchKind = parameter(
-        CircularArch(), "the arch: a table with its kind and parameters", table=True
+        SEMICIRCLE, "the arch: a table with its kind and parameters", table=True
     )
     spans: int = count(2, "number of arches", high=100)
     pier_width: float = metres(0.6, "width of the piers", stands="high")
@@ -35,13 +34,13 @@ class Arcade(Kind):
         """Range of a parameter: springings lie wholly on the piers."""
         low, high = super().limits(name)
         if name == "pier_width":
-            left, right = self.arch.stones().faces[[0, -1]]
+            left, right = self.arch.stones.faces[[0, -1]]
             low = left[0, 0] - left[1, 0] + right[1, 0] - right[0, 0]
         return low, high
 
     def made(self, density: float) -> Made:
         """Make floor, abutments, piers and voussoirs; joints are found."""
-        faces = self.arch.stones().faces[[0, -1]]
+        faces = self.arch.stones.faces[[0, -1]]
         require_bearing(self.arch, faces)
         (left, right), thick = faces.tolist(), self.arch.thickness
         level = abs(left[0][1] - right[0][1]) <= LEVEL * thick
@@ -56,8 +55,8 @@ class Arcade(Kind):
         fills: list[Fill] = []
         outside = centres[0] - wide / 2, centres[-1] + wide / 2
         fixed = [
-            _abutment("left", outside[0], -self.pier_width, ground, left),
-            _abutment("right", outside[1], self.pier_width, ground, right),
+            _abutment("left", outside[0], -self.pier_width, ground, left, thick),
+            _abutment("right", outside[1], self.pier_width, ground, right, thick),
         ]
         reach = 2 * self.pier_width
         fixed.append(floor(outside[0] - reach, outside[1] + reach, ground, reach / 2))
@@ -125,16 +124,16 @@ class Arcade(Kind):
 
 
 def _abutment(
-    name: str, edge: float, wide: float, ground: float, face: list[list[float]]
+    name: str, edge: float, wide: float, ground: float, face: list[list[float]], thick: float
 ) -> Body:
     """Make a fixed abutment below a springing, and behind it where it is inclined."""
     (inner, low), (outer, high) = face
-    slope = outer - inner
+    slope, side = outer - inner, 1 if wide > 0 else -1
     far = edge + (wide if abs(wide) > abs(slope) else 2 * slope)
-    corners = [[edge, ground], [far, ground], [far, high], [edge + slope, high], [edge, low]]
-    if high - low <= 0:
-        corners[2:] = [[far, low], [edge, low]]
-    return Body(polygons=(np.array(corners),), name=name, fixed=True)
+    corners = [[edge, ground], [far, ground], [far, low], [edge, low]]
+    if high - low > LEVEL * thick:
+        corners[2:3] = [[far, high], [edge + slope, high]]
+    return Body(polygons=(np.array(corners)[::side],), name=name, fixed=True)
 
 
 def _moved(body: Body, shift: object, name: str) -> Body:

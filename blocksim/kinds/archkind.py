@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -45,6 +46,7 @@ class ArchKind(Kind):
         1.0, "density of the fill over that of the blocks", high=1e3
     )
 
+    @cached_property
     @abstractmethod
     def stones(self) -> Voussoirs:
         """Measure the voussoirs."""
@@ -56,7 +58,7 @@ class ArchKind(Kind):
 
     def bodies(self, density: float) -> list[Body]:
         """Return the voussoirs as bodies, named 1 to n from left to right."""
-        stones, heavy = self.stones(), density * self.depth
+        stones, heavy = self.stones, density * self.depth
         return [
             Body(
                 polygons=(corners,),
@@ -81,7 +83,7 @@ class ArchKind(Kind):
         """Return the weight of the fill on each voussoir, the first of them body `first`."""
         if self.fill is None:
             return []
-        stones = self.stones()
+        stones = self.stones
         width, y_width, x_width, xy_width = stones.cover.T
         if (np.diff(stones.faces[:, 1, 0]) <= 0).any():
             allowed = "left out where the extrados turns back below itself"
@@ -100,11 +102,11 @@ class ArchKind(Kind):
 
     def made(self, density: float) -> Made:
         """Make voussoirs, joints and fixed springings, `left` and `right`."""
-        faces = self.stones().faces
+        faces = self.stones.faces
         bodies = [
-            _foot("left", faces[0], -1.0),
+            _foot("left", faces[0], -1),
             *self.bodies(density),
-            _foot("right", faces[-1], 1.0),
+            _foot("right", faces[-1], 1),
         ]
         joints = tuple(
             GivenJoint(a=index, b=index + 1, ends=face) for index, face in enumerate(faces)
@@ -113,13 +115,12 @@ class ArchKind(Kind):
         return Made(bodies=tuple(bodies), joints=joints, fills=fills)
 
 
-def _foot(name: str, face: Array, side: float) -> Body:
-    """Draw a support behind a springing."""
+def _foot(name: str, face: Array, side: int) -> Body:
+    """Draw a support behind a springing: on the left (-1) or on the right (1)."""
     along = face[1] - face[0]
     out = FOOT * side * np.array([along[1], -along[0]])
-    return Body(
-        polygons=(np.array([*face, face[1] + out, face[0] + out]),), name=name, fixed=True
-    )
+    corners = np.array([*face, face[1] + out, face[0] + out])[::-side]
+    return Body(polygons=(corners,), name=name, fixed=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,6 +199,7 @@ class CurvedArch(ArchKind):
         """Whether radial joints are the normal ones, as of circles."""
         return False
 
+    @cached_property
     def stones(self) -> Voussoirs:
         """Measure the voussoirs."""
         curve = self.curve()

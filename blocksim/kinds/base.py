@@ -211,12 +211,19 @@ class Kind(Table, ABC):
             return cast(Kind, getattr(self, here)).number(rest)
         return parameters_of(type(self))[here], *self.limits(here)
 
+    def value(self, name: str) -> float:
+        """Return the value of such a number."""
+        here, _, rest = name.partition(".")
+        if rest:
+            return cast(Kind, getattr(self, here)).value(rest)
+        return float(getattr(self, here))
+
     @property
     def bracketed(self) -> tuple[str, ...]:
         """Names of the parameters that may be bracketed over."""
         names: list[str] = []
         for name, known in parameters_of(type(self)).items():
-            if known.stands is not None:
+            if known.stands is not None and getattr(self, name) is not None:
                 names.append(name)
             elif known.table:
                 names += [f"{name}.{each}" for each in getattr(self, name).bracketed]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -62,9 +63,10 @@ class CircularArch(CurvedArch):
             0.0, self.radius, -math.radians(self.left_deg), math.radians(self.right_deg)
         )
 
+    @cached_property
     def stones(self) -> Voussoirs:
         """Measure the voussoirs."""
-        found = super().stones()
+        found = super().stones
         if self.weight != "centreline":
             return found
         curve = self.curve()

@@ -41,14 +41,14 @@ class Curve:
     breaks: tuple[float, ...] = ()
 
     def point(self, s: Array, offset: float = 0.0) -> Array:
-        """Points at a distance to its outer side, shape (..., 2)."""
+        """Return points at a distance to its outer side, shape (..., 2)."""
         x, y = self.at(s)
         dx, dy = self.first(s)
         speed = np.hypot(dx, dy)
         return np.stack([x - offset * dy / speed, y + offset * dx / speed], axis=-1)
 
     def slope(self, s: Array, offset: float = 0.0) -> Array:
-        """Derivative of `point`, shape (..., 2)."""
+        """Return the derivative of `point`, shape (..., 2)."""
         (dx, dy), (ddx, ddy) = self.first(s), self.second(s)
         curvature = (dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3
         return (1 - offset * curvature)[..., None] * np.stack([dx, dy], axis=-1)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
@@ -16,8 +16,11 @@ from typing import Any, cast
 import numpy as np
 
 from blocksim.blocks import structure
+from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
 from blocksim.blocks.entries import AROUND, Around, around_of
-from blocksim.blocks.problem import Load, Problem
+from blocksim.blocks.given import GivenJoint
+from blocksim.blocks.polygons import Body, assembly_of_bodies
+from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_file
@@ -87,6 +90,7 @@ def structure_of(data: object) -> Problem:
     if not isinstance(data, dict) or "kind" not in data:
         return structure.structure_of(cast("object", data))
     table = cast("dict[str, Any]", data)
+    require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
     kind = kind_of({key: table[key] for key in table if key not in AROUND}, ALL)
     return problem_of(kind, around_of({key: table[key] for key in table if key in AROUND}))
 
@@ -109,7 +113,11 @@ def problem_of(kind: Kind, around: Around) -> Problem:
         Dead loads begin with the weight of fill; its origin is the kind's table.
     """
     made = kind.made(around.density)
-    problem = structure.problem_of(around, made.bodies, made.joints)
+    if made.joints is None:
+        found = assembly_of_bodies(made.bodies, density=around.density, size=around.size)
+    else:
+        found = assembly_as_made(made.bodies, made.joints, around.size), ()
+    problem = structure.problem_of(around, made.bodies, *found)
     place = np.cumsum([not body.fixed for body in made.bodies]) - 1
     fills = tuple(
         Load(
@@ -123,8 +131,48 @@ def problem_of(kind: Kind, around: Around) -> Problem:
         problem,
         dead=(*fills, *problem.dead),
         origin={**kind.table(), "density": around.density},
-        # Joints are given by the kind, not by who asks.
-        notes=() if made.joints is not None else problem.notes,
+    )
+
+
+def assembly_as_made(
+    bodies: Sequence[Body], joints: Sequence[GivenJoint], size: float | None
+) -> Assembly:
+    """Build an assembly of bodies with weights, whose joints are whole faces of both.
+
+    Nothing is looked for: a search for the least thickness builds dozens of them.
+    """
+    moving = [body for body in bodies if not body.fixed]
+    place = np.cumsum([not body.fixed for body in bodies]) - 1
+    bed = np.cumsum([body.fixed for body in bodies]) - 1
+    corners = np.concatenate([np.asarray(body.polygons[0]) for body in moving])
+    return Assembly(
+        blocks=tuple(
+            Block(
+                vertices=np.asarray(body.polygons[0]),
+                centre=np.asarray(body.centre),
+                mass=(body.weight or 0.0) / STANDARD_GRAVITY,
+                inertia=body.inertia or 0.0,
+                depth=body.depth,
+                name=body.name,
+            )
+            for body in moving
+        ),
+        joints=tuple(
+            Joint(
+                before=SUPPORT if bodies[joint.a].fixed else int(place[joint.a]),
+                after=SUPPORT if bodies[joint.b].fixed else int(place[joint.b]),
+                inner=joint.ends[0],
+                outer=joint.ends[1],
+                support=next(
+                    (int(bed[each]) for each in (joint.a, joint.b) if bodies[each].fixed), None
+                ),
+            )
+            for joint in joints
+        ),
+        size=float(np.ptp(corners, axis=0).max()) / 2 if size is None else size,
+        supports=tuple(
+            Support((np.asarray(body.polygons[0]),), body.name) for body in bodies if body.fixed
+        ),
     )
 
 

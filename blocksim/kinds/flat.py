@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -29,7 +30,7 @@ class FlatArch(ArchKind):
     )
     joints: str = parameter(
         "fanned",
-        "direction of the joints: fanned towards one point, or all inclined like the springings",
+        "direction of the joints: fanned towards one point, or all as inclined as the springings",
         choices=("fanned", "inclined"),
     )
 
@@ -44,6 +45,7 @@ class FlatArch(ArchKind):
         """Height of the back [m]."""
         return self.thickness
 
+    @cached_property
     def stones(self) -> Voussoirs:
         """Measure the wedges."""
         share = 2 * np.arange(self.voussoirs + 1) / self.voussoirs - 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -75,6 +76,7 @@ class PointedArch(CurvedArch):
         """Height of the highest point of the extrados [m]."""
         return math.sqrt((self.radius + self.thickness / 2) ** 2 - self._shift**2)
 
+    @cached_property
     def stones(self) -> Voussoirs:
         """Measure the voussoirs of the left arc; the others are their mirror image."""
         curve, half = self.curve(), self.voussoirs // 2

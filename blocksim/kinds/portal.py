@@ -19,6 +19,9 @@ LEVEL = 1e-9
 """Height of a springing, over the thickness, that counts as none."""
 
 
+SEMICIRCLE = CircularArch()
+
+
 @dataclass(frozen=True, kw_only=True)
 class Portal(Kind):
     """An arch on piers that are free to tip and to slide."""
@@ -27,7 +30,7 @@ class Portal(Kind):
     about: ClassVar[str] = "an arch on two piers or buttresses"
 
     arch: ArchKind = parameter(
-        CircularArch(), "the arch: a table with its kind and parameters", table=True
+        SEMICIRCLE, "the arch: a table with its kind and parameters", table=True
     )
     pier_width: float = metres(
         0.6, "width of the piers at the springing, from the intrados outwards", stands="high"
@@ -49,12 +52,12 @@ class Portal(Kind):
         """Range of a parameter: springings lie wholly on the piers."""
         low, high = super().limits(name)
         if name == "pier_width":
-            low = max(_reach(face) for face in self.arch.stones().faces[[0, -1]])
+            low = max(_reach(face) for face in self.arch.stones.faces[[0, -1]])
         return low, high
 
     def made(self, density: float) -> Made:
         """Make floor, piers, skewbacks and voussoirs; joints are found."""
-        faces = self.arch.stones().faces[[0, -1]]
+        faces = self.arch.stones.faces[[0, -1]]
         require_bearing(self.arch, faces)
         ground = float(faces[:, 0, 1].min()) - self.pier_height
         foot = self.pier_width if self.foot_width is None else self.foot_width
@@ -126,4 +129,5 @@ def skewback(name: str, face: Array, edge: float, arch: ArchKind) -> list[Body]:
     corners = [[inner, low], [edge, low], [edge, high], [outer, high]]
     if abs(edge - outer) <= LEVEL * arch.thickness:
         corners = corners[:3]
-    return [Body(polygons=(np.array(corners),), name=f"{name} skewback", depth=arch.depth)]
+    turned = np.array(corners)[:: 1 if edge > inner else -1]
+    return [Body(polygons=(turned,), name=f"{name} skewback", depth=arch.depth)]

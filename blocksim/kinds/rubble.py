@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import Voronoi
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body
 from blocksim.kinds.base import Kind, Made, count, metres, parameter
 from blocksim.kinds.blockwork import floor
@@ -60,7 +61,8 @@ def _cells(points: Array, size: Array) -> list[Array]:
         for edge in (0.0, size[axis]):
             corners[np.abs(corners[:, axis] - edge) < 1e-9 * size[axis], axis] = edge
     regions = [diagram.regions[diagram.point_region[index]] for index in range(len(points))]
-    return [corners[region] for region in regions]
+    cells = [corners[region] for region in regions]
+    return [cell if signed_area(cell) > 0 else cell[::-1] for cell in cells]
 
 
 def _middle(cell: Array) -> Array:
