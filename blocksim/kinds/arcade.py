@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -22,7 +22,7 @@ class Arcade(Kind):
     name: ClassVar[str] = "arcade"
     about: ClassVar[str] = "several equal arches on free piers, between fixed abutments"
 
-    arch: ArchKind = parameter(
+    arch: ArchKind = parameter(  # noqa: RUF009 - a frozen arch
         SEMICIRCLE, "the arch: a table with its kind and parameters", table=True
     )
     spans: int = count(2, "number of arches", high=100)
@@ -139,4 +139,4 @@ def _abutment(
 def _moved(body: Body, shift: object, name: str) -> Body:
     corners = np.asarray(body.polygons[0]) + shift
     centre = None if body.centre is None else np.asarray(body.centre) + shift
-    return Body(**{**vars(body), "polygons": (corners,), "centre": centre, "name": name})
+    return replace(body, polygons=(corners,), centre=centre, name=name)

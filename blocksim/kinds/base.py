@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal, Self, cast
 
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.polygons import Body
-from blocksim.common.checks import require
+from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 
 Array = Any
@@ -143,7 +143,8 @@ class Table:
         """Check first each value alone, then those that depend on others."""
         for name, known in parameters_of(type(self)).items():
             self._require(name, known, known.low, known.high, known.above)
-        for name, known in parameters_of(type(self)).items():
+        # What all kinds have comes first and depends on what comes after it.
+        for name, known in reversed(parameters_of(type(self)).items()):
             low, high = self.limits(name)
             if known.is_number and (low, high) != (known.low, known.high):
                 self._require(name, known, low, high, known.above or low != known.low)
@@ -163,10 +164,11 @@ class Table:
         if known.choices:
             require(value in known.choices, name, value, allowed)
         elif known.is_number:
-            number = isinstance(value, int | float) and not isinstance(value, bool)
-            ok = number and (low < value if above else low <= value) and value <= high
-            require(bool(ok) and math.isfinite(cast(float, value)), name, value, allowed)
-            require(not known.whole or value == int(cast(float, value)), name, value, allowed)
+            # Just below a low end that counts is_number takes it.
+            least = low if above else math.nextafter(low, -math.inf)
+            ok = is_number(value, least, high) and math.isfinite(cast(float, value))
+            ok = ok and (not known.whole or value == int(cast(float, value)))
+            require(ok, name, value, allowed)
 
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them."""

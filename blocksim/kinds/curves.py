@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -65,7 +66,8 @@ class Curve:
 
         total = np.concatenate([[0.0], np.cumsum(lengths(low, wide))])
         wanted = total[-1] * np.arange(1, count) / count
-        panel = np.clip(np.searchsorted(total, wanted) - 1, 0, len(low) - 1)
+        marks = total[1:-1].tolist()
+        panel = np.array([bisect(marks, each) for each in wanted.tolist()], dtype=np.int64)
         rest, base = wanted - total[panel], low[panel]
         way = rest / (total[panel + 1] - total[panel]) * wide[panel]
         for _ in range(8):

@@ -130,6 +130,7 @@ def problem_of(kind: Kind, around: Around) -> Problem:
     return replace(
         problem,
         dead=(*fills, *problem.dead),
+        title=problem.title or kind.name,
         origin={**kind.table(), "density": around.density},
     )
 

@@ -30,7 +30,7 @@ class FlatArch(ArchKind):
     )
     joints: str = parameter(
         "fanned",
-        "direction of the joints: fanned towards one point, or all as inclined as the springings",
+        "direction of the joints: fanned from one point, or all as inclined as the springings",
         choices=("fanned", "inclined"),
     )
 

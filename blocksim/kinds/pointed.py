@@ -90,6 +90,7 @@ class PointedArch(CurvedArch):
             inner, outer = (curve.equal_lengths(half) for _ in ends)
             inner[-1], outer[-1] = ends
         left = strips(curve, self.thickness, inner, outer)
+        left.corners[-1, 1:3, 0] = 0.0  # exactly in the middle, where both arcs meet
         if self.weight == "chord":
             left = chords(left.corners)
         return left.and_then(left.mirrored())

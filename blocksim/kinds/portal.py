@@ -29,7 +29,7 @@ class Portal(Kind):
     name: ClassVar[str] = "portal"
     about: ClassVar[str] = "an arch on two piers or buttresses"
 
-    arch: ArchKind = parameter(
+    arch: ArchKind = parameter(  # noqa: RUF009 - a frozen arch
         SEMICIRCLE, "the arch: a table with its kind and parameters", table=True
     )
     pier_width: float = metres(

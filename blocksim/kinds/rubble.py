@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.spatial import Voronoi
@@ -54,14 +54,15 @@ def _cells(points: Array, size: Array) -> list[Array]:
             image = points.copy()
             image[:, axis] = 2 * edge - image[:, axis]
             images.append(image)
-    diagram = Voronoi(np.concatenate(images))
+    diagram: Any = Voronoi(np.concatenate(images))
     corners = np.array(diagram.vertices)
     for axis in (0, 1):
         # Sides of the wall are exactly straight, or stones would touch the floor by corners.
         for edge in (0.0, size[axis]):
             corners[np.abs(corners[:, axis] - edge) < 1e-9 * size[axis], axis] = edge
-    regions = [diagram.regions[diagram.point_region[index]] for index in range(len(points))]
-    cells = [corners[region] for region in regions]
+    cells: list[Array] = [
+        corners[diagram.regions[diagram.point_region[index]]] for index in range(len(points))
+    ]
     return [cell if signed_area(cell) > 0 else cell[::-1] for cell in cells]
 
 

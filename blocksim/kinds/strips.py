@@ -10,9 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.kinds.curves import Curve, gauss
+
+Indices = NDArray[np.int64]
 
 ACROSS = 40
 """Lines in a voussoir."""
@@ -120,7 +123,7 @@ def strips(curve: Curve, thickness: float, inner: Array, outer: Array) -> Vousso
     )
 
 
-def _parts(curve: Curve, inner: Array, outer: Array) -> tuple[Array, Array, Array]:
+def _parts(curve: Curve, inner: Array, outer: Array) -> tuple[Indices, Array, Array]:
     """Cut voussoirs where the curvature jumps: whose part, and from where to where."""
     owner: list[int] = []
     low: list[float] = []
@@ -134,7 +137,7 @@ def _parts(curve: Curve, inner: Array, outer: Array) -> tuple[Array, Array, Arra
         owner += [index] * (len(inside) - 1)
         low += inside[:-1]
         high += inside[1:]
-    return np.array(owner), np.array(low), np.array(high)
+    return np.array(owner, dtype=np.int64), np.array(low), np.array(high)
 
 
 def chords(corners: Array) -> Voussoirs:
