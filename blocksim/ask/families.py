@@ -268,9 +268,10 @@ def _root(
     if margin(falling) >= 0:
         return math.inf if stands == "low" else 0.0
     found = float(brentq(margin, low, high, xtol=1e-13, rtol=1e-12))
-    # What is enough is a little too little: where the margin grows evenly, go on to its zero.
+    # What is enough is a little too little: where the margin grows evenly on the standing
+    # side, its zero is taken from there.
     step = NEAR * max(found, low) * (1 if stands == "high" else -1)
-    beyond = margin(min(max(found + step, low), high))
-    if beyond < 10 * ENOUGH:
+    one, two = (margin(min(max(found + k * step, low), high)) - ENOUGH for k in (1, 2))
+    if one < 10 * ENOUGH or two <= one:
         return found
-    return found + step * ENOUGH / beyond
+    return found + step - one * step / (two - one)

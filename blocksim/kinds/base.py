@@ -65,6 +65,24 @@ class Parameter:
         """Whether it is a number."""
         return not (self.choices or self.tables or self.table)
 
+    def require(
+        self, name: str, value: object, within: tuple[float, float] | None = None
+    ) -> None:
+        """Raise `InputError` unless a value is one, in its own range or a narrower one."""
+        low, high = within or (self.low, self.high)
+        above = self.above or low != self.low
+        allowed = self.allowed(low, high, above)
+        if self.optional and value is None:
+            return
+        if self.choices:
+            require(value in self.choices, name, value, allowed)
+        elif self.is_number:
+            # Just below a low end that counts is_number takes it.
+            least = low if above else math.nextafter(low, -math.inf)
+            ok = is_number(value, least, high) and math.isfinite(cast(float, value))
+            ok = ok and (not self.whole or value == int(cast(float, value)))
+            require(ok, name, value, allowed)
+
     def allowed(self, low: float, high: float, above: bool) -> str:
         """Say which values it may have."""
         if self.choices:
@@ -142,33 +160,15 @@ class Table:
     def __post_init__(self) -> None:
         """Check first each value alone, then those that depend on others."""
         for name, known in parameters_of(type(self)).items():
-            self._require(name, known, known.low, known.high, known.above)
+            known.require(name, getattr(self, name))
         # What all kinds have comes first and depends on what comes after it.
         for name, known in reversed(parameters_of(type(self)).items()):
-            low, high = self.limits(name)
-            if known.is_number and (low, high) != (known.low, known.high):
-                self._require(name, known, low, high, known.above or low != known.low)
+            known.require(name, getattr(self, name), self.limits(name))
 
     def limits(self, name: str) -> tuple[float, float]:
         """Range of a parameter beside the others."""
         known = parameters_of(type(self))[name]
         return known.low, known.high
-
-    def _require(
-        self, name: str, known: Parameter, low: float, high: float, above: bool
-    ) -> None:
-        value: object = getattr(self, name)
-        allowed = known.allowed(low, high, above)
-        if known.optional and value is None:
-            return
-        if known.choices:
-            require(value in known.choices, name, value, allowed)
-        elif known.is_number:
-            # Just below a low end that counts is_number takes it.
-            least = low if above else math.nextafter(low, -math.inf)
-            ok = is_number(value, least, high) and math.isfinite(cast(float, value))
-            ok = ok and (not known.whole or value == int(cast(float, value)))
-            require(ok, name, value, allowed)
 
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them."""
