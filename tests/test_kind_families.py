@@ -88,7 +88,7 @@ def test_other_parameters() -> None:
 
 
 def test_an_island_is_told() -> None:
-    """On slender piers a thin arch falls, a thicker one stands, and the next pushes them over."""
+    """On slender piers a thin arch falls, a thicker one stands, the next pushes them over."""
     arch = {"kind": "circular-arch", "voussoirs": 12}
     portal = structure_of(
         {

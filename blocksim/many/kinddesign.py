@@ -307,14 +307,12 @@ def _require_ranges(design: KindDesign, kind: type[Kind]) -> None:
         for value in axis.ends:
             ok = is_number(value, low, high) or (value == low and not above)
             require(ok, name, value, f"from {low:g} to {high:g}")
-    require(
-        design.load is None or "live" in design.rest, "load", "given", "left out: no live loads"
-    )
+    live = "live" in design.rest
+    require(live or design.load is None, "load", "given", "left out: no live loads")
     if design.over is not None:
         known = (*FAMILIES, *_bracketed(kind, design.rest))
         require(design.over in known, "over", design.over, f"one of {', '.join(known)}")
-        live = design.over != "load" or "live" in design.rest
-        require(live, "over", "load", "another: no live loads")
+        require(live or design.over != "load", "over", "load", "another: no live loads")
     for word in design.method:
         choices = [each for each in CHOICES if each != "theory"]
         require(word in choices, "method", word, f"one of {', '.join(choices)}")

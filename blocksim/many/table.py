@@ -101,7 +101,8 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
     arrow: Any = pyarrow
     tables: Any = parquet
     rows = read_rows(folder)
-    first = next(rows, {})
+    empty: dict[str, object] = {}
+    first = next(rows, empty)
     schema = _schema(arrow, STRUCTURE_COLUMNS if "kind" in first else COLUMNS)
     rows = chain([first] if first else [], rows)
 
