@@ -22,13 +22,13 @@ from blocksim.blocks.assembly import Joint as Joint
 from blocksim.blocks.joints import JointState as JointState
 from blocksim.blocks.problem import Load as Load
 from blocksim.blocks.problem import Problem as Problem
-from blocksim.blocks.structure import load_structure as load_structure
-from blocksim.blocks.structure import structure_of as structure_of
 from blocksim.common.errors import BlocksimError as BlocksimError
 from blocksim.common.errors import InputError as InputError
 from blocksim.common.errors import MissingPart as MissingPart
 from blocksim.common.version import __version__ as __version__
 from blocksim.evidence.recording import Recording as Recording
 from blocksim.evidence.verdict import Verdict as Verdict
+from blocksim.kinds.files import load_structure as load_structure
+from blocksim.kinds.files import structure_of as structure_of
 from blocksim.limit import collapse as collapse
 from blocksim.limit import equilibrium as equilibrium

@@ -14,8 +14,9 @@ from structure_cases import BESIDES, case, names, scenes
 
 from blocksim.arch.circular import Arch
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
-from blocksim.blocks.structure import load_structure, structure_of, structure_record
+from blocksim.blocks.structure import structure_of, structure_record
 from blocksim.common.errors import InputError
+from blocksim.kinds.files import load_structure
 
 STACK: dict[str, Any] = {
     "friction": 0.6,

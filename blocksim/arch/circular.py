@@ -164,7 +164,9 @@ class Arch:
 def arch_of(problem: Problem) -> Arch | None:
     """Return the arch a problem was made from; None where it was no arch."""
     made = dict(problem.origin)
-    return Arch(**made) if made.pop("kind", None) == KIND else None  # type: ignore[arg-type]
+    # A circular arch of a structure file has other parameters.
+    mine = made.pop("kind", None) == KIND and "half_angle" in made
+    return Arch(**made) if mine else None  # type: ignore[arg-type]
 
 
 def centroid_factor(eta: float, weight: Weight) -> float:

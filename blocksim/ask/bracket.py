@@ -141,6 +141,7 @@ def bracket(
     probe = family.at(low + GUESS * (high - low))
     chosen = choose(method, tol, problem=probe, settings=settings)
     exact = family.exact() if probe.is_planar else None
+    said = family.remark() if probe.is_planar else ""
     if chosen.is_static:
         found = _by_limit(family, exact)
     else:
@@ -168,7 +169,7 @@ def bracket(
         confirmed=found.confirmed,
         runs=found.runs,
         undecided=found.undecided,
-        reason=found.reason + given_words(settings) + chosen_words(method, chosen),
+        reason=found.reason + said + given_words(settings) + chosen_words(method, chosen),
         wall_s=time.perf_counter() - started,
     )
 
@@ -179,6 +180,10 @@ def _by_limit(family: Family, exact: float | None) -> Search:
         return Search(reason="no forces of equilibrium exist at any value")
     if math.isinf(exact):
         return Search(reason="forces of equilibrium exist at all values")
+    if exact < family.low:
+        least = family.low
+        reason = f"forces of equilibrium exist down to {least:.6g}"
+        return Search(stands=least, runs=1, reason=reason)
     ends = exact * (1 - SURE), exact * (1 + SURE)
     falls, stands = ends if family.stands == "high" else ends[::-1]
     confirmed = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,7 @@ from scipy.optimize import brentq
 
 from blocksim.blocks.problem import Load, Problem
 from blocksim.common.errors import InputError
+from blocksim.kinds.files import kind_behind, with_parameter
 from blocksim.limit import collapse, equilibrium
 
 Stands = Literal["low", "high"]
@@ -19,6 +21,12 @@ LARGEST_FRICTION = 1e3
 """Friction above which more of it is not looked for."""
 ENOUGH = 1e-9
 """Lack of force at which limit analysis still calls blocks at rest [mean weights]."""
+NEAR = 1e-6
+"""How far from where force is lacking its margin is looked at, relative."""
+WIDEST = 100.0
+"""How far a kind's parameter goes from the value at hand, as a ratio to both sides."""
+TRIED = 25
+"""Values of a kind's parameter at which limit analysis looks for the change."""
 HIGHEST_FACTOR = 1e6
 """Load factor above which no limit is looked for."""
 
@@ -38,7 +46,9 @@ class Family:
         At which end of a bracket it stands.
     exact : callable
         The value at which limit analysis sees the change: None where there is none in the
-        range, inf where it stands at all values.
+        range, inf where it stands at all values, 0 where it does down to the range's end.
+    remark : callable
+        What else limit analysis saw on the way, to be added to a reason.
     """
 
     name: str
@@ -48,6 +58,7 @@ class Family:
     high: float
     stands: Stands
     exact: Callable[[], float | None]
+    remark: Callable[[], str] = str
 
 
 def family_of(problem: Problem, over: str) -> Family:
@@ -57,16 +68,25 @@ def family_of(problem: Problem, over: str) -> Family:
     ----------
     problem : Problem
     over : str
-        `load`, `tilt`, `lean` or `mu`.
+        One of `families_of`.
 
     Raises
     ------
     InputError
         If there is no such parameter, or nothing to multiply.
     """
-    if over not in FAMILIES:
-        raise InputError("--over", over, f"one of {', '.join(FAMILIES)}")
-    return FAMILIES[over](problem)
+    if over in FAMILIES:
+        return FAMILIES[over](problem)
+    known = families_of(problem)
+    if over not in known:
+        raise InputError("--over", over, f"one of {', '.join(known)}")
+    return _over_parameter(problem, over)
+
+
+def families_of(problem: Problem) -> tuple[str, ...]:
+    """Names of the parameters there are: `load`, `tilt`, `lean`, `mu`, and those of a kind."""
+    kind = kind_behind(problem)
+    return (*FAMILIES, *(() if kind is None else kind.bracketed))
 
 
 def _over_load(problem: Problem) -> Family:
@@ -146,6 +166,93 @@ FAMILIES: dict[str, Callable[[Problem], Family]] = {
 }
 
 
+def _over_parameter(problem: Problem, name: str) -> Family:
+    """Return the family over a parameter of the kind a problem was made from.
+
+    Its range is where the kind can be built, around the value at hand.
+    """
+    kind = kind_behind(problem)
+    assert kind is not None  # noqa: S101
+    known, low, high = kind.number(name)
+    now = kind.value(name)
+    ends = max(low, now / WIDEST), min(high, now * WIDEST)
+
+    @lru_cache(maxsize=2 * TRIED)
+    def at(value: float) -> Problem:
+        return with_parameter(problem, name, value)
+
+    values = _built(at, np.geomspace(*ends, TRIED).tolist(), now)
+    stands: Stands = known.stands or "high"
+    scan = _Scan(at, values, stands)
+    return Family(
+        name=name,
+        unit=known.unit,
+        at=at,
+        low=values[0],
+        high=values[-1],
+        stands=stands,
+        exact=lambda: scan.exact,
+        remark=lambda: scan.remark,
+    )
+
+
+def _built(at: Callable[[float], Problem], values: list[float], now: float) -> list[float]:
+    """Return the values around the one at hand of which something can be built."""
+
+    def able(way: list[float]) -> list[float]:
+        found: list[float] = []
+        for value in way:
+            try:
+                at(value)
+            except InputError:
+                break
+            found.append(value)
+        return found
+
+    below = [value for value in values if value < now]
+    return [*able(below[::-1])[::-1], now, *able([value for value in values if value > now])]
+
+
+class _Scan:
+    """What limit analysis says at values of a parameter, from the falling side on."""
+
+    def __init__(
+        self, at: Callable[[float], Problem], values: list[float], stands: Stands
+    ) -> None:
+        self._at = at
+        self._stands: Stands = stands
+        self._values = values if stands == "high" else values[::-1]
+
+    @cached_property
+    def _standing(self) -> list[bool]:
+        return [equilibrium(self._at(value)).margin >= -ENOUGH for value in self._values]
+
+    @cached_property
+    def exact(self) -> float | None:
+        """The first change from falling to standing."""
+        if True not in self._standing:
+            return None
+        first = self._standing.index(True)
+        if first == 0:
+            return 0.0 if self._stands == "high" else math.inf
+        ends = sorted(self._values[first - 1 : first + 1])
+        return _root(self._at, ends[0], ends[1], self._stands)
+
+    @property
+    def remark(self) -> str:
+        """Say whether that is the only change among the values tried."""
+        tried = f"{len(self._values)} values from {min(self._values):.3g} to "
+        tried += f"{max(self._values):.3g}"
+        if True not in self._standing:
+            return f"; tried: {tried}"
+        first = self._standing.index(True)
+        beyond = zip(self._values[first:], self._standing[first:], strict=True)
+        again = next((value for value, stood in beyond if not stood), None)
+        if again is None:
+            return f"; the only change, as far as {tried} tell"
+        return f"; not the only change: it falls again at {again:.6g} (of {tried})"
+
+
 def _root(
     at: Callable[[float], Problem], low: float, high: float, stands: Stands
 ) -> float | None:
@@ -160,4 +267,11 @@ def _root(
         return None
     if margin(falling) >= 0:
         return math.inf if stands == "low" else 0.0
-    return float(brentq(margin, low, high, xtol=1e-13, rtol=1e-12))
+    found = float(brentq(margin, low, high, xtol=1e-13, rtol=1e-12))
+    # What is enough is a little too little: where the margin grows evenly on the standing
+    # side, its zero is taken from there.
+    step = NEAR * max(found, low) * (1 if stands == "high" else -1)
+    one, two = (margin(min(max(found + k * step, low), high)) - ENOUGH for k in (1, 2))
+    if one < 10 * ENOUGH or two <= one:
+        return found
+    return found + step - one * step / (two - one)

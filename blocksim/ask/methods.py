@@ -121,8 +121,8 @@ def _beyond(method: Method, problem: Problem | None) -> str:
         return ""
     if not problem.is_planar and not method.is_spatial:
         return f"{SPATIAL} where gravity leans out of the plane"
-    if method.name == "theory" and not problem.origin:
-        return "limit or an engine: theory is of circular arches only"
+    if method.name == "theory" and "half_angle" not in problem.origin:
+        return "limit or an engine: theory is of symmetric circular arches only"
     if method.is_general or method.is_static:
         return ""
     able = " or ".join(each.name for each in METHODS.values() if each.is_general)

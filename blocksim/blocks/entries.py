@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import Field, TypeAdapter, ValidationError
 
@@ -86,26 +86,36 @@ class MoveEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class StructureFile:
-    """A structure file as written.
+class Around:
+    """What a structure file says besides its blocks: friction, weight and loads.
 
-    `load` (the factor on `live`), `size` and a block's `inertia` and `depth` are what
-    records need to be read back; files may have them, too.
+    `load` (the factor on `live`) and `size` are what records need to be read back; files may
+    have them, too.
     """
 
     __pydantic_config__: ClassVar = _FORBID
 
     friction: Friction
-    blocks: Annotated[list[BlockEntry], Field(min_length=2, max_length=MOST_BLOCKS)]
     title: Annotated[str, Field(max_length=200, strict=True)] = ""
     source: Annotated[str, Field(max_length=500, strict=True)] = ""
     density: Positive = 1.0
-    joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None
     dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
     live: Annotated[tuple[LoadEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     load: Number = 0.0
     size: Positive | None = None
+
+
+AROUND = tuple(field.name for field in fields(Around))
+"""Keys of a structure file that are not of its blocks."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureFile(Around):
+    """A structure file of blocks as written."""
+
+    blocks: Annotated[list[BlockEntry], Field(min_length=2, max_length=MOST_BLOCKS)]
+    joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None
 
 
 _TABLES = (StructureFile, BlockEntry, JointEntry, LoadEntry, MoveEntry)
@@ -121,22 +131,45 @@ _ALLOWED = {
 
 
 def entries_of(table: dict[str, Any]) -> StructureFile:
-    """Check the keys, types and ranges of a structure file.
+    """Check the keys, types and ranges of a structure file of blocks.
 
     Raises
     ------
     InputError
         In one line: the first entry that is wrong.
     """
+    return _checked(_of_blocks(), table)
+
+
+def around_of(table: dict[str, Any]) -> Around:
+    """Check the same of all keys but those of blocks.
+
+    Raises
+    ------
+    InputError
+        In one line: the first entry that is wrong.
+    """
+    return _checked(_of_others(), table)
+
+
+Checked = TypeVar("Checked")
+
+
+def _checked(schema: TypeAdapter[Checked], table: dict[str, Any]) -> Checked:
     try:
-        return _schema().validate_python(table)
+        return schema.validate_python(table)
     except ValidationError as error:
         raise _first_of(error) from None
 
 
 @cache
-def _schema() -> TypeAdapter[StructureFile]:
+def _of_blocks() -> TypeAdapter[StructureFile]:
     return TypeAdapter(StructureFile)
+
+
+@cache
+def _of_others() -> TypeAdapter[Around]:
+    return TypeAdapter(Around)
 
 
 def _first_of(error: ValidationError) -> InputError:

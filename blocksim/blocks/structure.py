@@ -1,64 +1,25 @@
-"""The structure file: blocks, joints, friction and loads, in JSON or TOML.
+"""The structure file as data: blocks, joints, friction and loads.
 
 Lengths in m, forces in N, y upwards. Its keys are those of `entries.StructureFile`.
 """
 
 from __future__ import annotations
 
-import json
 import math
-import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT
-from blocksim.blocks.entries import Id, LoadEntry, StructureFile, entries_of
+from blocksim.blocks.assembly import SUPPORT, Assembly
+from blocksim.blocks.entries import Around, Id, LoadEntry, StructureFile, entries_of
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
-from blocksim.common.files import require_file
-
-LARGEST_FILE = 50_000_000
-"""Bytes; a larger file is not read."""
-
-
-def load_structure(path: Path | str) -> Problem:
-    """Read a structure file.
-
-    Parameters
-    ----------
-    path : Path or str
-        Ends in .json or .toml.
-
-    Raises
-    ------
-    InputError
-        In one line: file, entry, value, and what would be accepted.
-    """
-    path = Path(path)
-    allowed = "an existing structure file, .json or .toml"
-    require(path.suffix in {".json", ".toml"}, "structure", str(path), allowed)
-    require_file(path, "structure", allowed, LARGEST_FILE)
-    kind = "JSON" if path.suffix == ".json" else "TOML"
-    try:
-        text = path.read_text(encoding="utf-8")
-        data: object = (
-            json.loads(text, object_pairs_hook=_once) if kind == "JSON" else tomllib.loads(text)
-        )
-        return structure_of(data)
-    except InputError as error:
-        raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
-    except (ValueError, RecursionError) as error:
-        # Not JSON or TOML, no UTF-8, numbers beyond all bounds, or nested too deeply.
-        said = " ".join(str(error).split())
-        raise InputError("file", said, f"valid {kind}", where=str(path)) from None
 
 
 def structure_of(data: object) -> Problem:
@@ -76,18 +37,22 @@ def structure_of(data: object) -> Problem:
     """
     require(isinstance(data, dict), "structure", type(data).__name__, "a table of keys")
     table = cast(dict[str, Any], data)
-    if "kind" in table:
-        raise InputError("kind", table["kind"], "left out: give blocks; there are no kinds yet")
-    return _problem(entries_of(table))
+    written = entries_of(table)
+    bodies = _bodies(written)
+    joints = _joints(written, bodies)
+    found = assembly_of_bodies(
+        bodies, joints=joints, density=written.density, size=written.size
+    )
+    return problem_of(written, bodies, *found)
 
 
-def _problem(written: StructureFile) -> Problem:
-    index: dict[str, int] = {}
+def _bodies(written: StructureFile) -> list[Body]:
+    index = set[str]()
     bodies: list[Body] = []
     for at, block in enumerate(written.blocks):
         name, field = str(block.id), f"blocks[{at}]"
         require(name not in index, f"{field}.id", block.id, "an id that no other block has")
-        index[name] = at
+        index.add(name)
         if block.vertices is None and block.polygons is None:
             raise InputError(f"{field}.vertices", MISSING, "given")
         require(
@@ -107,34 +72,66 @@ def _problem(written: StructureFile) -> Problem:
                 depth=block.depth,
             )
         )
+    return bodies
+
+
+def _joints(written: StructureFile, bodies: Sequence[Body]) -> list[GivenJoint] | None:
+    if written.joints is None:
+        return None
+    body_of = _Names(bodies)
+    joints: list[GivenJoint] = []
+    for at, joint in enumerate(written.joints):
+        a = body_of(joint.a, f"joints[{at}].a")
+        b = body_of(joint.b, f"joints[{at}].b")
+        require(a != b, f"joints[{at}].b", joint.b, "another block than a")
+        both = bodies[a].fixed and bodies[b].fixed
+        require(not both, f"joints[{at}]", "two fixed blocks", "left out")
+        joints.append(
+            GivenJoint(
+                a=a,
+                b=b,
+                ends=np.array(joint.ends, dtype=float),
+                normal=None if joint.normal is None else np.array(joint.normal, dtype=float),
+                friction=_friction(joint.friction),
+                faces=None if joint.faces is None else np.array(joint.faces, dtype=float),
+            )
+        )
+    return joints
+
+
+class _Names:
+    """Bodies by name."""
+
+    def __init__(self, bodies: Sequence[Body]) -> None:
+        self._index = {body.name: at for at, body in enumerate(bodies)}
+
+    def __call__(self, name: Id, field: str) -> int:
+        """Return the place of a body."""
+        require(str(name) in self._index, field, name, "the id of a block")
+        return self._index[str(name)]
+
+
+def problem_of(
+    written: Around, bodies: Sequence[Body], assembly: Assembly, found: Sequence[str]
+) -> Problem:
+    """Make a problem of an assembly and of what a file says besides.
+
+    Parameters
+    ----------
+    written : Around
+    bodies : sequence of Body
+        Of which the assembly was made, each with a name of its own.
+    assembly : Assembly
+    found : sequence of str
+        Notes on how it was made.
+
+    Raises
+    ------
+    InputError
+        In one line: a load on no block.
+    """
     fixed = [body.fixed for body in bodies]
-
-    def body_of(name: Id, field: str) -> int:
-        require(str(name) in index, field, name, "the id of a block")
-        return index[str(name)]
-
-    joints: list[GivenJoint] | None = None
-    if written.joints is not None:
-        joints = []
-        for at, joint in enumerate(written.joints):
-            a = body_of(joint.a, f"joints[{at}].a")
-            b = body_of(joint.b, f"joints[{at}].b")
-            require(a != b, f"joints[{at}].b", joint.b, "another block than a")
-            require(
-                not (fixed[a] and fixed[b]), f"joints[{at}]", "two fixed blocks", "left out"
-            )
-            joints.append(
-                GivenJoint(
-                    a=a,
-                    b=b,
-                    ends=np.array(joint.ends, dtype=float),
-                    normal=None
-                    if joint.normal is None
-                    else np.array(joint.normal, dtype=float),
-                    friction=_friction(joint.friction),
-                    faces=None if joint.faces is None else np.array(joint.faces, dtype=float),
-                )
-            )
+    body_of = _Names(bodies)
     # Blocks that move are numbered without the fixed ones, and these without those.
     moving = np.cumsum([not each for each in fixed]) - 1
     bed = np.cumsum(fixed) - 1
@@ -187,9 +184,6 @@ def _problem(written: StructureFile) -> Problem:
         place = body_of(move.block, f"move[{at}].block")
         require(fixed[place], f"move[{at}].block", move.block, "a fixed block")
         moves.append(Move(support=int(bed[place]), direction=np.array(move.direction)))
-    assembly, found = assembly_of_bodies(
-        bodies, joints=joints, density=written.density, size=written.size
-    )
     mu = _friction(written.friction)
     own = {joint.friction for joint in assembly.joints}
     if len(own) == 1 and own != {None}:
@@ -209,15 +203,6 @@ def _problem(written: StructureFile) -> Problem:
         source=written.source,
         notes=(*notes, *found),
     )
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Refuse a key that stands twice in a table of JSON."""
-    table: dict[str, Any] = {}
-    for key, value in pairs:
-        require(key not in table, key, "given twice", "given once in a table")
-        table[key] = value
-    return table
 
 
 def _friction(value: float | str | None) -> float | None:

@@ -58,6 +58,7 @@ from blocksim.cli.options import (
     thickness_words,
 )
 from blocksim.cli.structures import (
+    THICKNESS,
     Loading,
     bracket_structure,
     check_structure,
@@ -78,8 +79,6 @@ from blocksim.report.answers import (
     check_record,
 )
 
-THICKNESS = "thickness"
-"""The parameter of `bracket` that is left out: of arches only."""
 FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0
 """Seconds."""

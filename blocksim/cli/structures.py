@@ -11,16 +11,16 @@ import typer
 
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
-from blocksim.ask.families import FAMILIES, family_of
+from blocksim.ask.families import families_of, family_of
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.blocks.structure import load_structure
 from blocksim.cli.console import answer_with, progress, save_picture, say
 from blocksim.cli.options import EXIT_CODES, Given, named_options, settings_of
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_place
 from blocksim.evidence.recording import Recording
+from blocksim.kinds.files import load_structure
 from blocksim.report.structures import (
     bracket_lines,
     bracket_record,
@@ -28,6 +28,8 @@ from blocksim.report.structures import (
     check_record,
 )
 
+THICKNESS = "thickness"
+"""The parameter of `bracket` that is left out: of arches."""
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
 
@@ -114,8 +116,10 @@ def bracket_structure(
     as_json: bool,
 ) -> None:
     """Answer `bracket` over any parameter."""
+    known = families_of(problem)
+    over = over or (THICKNESS if THICKNESS in known else None)
     if over is None:
-        raise InputError("--over", None, f"one of {', '.join(FAMILIES)}")
+        raise InputError("--over", None, f"one of {', '.join(known)}")
     with named_options(), progress() as report:
         answer = bracket(
             family_of(problem, over),

@@ -160,7 +160,7 @@ class Setup:
     @property
     def length(self) -> str:
         """What the unit of length is called: the radius of an arch, or the size of others."""
-        return "r" if self.problem.origin else "L"
+        return "r" if "half_angle" in self.problem.origin else "L"
 
     @property
     def blocks(self) -> int:

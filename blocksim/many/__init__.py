@@ -1,9 +1,10 @@
-"""Many arches: a design of cases, asked of any executor, with rows that survive a kill."""
+"""Many arches or other structures: a design of cases for any executor; rows survive a kill."""
 
 from blocksim.many.case import Case as Case
 from blocksim.many.case import Questions as Questions
 from blocksim.many.design import Design as Design
-from blocksim.many.design import load_design as load_design
+from blocksim.many.kinddesign import KindDesign as KindDesign
+from blocksim.many.load import load_design as load_design
 from blocksim.many.run import Summary as Summary
 from blocksim.many.run import sweep as sweep
 from blocksim.many.shards import read_rows as read_rows

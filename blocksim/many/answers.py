@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import blocksim
 from blocksim.arch.bracket import bracket
@@ -18,9 +18,11 @@ from blocksim.arch.circular import Arch
 from blocksim.ask.methods import STATIC
 from blocksim.common.errors import MissingPart
 from blocksim.engines import get_engine
-from blocksim.many.case import AUTO_ENGINE, Case, Given
-from blocksim.many.statics import Row, by_statics
+from blocksim.many.case import AUTO_ENGINE, Case, Pace, Row
+from blocksim.many.statics import by_statics
+from blocksim.many.structurecase import StructureCase, reason_of
 
+AnyCase = Case | StructureCase
 _ENCODER = json.JSONEncoder(allow_nan=False, check_circular=False)
 
 
@@ -28,21 +30,11 @@ class Asked(NamedTuple):
     """A case and its identity."""
 
     identity: bytes
-    case: Case
+    case: AnyCase
 
-
-class Kind(NamedTuple):
-    """Cases that take about the same time."""
-
-    method: str
-    voussoirs: int
-    is_bracket: bool
-    settings: Given
-
-    @classmethod
-    def of(cls, case: Case) -> Kind:
-        """Return the kind of a case."""
-        return cls(case.method, case.voussoirs, case.is_bracket, case.settings)
+    def row(self, versions: dict[str, str]) -> Row:
+        """Return its row with nothing answered."""
+        return self.case.row(self.identity, versions[self.case.method])
 
 
 @dataclass(kw_only=True)
@@ -83,12 +75,12 @@ class Answered(NamedTuple):
     lines : list of bytes
     tally : Tally
     seconds : dict
-        Per kind: number of cases and time taken [s].
+        Per pace of cases: number of cases and time taken [s].
     """
 
     lines: list[bytes]
     tally: Tally
-    seconds: dict[Kind, tuple[int, float]]
+    seconds: dict[Pace, tuple[int, float]]
 
 
 @cache
@@ -128,33 +120,45 @@ def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
         if version_of(method) != versions[method]:
             part = f"blocksim {versions[method]}"
             raise MissingPart(part, f"a worker has {version_of(method)}; install the same")
-    started = time.perf_counter()
-    rows = [_question(each, versions[each.case.method]) for each in asked]
+    rows = [each.row(versions) for each in asked]
     cases = [each.case for each in asked]
+    arches = [k for k, case in enumerate(cases) if isinstance(case, Case)]
+    simulated = set(_arches([cast(Case, cases[k]) for k in arches], [rows[k] for k in arches]))
+    simulated = {arches[k] for k in simulated}
+    for k, case in enumerate(cases):
+        if isinstance(case, StructureCase) and case.answer(rows[k]):
+            simulated.add(k)
+    tally = Tally(rows=len(rows), failed=sum(row["error"] is not None for row in rows))
+    seconds: defaultdict[Pace, tuple[int, float]] = defaultdict(lambda: (0, 0.0))
+    for k, (case, row) in enumerate(zip(cases, rows, strict=True)):
+        wall = float(str(row["wall_s"]))
+        count, total = seconds[case.pace]
+        seconds[case.pace] = count + 1, total + wall
+        if k in simulated:
+            tally.simulated += 1
+            tally.simulated_s += wall
+        elif isinstance(case, Case) and case.band and row["error"] is None:
+            tally.spared += 1
+    return Answered([encoded(row) for row in rows], tally, dict(seconds))
+
+
+def _arches(cases: list[Case], rows: list[Row]) -> list[int]:
+    """Fill in the rows of arches, in bulk where statics tell; return those simulated."""
+    if not cases:
+        return []
+    started = time.perf_counter()
     simulations = by_statics(cases, rows)
     share = (time.perf_counter() - started) / len(rows)
     for row in rows:
         row["wall_s"] = share
     for k in simulations:
         _by_simulation(cases[k], rows[k])
-    tally = Tally(rows=len(rows), failed=sum(row["error"] is not None for row in rows))
-    seconds: defaultdict[Kind, tuple[int, float]] = defaultdict(lambda: (0, 0.0))
-    simulated = set(simulations)
-    for k, (case, row) in enumerate(zip(cases, rows, strict=True)):
-        kind, wall = Kind.of(case), float(str(row["wall_s"]))
-        count, total = seconds[kind]
-        seconds[kind] = count + 1, total + wall
-        if k in simulated:
-            tally.simulated += 1
-            tally.simulated_s += wall
-        elif case.band and row["error"] is None:
-            tally.spared += 1
-    return Answered([encoded(row) for row in rows], tally, dict(seconds))
+    return simulations
 
 
 def failed(asked: Asked, versions: dict[str, str], why: str) -> Answered:
     """Return the row of a case that no worker could answer."""
-    row = _question(asked, versions[asked.case.method])
+    row = asked.row(versions)
     row["error"] = why
     return Answered([encoded(row)], Tally(rows=1, failed=1), {})
 
@@ -162,36 +166,6 @@ def failed(asked: Asked, versions: dict[str, str], why: str) -> Answered:
 def encoded(row: Row) -> bytes:
     """Return a row as one line of JSON."""
     return _ENCODER.encode(row).encode() + b"\n"
-
-
-def _question(asked: Asked, version: str) -> Row:
-    """Return the row of a case with nothing answered."""
-    case = asked.case
-    return {
-        "id": asked.identity.hex(),
-        "half_angle_deg": case.half_angle_deg,
-        "mu": "inf" if math.isinf(case.mu) else case.mu,
-        "voussoirs": case.voussoirs,
-        "weight": case.weight,
-        "eta": case.eta,
-        "ratio": case.ratio,
-        "asked": case.method,
-        "settings": dict(case.settings) or None,
-        "method": "limit" if case.method == "auto" else case.method,
-        "version": version,
-        "verdict": None,
-        "mode": None,
-        "mode_in_motion": None,
-        "mode_theory": None,
-        "eta_theory": None,
-        "eta_limit": None,
-        "eta_low": None,
-        "eta_high": None,
-        "confirmed": None,
-        "reason": None,
-        "error": None,
-        "wall_s": 0.0,
-    }
 
 
 def _by_simulation(case: Case, row: Row) -> None:
@@ -239,8 +213,3 @@ def _by_simulation(case: Case, row: Row) -> None:
     except Exception as error:
         row["error"] = reason_of(error)
     row["wall_s"] = time.perf_counter() - started
-
-
-def reason_of(error: BaseException) -> str:
-    """Say in one line what went wrong."""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"

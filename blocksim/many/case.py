@@ -1,15 +1,21 @@
-"""A case: one question about one arch, and its identity."""
+"""A case: one question about one arch, its identity, and its row."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from hashlib import blake2b
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from blocksim.arch.circular import Weight
 
+if TYPE_CHECKING:
+    from blocksim.many.structurecase import StructureCase
+
 AUTO_ENGINE = "direct"
 """What `auto` simulates with."""
+Row = dict[str, object]
+Pace = tuple[object, ...]
 Given = tuple[tuple[str, float], ...]
 """Settings by name."""
 
@@ -62,13 +68,46 @@ class Case(NamedTuple):
         """Whether the question is how thin the arch can be."""
         return self.eta is None and self.ratio is None
 
+    @property
+    def pace(self) -> Pace:
+        """What cases that take about the same time have in common."""
+        return self.method, self.voussoirs, self.is_bracket, self.settings
+
+    def row(self, identity: bytes, version: str) -> Row:
+        """Return the row with nothing answered."""
+        return {
+            "id": identity.hex(),
+            "half_angle_deg": self.half_angle_deg,
+            "mu": "inf" if math.isinf(self.mu) else self.mu,
+            "voussoirs": self.voussoirs,
+            "weight": self.weight,
+            "eta": self.eta,
+            "ratio": self.ratio,
+            "asked": self.method,
+            "settings": dict(self.settings) or None,
+            "method": "limit" if self.method == "auto" else self.method,
+            "version": version,
+            "verdict": None,
+            "mode": None,
+            "mode_in_motion": None,
+            "mode_theory": None,
+            "eta_theory": None,
+            "eta_limit": None,
+            "eta_low": None,
+            "eta_high": None,
+            "confirmed": None,
+            "reason": None,
+            "error": None,
+            "wall_s": 0.0,
+        }
+
     def identity(self, version: str) -> bytes:
         """Hash of what is asked and of the version of the method that answers."""
         return blake2b(f"{tuple(self)!r} {version}".encode(), digest_size=12).digest()
 
 
 class Questions(Protocol):
-    """What a sweep asks: a `Design`, or anything else with these three."""
+    """What a sweep asks: a `Design`, a `KindDesign`, or anything else with these three."""
 
     @property
     def method(self) -> tuple[str, ...]:
@@ -80,6 +119,6 @@ class Questions(Protocol):
         """Number of cases, by which progress is told."""
         ...
 
-    def cases(self) -> Iterator[Case]:
+    def cases(self) -> Iterator[Case | StructureCase]:
         """Give the cases, always in the same order."""
         ...

@@ -194,8 +194,8 @@ _Values = tuple[float, ...]
 """Of the settings given."""
 
 
-def load_design(path: AnyPath) -> Design:
-    """Read a design.
+def load_arch_design(path: AnyPath) -> Design:
+    """Read a design of symmetric circular arches.
 
     Parameters
     ----------

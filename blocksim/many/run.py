@@ -23,16 +23,16 @@ from blocksim.common.processes import Crew, processes
 from blocksim.common.progress import Progress, silent
 from blocksim.many.answers import (
     Answered,
+    AnyCase,
     Asked,
-    Kind,
     Tally,
     answer,
     failed,
-    reason_of,
     version_of,
 )
-from blocksim.many.case import Case, Questions
+from blocksim.many.case import Pace, Questions
 from blocksim.many.shards import identities, locked, write_shard
+from blocksim.many.structurecase import reason_of
 
 SHARE = 0.05
 """Time a chunk is meant to take, as a share of that gone by: what a kill loses is small."""
@@ -168,15 +168,15 @@ class _Todo:
         self._versions = versions
         self._done = done
         self._seen: set[bytes] = set()
-        self._pace: dict[Kind, tuple[int, float]] = {}
+        self._pace: dict[Pace, tuple[int, float]] = {}
         self._started = time.perf_counter()
         self.found = 0
 
     def learn(self, answered: Answered) -> None:
         """Note how long cases took."""
-        for kind, (count, seconds) in answered.seconds.items():
-            before = self._pace.get(kind, (0, 0.0))
-            self._pace[kind] = before[0] + count, before[1] + seconds
+        for pace, (count, seconds) in answered.seconds.items():
+            before = self._pace.get(pace, (0, 0.0))
+            self._pace[pace] = before[0] + count, before[1] + seconds
 
     def chunk(self) -> Chunk:
         """Next cases; none at the end."""
@@ -197,9 +197,9 @@ class _Todo:
                 break
         return chunk
 
-    def _seconds(self, case: Case) -> float:
-        """Time a case will take, by those of its kind so far."""
-        count, seconds = self._pace.get(Kind.of(case), (0, 0.0))
+    def _seconds(self, case: AnyCase) -> float:
+        """Time a case will take, by those of its pace so far."""
+        count, seconds = self._pace.get(case.pace, (0, 0.0))
         if count:
             return seconds / count
         return STATIC_SECONDS if case.method in STATIC else LONGEST

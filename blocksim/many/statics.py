@@ -15,9 +15,7 @@ from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.ask.methods import STATIC
 from blocksim.blocks.assembly import Array
 from blocksim.evidence.verdict import Verdict
-from blocksim.many.case import Case
-
-Row = dict[str, object]
+from blocksim.many.case import Case, Row
 
 
 def by_statics(cases: Sequence[Case], rows: list[Row]) -> list[int]:

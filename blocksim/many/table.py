@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from importlib.util import find_spec
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, BinaryIO
 
 from blocksim.common.errors import MissingPart
@@ -38,7 +39,33 @@ COLUMNS = {
     "error": "string",
     "wall_s": "double",
 }
-"""The keys of a row, and what Arrow calls their types."""
+"""The keys of a row of an arch, and what Arrow calls their types."""
+STRUCTURE_COLUMNS = {
+    "id": "string",
+    "kind": "string",
+    "parameters": "string",
+    "mu": "double",
+    "load": "double",
+    "tilt_deg": "double",
+    "over": "string",
+    "asked": "string",
+    "settings": "settings",
+    "method": "string",
+    "version": "string",
+    "verdict": "string",
+    "rest": "string",
+    "load_factor": "double",
+    "limit": "double",
+    "low": "double",
+    "high": "double",
+    "confirmed": "bool",
+    "reason": "string",
+    "error": "string",
+    "wall_s": "double",
+}
+"""The same of other structures; parameters, of which each kind has its own, are JSON."""
+NUMBERS = ("mu", "load_factor", "limit")
+"""Those that may be infinite, which JSON writes as a text."""
 
 
 def require_parquet() -> None:
@@ -73,8 +100,11 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
 
     arrow: Any = pyarrow
     tables: Any = parquet
-    schema = _schema(arrow)
     rows = read_rows(folder)
+    empty: dict[str, object] = {}
+    first = next(rows, empty)
+    schema = _schema(arrow, STRUCTURE_COLUMNS if "kind" in first else COLUMNS)
+    rows = chain([first] if first else [], rows)
 
     def write(file: BinaryIO) -> None:
         with tables.ParquetWriter(file, schema, compression="zstd") as table:
@@ -85,15 +115,21 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
 
 
 def _numbered(row: dict[str, object]) -> dict[str, object]:
-    """Return a row with its friction as a number."""
-    return {**row, "mu": float(str(row["mu"]))}
+    """Return a row with its numbers as such, and parameters as JSON."""
+    found = dict(row)
+    for key in NUMBERS:
+        if found.get(key) is not None:
+            found[key] = float(str(found[key]))
+    if "parameters" in found:
+        found["parameters"] = json.dumps(found["parameters"])
+    return found
 
 
-def _schema(arrow: Any) -> Any:
-    types = {kind: arrow.type_for_alias(kind) for kind in {*COLUMNS.values()} - {"settings"}}
+def _schema(arrow: Any, columns: dict[str, str]) -> Any:
+    types = {kind: arrow.type_for_alias(kind) for kind in {*columns.values()} - {"settings"}}
     fields = [
         (name, types["int64" if setting.is_whole else "double"])
         for name, setting in SETTINGS.items()
     ]
     types["settings"] = arrow.struct(fields)
-    return arrow.schema([(key, types[kind]) for key, kind in COLUMNS.items()])
+    return arrow.schema([(key, types[kind]) for key, kind in columns.items()])

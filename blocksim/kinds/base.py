@@ -1,0 +1,306 @@
+"""What every kind of structure is: a table of parameters, and the bodies it makes of them."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, Literal, Self, cast
+
+from blocksim.blocks.given import GivenJoint
+from blocksim.blocks.polygons import Body
+from blocksim.common.checks import is_number, require
+from blocksim.common.errors import InputError
+
+Array = Any
+Stands = Literal["low", "high"]
+FARTHEST = 1e6
+"""Largest length [m]."""
+MOST = 1000
+"""Largest number of voussoirs, courses or stones."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """What is known of a parameter: messages, ranges and tables in pages come from it.
+
+    Parameters
+    ----------
+    about : str
+        In a line.
+    unit : str
+        m, deg, or nothing.
+    low, high : float
+        Range, ends included; `above` says that the low end is not.
+    above : bool
+    whole : bool
+        Whether it is a whole number.
+    choices : tuple of str
+        Words, where it is one of them.
+    optional : bool
+        Whether it may be left out for nothing.
+    tables : bool
+        Whether it is a list of tables.
+    table : bool
+        Whether it is a table of an arch.
+    stands : {"low", "high"} or None
+        On which side structures stand, where it may be bracketed over.
+    """
+
+    about: str
+    unit: str = ""
+    low: float = 0.0
+    high: float = math.inf
+    above: bool = True
+    whole: bool = False
+    choices: tuple[str, ...] = ()
+    optional: bool = False
+    tables: bool = False
+    table: bool = False
+    stands: Stands | None = None
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it is a number."""
+        return not (self.choices or self.tables or self.table)
+
+    def require(
+        self, name: str, value: object, within: tuple[float, float] | None = None
+    ) -> None:
+        """Raise `InputError` unless a value is one, in its own range or a narrower one."""
+        low, high = within or (self.low, self.high)
+        above = self.above or low != self.low
+        allowed = self.allowed(low, high, above)
+        if self.optional and value is None:
+            return
+        if self.choices:
+            require(value in self.choices, name, value, allowed)
+        elif self.is_number:
+            # Just below a low end that counts is_number takes it.
+            least = low if above else math.nextafter(low, -math.inf)
+            ok = is_number(value, least, high) and math.isfinite(cast(float, value))
+            ok = ok and (not self.whole or value == int(cast(float, value)))
+            require(ok, name, value, allowed)
+
+    def allowed(self, low: float, high: float, above: bool) -> str:
+        """Say which values it may have."""
+        if self.choices:
+            return f"one of {', '.join(self.choices)}"
+        unit = f" {self.unit}" if self.unit else ""
+        if self.whole:
+            return f"a whole number from {low:g} to {high:g}"
+        start = f"above {low:.6g}" if above else f"{low:.6g} or more"
+        return f"{start} and at most {high:.6g}{unit}"
+
+
+def parameter(default: object, about: str, **known: Any) -> Any:
+    """Make a field of a kind; see `Parameter`."""
+    return field(default=default, metadata={"parameter": Parameter(about=about, **known)})
+
+
+def metres(default: float, about: str, **known: Any) -> Any:
+    """Make a field that is a length above 0 [m]."""
+    return parameter(default, about, unit="m", **{"high": FARTHEST, **known})
+
+
+def count(default: int, about: str, **known: Any) -> Any:
+    """Make a field that is a number of things."""
+    return parameter(
+        default, about, whole=True, **{"low": 1, "high": MOST, "above": False, **known}
+    )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Fill:
+    """What presses on a block besides gravity.
+
+    Parameters
+    ----------
+    body : int
+        Which of the bodies bears it.
+    weight : float
+        [N]
+    point : (float, float)
+        Where its line of action meets the block [m].
+    """
+
+    body: int
+    weight: float
+    point: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Made:
+    """What a kind makes of its parameters.
+
+    Parameters
+    ----------
+    bodies : tuple of Body
+    joints : tuple of GivenJoint or None
+        None where they are to be found.
+    fills : tuple of Fill
+    """
+
+    bodies: tuple[Body, ...]
+    joints: tuple[GivenJoint, ...] | None = None
+    fills: tuple[Fill, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """Parameters, each checked against its range.
+
+    Raises
+    ------
+    InputError
+        Naming the parameter, its value, and what it may be.
+    """
+
+    def __post_init__(self) -> None:
+        """Check first each value alone, then those that depend on others."""
+        for name, known in parameters_of(type(self)).items():
+            known.require(name, getattr(self, name))
+        # What all kinds have comes first and depends on what comes after it.
+        for name, known in reversed(parameters_of(type(self)).items()):
+            known.require(name, getattr(self, name), self.limits(name))
+
+    def limits(self, name: str) -> tuple[float, float]:
+        """Range of a parameter beside the others."""
+        known = parameters_of(type(self))[name]
+        return known.low, known.high
+
+    def table(self) -> dict[str, object]:
+        """Return the parameters as a file has them."""
+        return {name: _plain(getattr(self, name)) for name in parameters_of(type(self))}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind(Table, ABC):
+    """A kind of structure."""
+
+    name: ClassVar[str]
+    about: ClassVar[str]
+    is_arch: ClassVar[bool] = False
+    row_types: ClassVar[Mapping[str, type[Table]]] = {}
+
+    @abstractmethod
+    def made(self, density: float) -> Made:
+        """Make the bodies.
+
+        Parameters
+        ----------
+        density : float
+            Weight per volume [N/m^3].
+        """
+
+    def table(self) -> dict[str, object]:
+        """Return the parameters as a file has them, with the kind's name."""
+        return {"kind": self.name, **super().table()}
+
+    def changed(self, name: str, value: object) -> Self:
+        """Return the same with another value of a parameter; `arch.thickness`: of its arch."""
+        here, _, rest = name.partition(".")
+        if rest:
+            value = cast(Kind, getattr(self, here)).changed(rest, value)
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        return type(self)(**{**given, here: value})
+
+    def number(self, name: str) -> tuple[Parameter, float, float]:
+        """Return what is known of a number that may be bracketed over, and its range."""
+        here, _, rest = name.partition(".")
+        if rest:
+            return cast(Kind, getattr(self, here)).number(rest)
+        return parameters_of(type(self))[here], *self.limits(here)
+
+    def value(self, name: str) -> float:
+        """Return the value of such a number."""
+        here, _, rest = name.partition(".")
+        if rest:
+            return cast(Kind, getattr(self, here)).value(rest)
+        return float(getattr(self, here))
+
+    @property
+    def bracketed(self) -> tuple[str, ...]:
+        """Names of the parameters that may be bracketed over."""
+        names: list[str] = []
+        for name, known in parameters_of(type(self)).items():
+            if known.stands is not None and getattr(self, name) is not None:
+                names.append(name)
+            elif known.table:
+                names += [f"{name}.{each}" for each in getattr(self, name).bracketed]
+        return tuple(names)
+
+
+def parameters_of(table: type[Table]) -> dict[str, Parameter]:
+    """Return what is known of each parameter, by name, in order."""
+    return {each.name: each.metadata["parameter"] for each in fields(table)}
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Table):
+        return value.table()
+    if isinstance(value, tuple):
+        return [_plain(each) for each in cast("tuple[object, ...]", value)]
+    return value
+
+
+def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Kind]], path: str = "") -> Kind:
+    """Read a kind from a table.
+
+    Parameters
+    ----------
+    written : mapping
+        `kind`, and parameters.
+    kinds : sequence of types
+        Those there are.
+    path : str
+        What leads to the table, for messages: `arch.`.
+
+    Raises
+    ------
+    InputError
+        In one line: no such kind or parameter, or a value out of range.
+    """
+    named = written.get("kind")
+    known = {each.name: each for each in kinds}
+    allowed = f"one of {', '.join(known)}"
+    if not isinstance(named, str) or named not in known:
+        raise InputError(f"{path}kind", named, allowed)
+    chosen = known[named]
+    given = {key: value for key, value in written.items() if key != "kind"}
+    return cast(Kind, _table_of(chosen, given, kinds, path, f"a {named} has"))
+
+
+def _table_of(
+    chosen: type[Table],
+    written: Mapping[str, Any],
+    kinds: Sequence[type[Kind]],
+    path: str,
+    has: str,
+) -> Table:
+    parameters = parameters_of(chosen)
+    given: dict[str, Any] = {}
+    for key, value in written.items():
+        known = parameters.get(key)
+        if known is None:
+            raise InputError(f"{path}{key}", value, f"left out: {has} {', '.join(parameters)}")
+        where = f"{path}{key}"
+        given[key] = value
+        if known.table:
+            require(isinstance(value, Mapping), where, value, "a table with a kind of arch")
+            arches = [each for each in kinds if each.is_arch]
+            given[key] = kind_of(cast("Mapping[str, Any]", value), arches, f"{where}.")
+        elif known.tables:
+            require(isinstance(value, list | tuple), where, value, "a list of tables")
+            row = cast("type[Kind]", chosen).row_types[key]
+            tables: list[Table] = []
+            for at, each in enumerate(cast("Sequence[Any]", value)):
+                require(isinstance(each, Mapping), f"{where}[{at}]", each, "a table")
+                each = cast("Mapping[str, Any]", each)
+                tables.append(_table_of(row, each, kinds, f"{where}[{at}].", "it has"))
+            given[key] = tuple(tables)
+    try:
+        return chosen(**given)
+    except InputError as error:
+        raise InputError(f"{path}{error.field}", error.value, error.allowed) from None

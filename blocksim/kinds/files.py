@@ -1,0 +1,215 @@
+"""Structure files, JSON or TOML: blocks, or a kind and its parameters.
+
+Lengths in m, forces in N, angles in degrees, y upwards. The keys besides blocks are those of
+`blocks.entries.Around`, with blocks those of `StructureFile`.
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from blocksim.blocks import structure
+from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
+from blocksim.blocks.entries import AROUND, Around, around_of
+from blocksim.blocks.given import GivenJoint
+from blocksim.blocks.polygons import Body, assembly_of_bodies
+from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
+from blocksim.common.checks import require
+from blocksim.common.errors import InputError
+from blocksim.common.files import require_file
+from blocksim.kinds import KINDS
+from blocksim.kinds.base import Kind, kind_of
+
+LARGEST_FILE = 50_000_000
+"""Bytes; a larger file is not read."""
+
+
+def load_structure(path: Path | str) -> Problem:
+    """Read a structure file.
+
+    Parameters
+    ----------
+    path : Path or str
+        Ends in .json or .toml.
+
+    Raises
+    ------
+    InputError
+        In one line: file, entry, value, and what would be accepted.
+    """
+    path = Path(path)
+    allowed = "an existing structure file, .json or .toml"
+    require(path.suffix in {".json", ".toml"}, "structure", str(path), allowed)
+    require_file(path, "structure", allowed, LARGEST_FILE)
+    written = "JSON" if path.suffix == ".json" else "TOML"
+    try:
+        text = path.read_text(encoding="utf-8")
+        data: object = (
+            json.loads(text, object_pairs_hook=_once)
+            if written == "JSON"
+            else tomllib.loads(text)
+        )
+        return structure_of(data)
+    except InputError as error:
+        raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
+    except (ValueError, RecursionError) as error:
+        # Not JSON or TOML, no UTF-8, numbers beyond all bounds, or nested too deeply.
+        said = " ".join(str(error).split())
+        raise InputError("file", said, f"valid {written}", where=str(path)) from None
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse a key that stands twice in a table of JSON."""
+    table: dict[str, Any] = {}
+    for key, value in pairs:
+        require(key not in table, key, "given twice", "given once in a table")
+        table[key] = value
+    return table
+
+
+def structure_of(data: object) -> Problem:
+    """Make a problem of what a structure file says.
+
+    Parameters
+    ----------
+    data : object
+        A dict: with `blocks`, or with `kind` and its parameters, and the keys of `Around`.
+
+    Raises
+    ------
+    InputError
+        In one line: the first entry that is wrong, its value, and what would be accepted.
+    """
+    if not isinstance(data, dict) or "kind" not in data:
+        return structure.structure_of(cast("object", data))
+    table = cast("dict[str, Any]", data)
+    require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
+    kind = kind_of({key: table[key] for key in table if key not in AROUND}, ALL)
+    return problem_of(kind, around_of({key: table[key] for key in table if key in AROUND}))
+
+
+ALL = tuple(KINDS.values())
+
+
+def problem_of(kind: Kind, around: Around) -> Problem:
+    """Ask about a kind of structure.
+
+    Parameters
+    ----------
+    kind : Kind
+    around : Around
+        Friction, loads and the like.
+
+    Returns
+    -------
+    Problem
+        Dead loads begin with the weight of fill; its origin is the kind's table.
+    """
+    made = kind.made(around.density)
+    if made.joints is None:
+        found = assembly_of_bodies(made.bodies, density=around.density, size=around.size)
+    else:
+        found = assembly_as_made(made.bodies, made.joints, around.size), ()
+    problem = structure.problem_of(around, made.bodies, *found)
+    place = np.cumsum([not body.fixed for body in made.bodies]) - 1
+    fills = tuple(
+        Load(
+            force=np.array([0.0, -fill.weight]),
+            blocks=(int(place[fill.body]),),
+            point=np.array(fill.point),
+        )
+        for fill in made.fills
+    )
+    return replace(
+        problem,
+        dead=(*fills, *problem.dead),
+        title=problem.title or kind.name,
+        origin={**kind.table(), "density": around.density},
+    )
+
+
+def assembly_as_made(
+    bodies: Sequence[Body], joints: Sequence[GivenJoint], size: float | None
+) -> Assembly:
+    """Build an assembly of bodies with weights, whose joints are whole faces of both.
+
+    Nothing is looked for: a search for the least thickness builds dozens of them.
+    """
+    moving = [body for body in bodies if not body.fixed]
+    place = np.cumsum([not body.fixed for body in bodies]) - 1
+    bed = np.cumsum([body.fixed for body in bodies]) - 1
+    corners = np.concatenate([np.asarray(body.polygons[0]) for body in moving])
+    return Assembly(
+        blocks=tuple(
+            Block(
+                vertices=np.asarray(body.polygons[0]),
+                centre=np.asarray(body.centre),
+                mass=(body.weight or 0.0) / STANDARD_GRAVITY,
+                inertia=body.inertia or 0.0,
+                depth=body.depth,
+                name=body.name,
+            )
+            for body in moving
+        ),
+        joints=tuple(
+            Joint(
+                before=SUPPORT if bodies[joint.a].fixed else int(place[joint.a]),
+                after=SUPPORT if bodies[joint.b].fixed else int(place[joint.b]),
+                inner=joint.ends[0],
+                outer=joint.ends[1],
+                support=next(
+                    (int(bed[each]) for each in (joint.a, joint.b) if bodies[each].fixed), None
+                ),
+            )
+            for joint in joints
+        ),
+        size=float(np.ptp(corners, axis=0).max()) / 2 if size is None else size,
+        supports=tuple(
+            Support((np.asarray(body.polygons[0]),), body.name) for body in bodies if body.fixed
+        ),
+    )
+
+
+def kind_behind(problem: Problem) -> Kind | None:
+    """Return the kind a problem was made from; None where its blocks were given."""
+    table = {key: value for key, value in problem.origin.items() if key != "density"}
+    try:
+        return kind_of(table, ALL)
+    except InputError:
+        return None
+
+
+def with_parameter(problem: Problem, name: str, value: float) -> Problem:
+    """Return a problem of a kind with another value of one parameter, under the same loads.
+
+    Parameters
+    ----------
+    problem : Problem
+    name : str
+        Of the parameter; `arch.thickness` where a kind has an arch.
+    value : float
+
+    Raises
+    ------
+    InputError
+        If it is out of range, or changes the number of blocks.
+    """
+    kind = cast(Kind, kind_behind(problem)).changed(name, value)
+    density = float(cast(Mapping[str, Any], problem.origin)["density"])
+    made = problem_of(kind, Around(friction=0.0, density=density))
+    blocks = len(problem.assembly.blocks)
+    same = len(made.assembly.blocks) == blocks
+    require(same, name, value, f"a value that leaves {blocks} blocks, on which loads act")
+    return replace(
+        problem,
+        assembly=made.assembly,
+        dead=(*made.dead, *problem.dead[len(made.dead) :]),
+        origin=made.origin,
+    )

@@ -1,0 +1,100 @@
+"""Walls of rectangular blocks in courses, with openings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from blocksim.blocks.polygons import Body
+from blocksim.common.checks import require
+from blocksim.kinds.base import Kind, Made, Table, count, metres, parameter
+from blocksim.kinds.blockwork import box, floor
+
+SLIVER = 1e-6
+"""Width of what is left of a block, over its length, that counts as nothing."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Opening(Table):
+    """A gap in a wall: blocks are cut at its sides, and those above it span it."""
+
+    left: float = metres(0.0, "its left side, from the wall's left end", low=-1e-9)
+    right: float = metres(1.0, "its right side")
+    from_course: int = count(1, "lowest course it cuts; 1 is on the ground")
+    to_course: int = count(1, "highest course it cuts")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wall(Kind):
+    """A wall on a floor; the origin is its lower left corner."""
+
+    name: ClassVar[str] = "wall"
+    about: ClassVar[str] = "courses of blocks in bond, with openings"
+    row_types: ClassVar[Mapping[str, type[Table]]] = {"openings": Opening}
+
+    length: float = metres(2.0, "length of the wall")
+    courses: int = count(6, "number of courses")
+    block_length: float = metres(0.4, "length of a block")
+    block_height: float = metres(0.2, "height of a course")
+    bond: float = parameter(
+        0.5, "how far each course is set off from the one below, in block lengths", high=1.0,
+        above=False,
+    )  # fmt: skip
+    first: float = parameter(
+        1.0, "length of the first block of the lowest course, in block lengths", high=1.0
+    )
+    openings: tuple[Opening, ...] = parameter(
+        (), "tables with left, right, from_course and to_course", tables=True
+    )
+    depth: float = metres(1.0, "depth out of the plane")
+
+    def __post_init__(self) -> None:
+        """Check that openings lie in the wall."""
+        super().__post_init__()
+        blocks = self.length / self.block_length * self.courses
+        require(blocks <= 1e5, "block_length", self.block_length, "longer: over 100000 blocks")
+        for at, gap in enumerate(self.openings):
+            field = f"openings[{at}]"
+            within = f"from left = {gap.left:g} to length = {self.length:g} m"
+            require(gap.left < gap.right <= self.length, f"{field}.right", gap.right, within)
+            above = f"a whole number from {gap.from_course} to {self.courses}"
+            ok = gap.from_course <= gap.to_course <= self.courses
+            require(ok, f"{field}.to_course", gap.to_course, above)
+
+    def made(self, density: float) -> Made:  # noqa: ARG002
+        """Make a floor and the blocks, named by course and place; joints are found."""
+        bodies: list[Body] = []
+        for course in range(self.courses):
+            low = course * self.block_height
+            for place, (left, right) in enumerate(self._blocks(course + 1)):
+                bodies.append(
+                    box(
+                        f"{course + 1}.{place + 1}",
+                        (left, right),
+                        (low, (course + 1) * self.block_height),
+                        depth=self.depth,
+                    )
+                )
+        reach = self.length / 10
+        return Made(bodies=(floor(-reach, self.length + reach, 0.0, reach), *bodies))
+
+    def _blocks(self, course: int) -> list[tuple[float, float]]:
+        """Return where the blocks of a course begin and end."""
+        sliver = SLIVER * self.block_length
+        set_off = round(self.first + self.bond * (course - 1), 12) % 1.0
+        cuts, number = [0.0], 0 if set_off > SLIVER else 1
+        while (cut := (set_off + number) * self.block_length) < self.length - sliver:
+            cuts.append(cut)
+            number += 1
+        found = list(zip(cuts, [*cuts[1:], self.length], strict=True))
+        for gap in self.openings:
+            if gap.from_course <= course <= gap.to_course:
+                left, right = max(0.0, gap.left), gap.right
+                pieces = [
+                    piece
+                    for start, end in found
+                    for piece in ((start, min(end, left)), (max(start, right), end))
+                ]
+                found = [(start, end) for start, end in pieces if end - start > sliver]
+        return found

@@ -1,0 +1,181 @@
+"""Least thickness, and other values at which a kind of structure begins to stand."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from kind_cases import CATENARY, LEAST, PIERS
+from running import blocksim
+from structure_cases import case
+
+from blocksim import load_recording
+from blocksim.arch.limit import least_thickness
+from blocksim.ask.bracket import bracket
+from blocksim.ask.check import check
+from blocksim.ask.families import families_of, family_of
+from blocksim.blocks.problem import Problem
+from blocksim.common.errors import InputError
+from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.files import structure_of, with_parameter
+
+MU = {"semicircle_40_mu315": 0.315, "semicircle_40_mu35": 0.35}
+
+
+def exact(problem: Problem, over: str) -> float | None:
+    return family_of(problem, over).exact()
+
+
+@pytest.mark.parametrize(
+    ("half", "mu", "voussoirs"),
+    [
+        (90.0, math.inf, 27),
+        (90.0, 0.35, 40),
+        (60.0, 0.9, 20),
+        (125.0, 0.9, 26),
+        (145.0, 1.6, 27),
+    ],
+)
+def test_least_thickness_of_rings_is_exact(half: float, mu: float, voussoirs: int) -> None:
+    """The arch's own statics, which knows no linear programme."""
+    want = least_thickness(math.radians(half), mu, voussoirs, "sector").eta
+    friction = "inf" if math.isinf(mu) else mu
+    table = {"kind": "circular-arch", "friction": friction, "voussoirs": voussoirs}
+    ring = structure_of({**table, "left_deg": half, "right_deg": half, "thickness": 0.3})
+    assert exact(ring, "thickness") == pytest.approx(want, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["semicircle_40_mu315", "rampant_100_60", "pointed_e0_5", "ellipse_b0_5", "parabola_f0_5"],
+)
+def test_published_least_thickness(name: str) -> None:
+    arch = structure_of({**LEAST[name], "friction": MU.get(name, "inf")})
+    assert exact(arch, "thickness") == pytest.approx(case(name)["expected"]["value"], rel=1e-6)
+
+
+def test_vertical_joints_and_the_catenary() -> None:
+    """0.1095 (as published), and nothing at all."""
+    vertical = structure_of({**LEAST["semicircle_vertical_joints"], "friction": "inf"})
+    assert exact(vertical, "thickness") == pytest.approx(0.1095, abs=5e-5)
+    chain = bracket(family_of(structure_of({**CATENARY, "friction": "inf"}), "thickness"))
+    assert chain.limit == 0
+    assert chain.low is None
+    assert chain.high is not None
+    assert chain.high < 1e-2
+
+
+def test_other_parameters() -> None:
+    """Piers, an overhang (half of the harmonic sum), a column's width on a slope."""
+    piers = structure_of({**PIERS["piers_h1_c1"], "friction": 0.7})
+    want = case("piers_h1_c1")["expected"]["value"]
+    assert exact(piers, "pier_width") == pytest.approx(want, rel=1e-6)
+    stack = structure_of({"kind": "stack", "friction": 0.5, "rows": 4, "length": 0.8})
+    assert exact(stack, "overhang") == pytest.approx(
+        0.4 * (1 + 1 / 2 + 1 / 3 + 1 / 4), rel=1e-9
+    )
+    assert family_of(stack, "overhang").stands == "low"
+    column = structure_of({"kind": "column", "friction": 0.7}).tilted(math.radians(10))
+    assert exact(column, "width") == pytest.approx(3.6 * math.tan(math.radians(10)), rel=1e-9)
+    portal = structure_of({"kind": "portal", "friction": 0.7, "pier_width": 1.0})
+    thin = exact(portal, "arch.thickness")
+    assert thin is not None
+    for share, verdict in ((0.9999, Verdict.COLLAPSES), (1.0001, Verdict.STANDS)):
+        built = with_parameter(portal, "arch.thickness", share * thin)
+        assert check(built, method="limit").verdict is verdict
+
+
+def test_an_island_is_told() -> None:
+    """On slender piers a thin arch falls, a thicker one stands, the next pushes them over."""
+    arch = {"kind": "circular-arch", "voussoirs": 12}
+    portal = structure_of(
+        {
+            "kind": "portal",
+            "friction": 0.7,
+            "pier_width": 0.38,
+            "pier_height": 4.0,
+            "arch": arch,
+        }
+    )
+    family = family_of(portal, "arch.thickness")
+    stood = [
+        check(family.at(value), method="limit").verdict is Verdict.STANDS
+        for value in (0.1, 0.15, 0.25, 0.33)
+    ]
+    assert stood == [False, True, False, True]
+    found = bracket(family)
+    assert 0.1 < found.limit < 0.13  # type: ignore[operator]
+    assert found.confirmed
+    assert "not the only change: it falls again at 0.2" in found.reason
+    ring = structure_of({**arch, "friction": 0.7})
+    assert "the only change, as far as" in bracket(family_of(ring, "thickness")).reason
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["circular", "pointed", "elliptic", "parabolic", "basket-handle"],
+)
+@pytest.mark.parametrize("joints", ["normal", "vertical"])
+def test_direct_finds_it_again(name: str, joints: str) -> None:
+    """On both sides of 0.1 %, by letting them go."""
+    table = {"kind": f"{name}-arch", "friction": 1.2, "voussoirs": 12, "joints": joints}
+    arch = structure_of(table)
+    least = exact(arch, "thickness")
+    assert least
+    for share, verdict in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
+        built = with_parameter(arch, "thickness", share * least)
+        assert check(built, method="direct").verdict is verdict
+
+
+def test_names_of_parameters_are_known() -> None:
+    wall = structure_of({"kind": "wall", "friction": 0.7})
+    assert families_of(wall) == ("load", "tilt", "lean", "mu")
+    with pytest.raises(InputError, match="must be one of load, tilt, lean, mu"):
+        family_of(wall, "thickness")
+    portal = structure_of({"kind": "portal", "friction": 0.7})
+    with pytest.raises(
+        InputError, match=r"lean, mu, arch\.thickness, arch\.radius, pier_width"
+    ):
+        family_of(portal, "thickness")
+
+
+def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
+    path = tmp_path / "arch.toml"
+    path.write_text('kind = "pointed-arch"\nfriction = "inf"\nvoussoirs = 60\nradius = 1.25\n')
+    done = blocksim("bracket", str(path), "--json")
+    assert done.returncode == 0
+    found = json.loads(done.stdout)
+    want = case("pointed_e0_25")["expected"]["value"]
+    assert (found["over"], found["unit"], found["stands"]) == ("thickness", "m", "high")
+    assert found["limit"] == pytest.approx(want, rel=1e-7)
+    assert found["low"] < found["limit"] < found["high"]
+    assert found["confirmed"]
+    path = tmp_path / "arch.json"
+    table = {"kind": "pointed-arch", "friction": "inf", "voussoirs": 12, "radius": 1.25}
+    path.write_text(json.dumps({**table, "thickness": 0.08}))
+    done = blocksim("bracket", str(path), "--method", "direct", "--json")
+    found = json.loads(done.stdout)
+    assert found["confirmed"]
+    assert found["low"] < found["limit"] <= found["high"] * (1 + 1e-6)
+    assert found["high"] / found["low"] - 1 < 0.006
+    done = blocksim("check", str(path), "--json")
+    assert done.returncode == 1
+    answer = json.loads(done.stdout)
+    assert answer["problem"]["title"] == "pointed-arch"
+    assert sum(joint["state"].startswith("hinge") for joint in answer["joints"]) >= 4
+    run, picture = tmp_path / "run.npz", tmp_path / "picture.svg"
+    assert (
+        blocksim("simulate", str(path), "--seconds", "0.1", "--out", str(run)).returncode == 0
+    )
+    assert load_recording(run).problem.origin["radius"] == 1.25
+    assert blocksim("render", str(path), "--out", str(picture)).returncode == 0
+    assert "pointed-arch" in picture.read_text(encoding="utf-8")
+    path.write_text(json.dumps({**table, "thickness": 9}))
+    done = blocksim("check", str(path))
+    assert done.returncode == 2
+    assert done.stderr.startswith(
+        f"blocksim: {path}: thickness = 9: must be above 0 and at most "
+    )
+    assert done.stderr.count("\n") == 1
