@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections import defaultdict
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import Array, Block, Joint
-from blocksim.engines.faces import crowding, ledge, side
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.engines.faces import LEDGE, Side, sides_of
 
 PLATE = 0.15
 """Thickness of the box on a face, in units of the block's extent normal to it."""
 THINNEST = 2e-4
 """Least thickness of the box on a face [size]."""
+BALL = 2e-4
+"""Radius of the balls at the two ends of a corner [size]."""
+TRIM = 3e-4
+"""How far one side of a joint ends short of the other where neither may reach beyond it, in
+units of the joint's length."""
 
 
 class Frame:
@@ -60,6 +66,11 @@ class Frame:
         shift, turn = back.apply(linear), back.apply(angular)
         return np.column_stack([shift[:, :2], turn[:, 2], shift[:, 2], turn[:, :2]])
 
+    def point(self, place: Array) -> Array:
+        """Where in the plane a place (3,) lies, x and y."""
+        x, y, _ = self._turned.inv().apply(place - self._origin)
+        return np.array([x, y])
+
     def wrench(self, place: Array, force: Array) -> Array:
         """Return a force (3,) at a place (3,) as x, y and moment in the plane, (3,)."""
         back = self._turned.inv()
@@ -74,96 +85,169 @@ class Frame:
 
 @dataclass(frozen=True)
 class Box:
-    """A box in the frame of its body: half extents, centre, orientation."""
+    """A box in the frame of its body: half extents, centre, orientation.
+
+    A corner is a box without extent but in depth, along which it is two balls.
+    """
 
     half: list[float]
     centre: list[float]
     quaternion: list[float]
 
-    @classmethod
-    def along(cls, joint: Joint, half: list[float], centre: Array) -> Box:
-        """Return one whose first axis is the joint's tangent and whose last is the depth."""
-        angle = math.atan2(joint.tangent[1], joint.tangent[0])
-        quaternion = [0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)]
-        return cls(half=half, centre=[*centre.tolist(), 0.0], quaternion=quaternion)
+    @property
+    def is_corner(self) -> bool:
+        """Whether it is a corner on a face."""
+        return self.half[0] == 0
 
 
 def plate(
-    block: Block, index: int, joint: Joint, faces: list[Joint], size: float, overlap: float
+    side: Side, depth: float, origin: Array, overlap: float, thickness: float | None = None
 ) -> Box:
-    """Return the box on one face of a block.
+    """Return the box on one side of a joint.
 
     Parameters
     ----------
-    block : Block
-    index : int
-        Of the block.
-    joint : Joint
-        Its joint there.
-    faces : list of Joint
-        All its joints.
-    size : float
-        Of the assembly [m].
+    side : Side
+    depth : float
+        How deep it is.
+    origin : (2,) float
+        Of its body.
     overlap : float
-        Of two closed faces [size].
+        Of two closed sides.
+    thickness : float, optional
+        By default a share of its body's.
 
     Returns
     -------
     Box
-        Lengths in units of the size. Where the block narrows to nothing (eta near 2), the
-        box is thin and the face cut short, so that it stays within the block.
+        Its first axis is the joint's tangent, and its last is the depth.
     """
-    inward = side(joint, index) * joint.normal
-    extent = float(((block.vertices - joint.inner) @ inward).max()) / size
-    ends = ((joint.inner, joint.tangent), (joint.outer, -joint.tangent))
-    narrowest = min(
-        (
-            float(np.hypot(*(corner - end))) / size
-            for end, _ in ends
-            for other in faces
-            if other is not joint
-            for corner in (other.inner, other.outer)
-        ),
-        default=extent,
+    along = side.ends[1] - side.ends[0]
+    length = float(np.hypot(*along))
+    thick = max(PLATE * side.room, THINNEST) if thickness is None else thickness
+    thick = 2 * BALL if side.is_corner else thick
+    centre = side.ends.mean(axis=0) + side.inward * (thick - overlap) / 2 - origin
+    angle = math.atan2(along[1], along[0])
+    return Box(
+        half=[length / 2, thick / 2, depth / 2],
+        centre=[*centre.tolist(), 0.0],
+        quaternion=[0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)],
     )
-    thickness = min(PLATE * extent, max(narrowest / 2, THINNEST))
-    beyond = ledge(joint, index, size)
-    cuts = [max(-beyond, crowding(*end, faces, size, thickness)) for end in ends]
-    inner, outer = (
-        end / size + along * cut for (end, along), cut in zip(ends, cuts, strict=True)
-    )
-    half = [
-        float(np.hypot(*(outer - inner))) / 2,
-        thickness / 2,
-        block.depth / size / 2 + beyond,
-    ]
-    centre = (inner + outer) / 2 + inward * (thickness - overlap) / 2 - block.centre / size
-    return Box.along(joint, half, centre)
 
 
-def footing(block: Block, joint: Joint, size: float, overlap: float) -> tuple[Box, Array]:
-    """Return a slab under a springing, wider than the joint on all sides, and its centre.
+def depths(assembly: Assembly, sides: tuple[Side, Side]) -> tuple[float, float]:
+    """Return how deep the two sides of a joint are: one reaches beyond the other."""
+    bodies = [side.body for side in sides]
+    if SUPPORT in bodies:
+        depth = float(assembly.depths[max(bodies)])
+        return (depth, 2 * depth) if bodies[1] == SUPPORT else (2 * depth, depth)
+    first, second = assembly.depths[bodies].tolist()
+    if sides[1].is_corner:
+        return first + 2 * LEDGE, second
+    return first, second + 2 * LEDGE
 
-    Parameters
-    ----------
-    block : Block
-        The one that stands on it.
-    joint : Joint
-        The springing.
-    size : float
-        Of the assembly [m].
-    overlap : float
-        Of two closed faces [size].
+
+def snug(assembly: Assembly) -> list[tuple[tuple[Side, float], tuple[Side, float]]]:
+    """Return what touches at each joint so that other sides of the same blocks do not.
+
+    For an engine in which all parts of two blocks that share a joint may touch. A side keeps
+    within its block: it reaches beyond the joint where it meets nothing there, and otherwise
+    falls a little short of the other; where another joint of the block comes near at an acute
+    angle its box is thin, and ends where the block is as wide.
 
     Returns
     -------
-    box : Box
-        About its own centre, lengths in units of the size.
-    centre : (2,) float
-        In the plane.
+    list of ((Side, float), (Side, float))
+        Sides before and after each joint, with the thickness of their boxes.
     """
-    length = joint.length / size
-    into = side(joint, joint.bears) * joint.normal
-    centre = (joint.inner + joint.outer) / 2 / size - into * (length - overlap) / 2
-    half = [1.5 * length, length / 2, block.depth / size]
-    return Box.along(joint, half, np.zeros(2)), centre
+    pairs = sides_of(assembly)
+    of_body: dict[int, list[Side]] = defaultdict(list)
+    near: dict[int, set[int]] = defaultdict(set)
+    for index, sides in enumerate(pairs):
+        # Each joint with the support has a body of its own there.
+        names = [-1 - index if side.body == SUPPORT else side.body for side in sides]
+        for name, other, side in zip(names, names[::-1], sides, strict=True):
+            of_body[name].append(side)
+            near[name].add(other)
+    joints = assembly.joint_arrays
+    found: list[tuple[tuple[Side, float], tuple[Side, float]]] = []
+    for index, sides in enumerate(pairs):
+        names = [-1 - index if side.body == SUPPORT else side.body for side in sides]
+        ends = [side.ends.copy() for side in sides]
+        along = joints.tangent[index]
+        length = float(joints.length[index]) or LEDGE
+        for end, outward in enumerate((-along, along)):
+            reach = [
+                float((side.ends[end] - joints.ends[index, end]) @ outward) for side in sides
+            ]
+            longer = int(reach[1] > reach[0])
+            beyond = reach[longer]
+            true = joints.ends[index, end]
+            if reach[1 - longer] > 0 or sides[longer].is_corner:
+                continue
+            stretch = np.array([true + 0.1 * beyond * outward, true + beyond * outward])
+            met = any(
+                _apart(stretch, other) < beyond / 20
+                for name in near[names[longer]]
+                for other in of_body[name]
+                if other.joint != index
+            )
+            if met and not sides[1 - longer].is_corner:
+                ends[longer][end] = true
+                ends[1 - longer][end] = true - TRIM * length * outward
+        kept = [replace(side, ends=its) for side, its in zip(sides, ends, strict=True)]
+        before, after = (
+            _within(side, [each for each in of_body[name] if each.joint != index])
+            for side, name in zip(kept, names, strict=True)
+        )
+        found.append((before, after))
+    return found
+
+
+def _apart(stretch: Array, side: Side) -> float:
+    """Distance of a stretch from a side."""
+    return min(
+        *(_off(point, side.ends) for point in stretch),
+        *(_off(point, stretch) for point in side.ends),
+    )
+
+
+def _off(point: Array, stretch: Array) -> float:
+    """Distance of a point from a stretch."""
+    way, arm = stretch[1] - stretch[0], point - stretch[0]
+    square = float(way @ way)
+    share = min(1.0, max(0.0, float(way @ arm) / square)) if square > 0 else 0.0
+    return float(np.hypot(*(arm - share * way)))
+
+
+def _within(side: Side, others: list[Side]) -> tuple[Side, float]:
+    """Cut the box on a side so that it stays within the other sides of its body."""
+    if side.is_corner:
+        return side, 2 * BALL
+    ends = [point for each in others for point in each.ends]
+    narrowest = min((_off(end, side.ends) for end in ends), default=math.inf)
+    thickness = min(PLATE * side.room, max(narrowest / 2, THINNEST))
+    if any(_cuts(side, others, thickness)):
+        thickness = min(thickness, THINNEST)
+    cuts = _cuts(side, others, thickness)
+    along = side.ends[1] - side.ends[0]
+    length = float(np.hypot(*along))
+    along = along / length
+    ends = side.ends + np.array([[cuts[0]], [-cuts[1]]]) * along
+    return replace(side, ends=ends), thickness
+
+
+def _cuts(side: Side, others: list[Side], thickness: float) -> tuple[float, float]:
+    """How far a box must end short of its side's ends, to stay within other sides."""
+    along = side.ends[1] - side.ends[0]
+    along = along / np.hypot(*along)
+    found = [0.0, 0.0]
+    for end, inwards in enumerate((along, -along)):
+        corner = side.ends[end] + thickness * side.inward
+        for other in others:
+            rise = float(inwards @ other.inward)
+            if other.is_corner or rise <= 0 or _off(side.ends[end], other.ends) > 2 * thickness:
+                continue
+            short = -float((corner - other.ends[0]) @ other.inward)
+            found[end] = max(found[end], short / rise)
+    return found[0], found[1]

@@ -30,6 +30,7 @@ import math
 import os
 import sys
 import weakref
+from collections import defaultdict
 from collections.abc import Generator
 from contextlib import contextmanager
 from importlib.metadata import version
@@ -37,11 +38,10 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint, displacement
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality, Settings, World
-from blocksim.engines.boxes import Frame, footing, plate
-from blocksim.engines.faces import faces_of
+from blocksim.engines.boxes import Box, Frame, depths, plate, snug
 
 
 @contextmanager
@@ -148,7 +148,8 @@ class _Bodies:
     """Bullet's space with one body for each block."""
 
     def __init__(self, problem: Problem, settings: Settings, frame: Frame) -> None:
-        assembly, mu = problem.assembly, problem.mu
+        assembly = problem.assembly
+        self._problem = problem
         self._assembly, self._settings, self._frame = assembly, settings, frame
         self._pairs = settings.sweeps / SWEEPS
         self._client = bullet.connect(bullet.DIRECT)
@@ -165,20 +166,10 @@ class _Bodies:
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
         )
-        self._friction = math.sqrt(min(mu, MOST_FRICTION))
+        self._loaded = bool(problem.dead or (problem.live and problem.load))
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
-        faces = faces_of(assembly)
-        self._bodies = [self._block(index, faces[index]) for index in range(len(faces))]
-        self._footings: list[int] = []
-        for joint in assembly.springings:
-            footing = self._footing(joint)
-            self._footings.append(footing)
-            # A support touches only the block that stands on it.
-            for index, body in enumerate(self._bodies):
-                if index != joint.bears:
-                    bullet.setCollisionFilterPair(
-                        footing, body, -1, -1, 0, physicsClientId=self._client
-                    )
+        self._sides: dict[tuple[int, int], list[int]] = defaultdict(list)
+        self._bodies = self._build()
         bullet.stepSimulation(physicsClientId=self._client)
         bullet.setGravity(
             *frame.vector(*problem.gravity.tolist()),
@@ -193,48 +184,78 @@ class _Bodies:
             physicsClientId=self._client,
         )
 
-    def _block(self, index: int, faces: list[Joint]) -> int:
-        """Create a body that is a thin box on each of its block's faces."""
-        block, size = self._assembly.blocks[index], self._assembly.size
-        boxes = [plate(block, index, joint, faces, size, OVERLAP) for joint in faces]
-        shape = bullet.createCollisionShapeArray(
-            shapeTypes=[bullet.GEOM_BOX] * len(boxes),
-            halfExtents=[box.half for box in boxes],
-            collisionFramePositions=[box.centre for box in boxes],
-            collisionFrameOrientations=[box.quaternion for box in boxes],
-            physicsClientId=self._client,
-        )
-        mass, _, inertia, _, *across = self._assembly.spatial_masses[index].tolist()
-        body = self._body(mass, shape, self._places[index])
-        bullet.changeDynamics(
-            body,
-            -1,
-            mass=mass,
-            localInertiaDiagonal=[*across, inertia],
-            physicsClientId=self._client,
-        )
-        return body
+    def _build(self) -> list[int]:
+        """Create a body for each block, and one for each joint with the support."""
+        assembly, problem = self._assembly, self._problem
+        count = len(assembly.blocks)
+        plates: list[list[Box]] = [[] for _ in range(count)]
+        pairs: list[list[int]] = []
+        centres = assembly.centres / assembly.size
+        supports: list[tuple[Box, Array, float]] = []
+        for index, sides in enumerate(snug(assembly)):
+            names: list[int] = []
+            deep = depths(assembly, (sides[0][0], sides[1][0]))
+            for (side, thickness), depth in zip(sides, deep, strict=True):
+                if side.body == SUPPORT:
+                    middle = side.ends.mean(axis=0)
+                    box = plate(side, depth, middle, OVERLAP, thickness)
+                    names.append(count + len(supports))
+                    supports.append((box, middle, self._friction_of_support(index)))
+                else:
+                    origin = centres[side.body]
+                    plates[side.body].append(plate(side, depth, origin, OVERLAP, thickness))
+                    names.append(side.body)
+            pairs.append(names)
+        friction = math.sqrt(min(problem.mu, MOST_FRICTION))
+        masses = assembly.spatial_masses
+        bodies = [
+            self._body(self._shape(boxes), place, friction, mass)
+            for boxes, place, mass in zip(plates, self._places, masses, strict=True)
+        ]
+        for box, middle, mu in supports:
+            place = self._frame.place(middle)
+            bodies.append(self._body(self._shape([box]), place, mu, None))
+        for index, names in enumerate(pairs):
+            one, other = (bodies[name] for name in names)
+            self._sides[one, other].append(index)
+            bullet.setCollisionFilterPair(one, other, -1, -1, 1, physicsClientId=self._client)
+        return bodies[:count]
 
-    def _footing(self, joint: Joint) -> int:
-        """Create a slab under a springing, wider than the joint on all sides."""
-        block = self._assembly.blocks[joint.bears]
-        box, centre = footing(block, joint, self._assembly.size, OVERLAP)
-        shape = bullet.createCollisionShapeArray(
-            shapeTypes=[bullet.GEOM_BOX],
-            halfExtents=[box.half],
-            collisionFramePositions=[[0.0, 0.0, 0.0]],
-            collisionFrameOrientations=[box.quaternion],
+    def _friction_of_support(self, joint: int) -> float:
+        """Return what with the friction of blocks makes that of a joint with the support."""
+        own = min(float(self._problem.friction[joint]), MOST_FRICTION)
+        mu = min(self._problem.mu, MOST_FRICTION)
+        return own / math.sqrt(mu) if mu > 0 else 0.0
+
+    def _shape(self, boxes: list[Box]) -> int:
+        """Create boxes, and two balls for each corner."""
+        parts: list[tuple[int, list[float], float, list[float], list[float]]] = []
+        for box in boxes:
+            if not box.is_corner:
+                parts.append((bullet.GEOM_BOX, box.half, 0.0, box.centre, box.quaternion))
+                continue
+            for sign in (1.0, -1.0):
+                at = [*box.centre[:2], sign * box.half[2]]
+                parts.append((bullet.GEOM_SPHERE, [0.0] * 3, box.half[1], at, box.quaternion))
+        # Bullet takes lists only.
+        kinds, halves, radii, places, turns = map(list, zip(*parts, strict=True))
+        shape: int = bullet.createCollisionShapeArray(
+            shapeTypes=kinds,
+            halfExtents=halves,
+            radii=radii,
+            collisionFramePositions=places,
+            collisionFrameOrientations=turns,
             physicsClientId=self._client,
         )
-        body = self._body(0.0, shape, self._frame.place(centre))
-        if joint.friction == 0:
-            bullet.changeDynamics(body, -1, lateralFriction=0, physicsClientId=self._client)
-        return body
+        return shape
 
-    def _body(self, mass: float, shape: int, place: list[float]) -> int:
+    def _body(
+        self, shape: int, place: list[float], friction: float, masses: Array | None
+    ) -> int:
+        """Create a body with its masses and moments of inertia; without them it stays."""
         # Without maximal coordinates Bullet forgets all impulses and damps every motion.
         body: int = bullet.createMultiBody(
-            mass,
+            0.0 if masses is None else float(masses[0]),
             shape,
             basePosition=place,
             baseOrientation=self._frame.quaternion,
@@ -244,12 +265,23 @@ class _Bodies:
         bullet.changeDynamics(
             body,
             -1,
-            lateralFriction=self._friction,
+            lateralFriction=friction,
             linearDamping=0,
             angularDamping=0,
             restitution=0,
             physicsClientId=self._client,
         )
+        if masses is not None:
+            mass, _, inertia, _, *across = masses.tolist()
+            bullet.changeDynamics(
+                body,
+                -1,
+                mass=mass,
+                localInertiaDiagonal=[*across, inertia],
+                physicsClientId=self._client,
+            )
+        # Nothing touches but what shares a joint.
+        bullet.setCollisionFilterGroupMask(body, -1, 0, 0, physicsClientId=self._client)
         return body
 
     def hold(self, sweeps: int) -> Array:
@@ -259,7 +291,7 @@ class _Bodies:
         """
         step = self._settings.step
         self._set(fixedTimeStep=step, numSolverIterations=sweeps, solverResidualThreshold=0)
-        bullet.stepSimulation(physicsClientId=self._client)
+        self._step()
         accelerations = self._velocities() / step
         nothing = [0.0, 0.0, 0.0]
         for body, place in zip(self._bodies, self._places, strict=True):
@@ -291,7 +323,33 @@ class _Bodies:
                 solverResidualThreshold=change**2,
             )
             for _ in range(parts):
-                bullet.stepSimulation(physicsClientId=self._client)
+                self._step()
+
+    def _step(self) -> None:
+        """Take a step under gravity and loads, which Bullet forgets after each."""
+        if self._loaded:
+            pull = self._problem.pull(self.poses()[:, :PLANAR])
+            pull[:, :2] -= self._assembly.masses[:, :2] * self._problem.gravity[:2]
+            for body, (x, y, moment) in zip(self._bodies, pull.tolist(), strict=True):
+                place, _ = bullet.getBasePositionAndOrientation(
+                    body, physicsClientId=self._client
+                )
+                bullet.applyExternalForce(
+                    body,
+                    -1,
+                    self._frame.vector(x, y, 0.0),
+                    place,
+                    bullet.WORLD_FRAME,
+                    physicsClientId=self._client,
+                )
+                bullet.applyExternalTorque(
+                    body,
+                    -1,
+                    self._frame.vector(0.0, 0.0, moment),
+                    bullet.WORLD_FRAME,
+                    physicsClientId=self._client,
+                )
+        bullet.stepSimulation(physicsClientId=self._client)
 
     def poses(self) -> Array:
         """Return places and rotations, shape (blocks, 6)."""
@@ -304,15 +362,7 @@ class _Bodies:
 
     def resultants(self) -> Array:
         """Add up the forces of contacts in the plane."""
-        footings = iter(self._footings)
-        joints = {
-            tuple(
-                next(footings) if side == SUPPORT else self._bodies[side]
-                for side in (joint.before, joint.after)
-            ): index
-            for index, joint in enumerate(self._assembly.joints)
-        }
-        found = np.zeros((len(joints), 3))
+        found = np.zeros((len(self._assembly.joints), 3))
         # Asked for one pair, Bullet may turn the normal round, and not the friction.
         for contact in bullet.getContactPoints(physicsClientId=self._client):
             sides = contact[1:3]
@@ -323,11 +373,18 @@ class _Bodies:
             place = (np.array(contact[5]) + contact[6]) / 2
             wrench = self._frame.wrench(place, force)
             # It acts on the first body.
-            if sides in joints:
-                found[joints[sides]] -= wrench
-            else:
-                found[joints[sides[::-1]]] += wrench
+            forth = sides in self._sides
+            joints = self._sides[sides if forth else sides[::-1]]
+            found[self._nearest(joints, place)] += -wrench if forth else wrench
         return found
+
+    def _nearest(self, joints: list[int], place: Array) -> int:
+        """Tell which joint of two blocks a contact belongs to."""
+        if len(joints) == 1:
+            return joints[0]
+        ends = self._assembly.joint_arrays.ends[joints]
+        off = np.moveaxis(ends - self._frame.point(place), -1, 0)
+        return joints[int(np.hypot(*off).min(axis=1).argmin())]
 
     def quality(self) -> Quality:
         """Bullet does not tell."""

@@ -18,7 +18,6 @@ How a near-critical arch has to be put into it (each point measured, see ARCHITE
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 from importlib.metadata import version
@@ -27,18 +26,18 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
-from blocksim.engines.faces import crowding, faces_of, ledge, side
+from blocksim.engines.faces import Side, sides_of
 
 INSET = 1e-6
 """Most a face is set back; no more than `INSET_SHARE` of the shortest joint."""
 INSET_SHARE = 1e-4
 OVERLAP = 0.25
 """Overlap of two closed shapes, in units of the inset."""
-CLEARANCE = 6.0
-"""Least width of a block between two faces, in units of the inset."""
+PLATE, THINNEST = 0.15, 100.0
+"""Thickness of what touches in units of the block's extent, and at least of the inset."""
 LONGEST_STEP = 1 / 100
 THICK = 0.8
 """Joint length from which the longest step will do [size]."""
@@ -51,7 +50,6 @@ SLENDER, SLENDEREST = 80, 2.5e-4
 """The same over the length of the shortest joint, and the shortest that was measured [size]."""
 LONGEST_HOLD = 5e9
 """Most of these sweeps times blocks, about four minutes."""
-SUPPORT_BIT = 1 << 31
 
 
 class Chipmunk:
@@ -94,65 +92,61 @@ class Chipmunk:
 
 
 class _Space:
-    """A pymunk space with one body for each block."""
+    """A pymunk space with one body for each block, and one shape for each side of a joint."""
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        assembly, mu = problem.assembly, problem.mu
-        self._assembly, self._settings = assembly, settings
-        self._gravity = (float(problem.gravity[0]), float(problem.gravity[1]))
+        assembly = problem.assembly
+        self._problem, self._assembly, self._settings = problem, assembly, settings
         self._inset = min(INSET, INSET_SHARE * assembly.shortest)
-        self._friction = math.sqrt(min(mu, FRICTION_CAP))
-        # Footings come after the blocks, in the order of their joints.
-        names = itertools.count(len(assembly.blocks))
-        self._sides = [
-            tuple(next(names) if side == SUPPORT else side for side in (j.before, j.after))
-            for j in assembly.joints
-        ]
-        self._space, self._bodies, self._shapes = self._build()
+        self._loaded = bool(problem.dead or (problem.live and problem.load))
+        self._shapes: dict[pymunk.Shape, tuple[int, float, pymunk.Body]] = {}
+        self._space, self._bodies = self._build()
 
-    def _build(self) -> tuple[pymunk.Space, list[pymunk.Body], list[pymunk.Shape]]:
+    def _build(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
         """Put the blocks into a new space, without impulses."""
         assembly, size = self._assembly, self._assembly.size
         space = pymunk.Space()
-        space.gravity = self._gravity
+        space.gravity = (float(self._problem.gravity[0]), float(self._problem.gravity[1]))
         space.collision_slop = self._inset
         space.collision_persistence = 1
-        faces = faces_of(assembly)
+        space.on_collision(begin=self._only_partners)
         bodies: list[pymunk.Body] = []
-        shapes: list[pymunk.Shape] = []
-        for index, block in enumerate(assembly.blocks):
-            mass, _, inertia = assembly.masses[index].tolist()
-            body = pymunk.Body(mass, inertia)
+        for block, (mass, _, inertia) in zip(assembly.blocks, assembly.masses, strict=True):
+            body = pymunk.Body(float(mass), float(inertia))
             centre = block.centre / size
             body.position = (float(centre[0]), float(centre[1]))
-            outline = _outline(block.vertices, index, faces[index], size, self._inset)
-            shape = self._shape(body, outline - centre)
-            bits = [k for k, joint in enumerate(assembly.springings) if index == joint.bears]
-            shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
-            space.add(body, shape)
+            space.add(body)
             bodies.append(body)
-            shapes.append(shape)
-        for k, joint in enumerate(assembly.springings):
-            shape = self._shape(space.static_body, _footing(joint, size, self._inset))
-            # A support touches only the block that stands on it.
-            shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
-            if joint.friction == 0:
-                shape.friction = 0.0
-            space.add(shape)
-            shapes.append(shape)
-        return space, bodies, shapes
+        for sides, mu in zip(sides_of(assembly), self._problem.friction, strict=True):
+            for side, sense in zip(sides, (1.0, -1.0), strict=True):
+                body = space.static_body if side.body == SUPPORT else bodies[side.body]
+                shape = self._shape(body, side)
+                shape.friction = math.sqrt(min(float(mu), FRICTION_CAP))
+                space.add(shape)
+                self._shapes[shape] = side.joint, sense, body
+        return space, bodies
 
-    def _shape(self, body: pymunk.Body, outline: Array) -> pymunk.Poly:
-        corners = [(float(x), float(y)) for x, y in outline]
-        shape = pymunk.Poly(body, corners, radius=self._inset * (1 + OVERLAP / 2))
-        shape.friction = self._friction
-        return shape
+    def _shape(self, body: pymunk.Body, side: Side) -> pymunk.Shape:
+        """Return a plate on a face, or a dot for a corner, set back and made round."""
+        radius = self._inset * (1 + OVERLAP / 2)
+        ends = side.ends + side.inward * self._inset - np.array(body.position)
+        if side.is_corner:
+            return pymunk.Circle(body, radius, (float(ends[0, 0]), float(ends[0, 1])))
+        back = side.inward * max(PLATE * side.room, THINNEST * self._inset)
+        corners = [*ends.tolist(), *(ends[::-1] + back).tolist()]
+        return pymunk.Poly(body, corners, radius=radius)
+
+    def _only_partners(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        """Let the two sides of a joint touch, and nothing else."""
+        one, other = (self._shapes[shape][0] for shape in arbiter.shapes)
+        if one != other:
+            arbiter.process_collision = False
 
     def hold(self, sweeps: int) -> Array:
         """Solve the contacts of one step from rest, then put every block back."""
         # Positions are integrated first and at rest, so they never change here.
         self._space.iterations = sweeps
-        self._space.step(self._settings.step)
+        self._step()
         rates = [(*body.velocity, body.angular_velocity) for body in self._bodies]
         for body in self._bodies:
             body.velocity = (0.0, 0.0)
@@ -171,15 +165,26 @@ class _Space:
         along = np.stack([joints.normal, joints.tangent], axis=1)
         impulses = self._settings.step * np.einsum("jek,jkd->jed", forces, along)
         for joint, place, axes, contact in self._contacts():
-            end = np.hypot(*(joints.ends[joint] - place).T).argmin()
-            contact.jnAcc, contact.jtAcc = (axes @ impulses[joint, end]).tolist()
+            end = int(np.hypot(*(joints.ends[joint] - place).T).argmin())
+            corner = joints.is_corner[joint]
+            given = impulses[joint].sum(axis=0) if corner else impulses[joint, end]
+            contact.jnAcc, contact.jtAcc = (axes @ given).tolist()
         return True
 
     def advance(self, steps: int) -> None:
         """Let the blocks move."""
         self._space.iterations = self._settings.sweeps
         for _ in range(steps):
-            self._space.step(self._settings.step)
+            self._step()
+
+    def _step(self) -> None:
+        """Take a step under gravity and loads, which pymunk forgets after each."""
+        if self._loaded:
+            pull = self._problem.pull(self.poses())
+            pull[:, :2] -= self._assembly.masses[:, :2] * self._problem.gravity[:2]
+            for body, (x, y, moment) in zip(self._bodies, pull.tolist(), strict=True):
+                body.force, body.torque = (x, y), moment
+        self._space.step(self._settings.step)
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
@@ -187,7 +192,7 @@ class _Space:
 
     def resultants(self) -> Array:
         """Add up the impulses of contacts."""
-        found = np.zeros((len(self._sides), 3))
+        found = np.zeros((len(self._assembly.joints), 3))
         for joint, place, axes, contact in self._contacts():
             x, y = np.array([contact.jnAcc, contact.jtAcc]) @ axes
             found[joint] += x, y, place[0] * y - place[1] * x
@@ -206,51 +211,23 @@ class _Space:
             Chipmunk's own: `jnAcc` and `jtAcc` are its impulses.
         """
         space: Any = self._space
-        shapes: list[Any] = self._shapes
-        names = {shape._shape: index for index, shape in enumerate(shapes)}
-        joints = {sides: index for index, sides in enumerate(self._sides)}
+        shapes: dict[Any, pymunk.Shape] = {}
+        for shape in self._shapes:
+            its: Any = shape
+            shapes[its._shape] = shape
         for pair in space._get_arbiters():
-            sides = names[pair.a], names[pair.b]
-            forth, back = joints.get(sides), joints.get(sides[::-1])
-            first, second = (shapes[side].body.position for side in sides)
+            one, other = shapes[pair.a], shapes[pair.b]
+            joint, sense, body = self._shapes[one]
+            first, second = body.position, self._shapes[other][2].position
             normal = pymunk.Vec2d(pair.n.x, pair.n.y)
-            axes = np.array([normal, normal.perpendicular()])
+            # It leads from the first shape to the second.
+            axes = sense * np.array([normal, normal.perpendicular()])
             for contact in pair.contacts[0 : pair.count]:
                 # The two shapes overlap: the contact is midway.
                 x = first.x + contact.r1.x + second.x + contact.r2.x
                 y = first.y + contact.r1.y + second.y + contact.r2.y
-                place = np.array([x, y]) / 2
-                if forth is not None:
-                    yield forth, place, axes, contact
-                elif back is not None:
-                    yield back, place, -axes, contact
+                yield joint, np.array([x, y]) / 2, axes, contact
 
     def quality(self) -> Quality:
         """Chipmunk does not tell."""
         return Quality()
-
-
-def _outline(
-    vertices: Array, index: int, faces: list[Joint], size: float, inset: float
-) -> Array:
-    """Corners of a block with its joint faces set back, scaled, shape (k, 2)."""
-    corners: list[Array] = [v / size for v in vertices if not _on_a_face(v, faces)]
-    for joint in faces:
-        inward = side(joint, index) * joint.normal * inset
-        beyond = ledge(joint, index, size)
-        for end, along in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
-            cut = max(-beyond, crowding(end, along, faces, size, CLEARANCE * inset))
-            corners.append(end / size + inward + along * cut)
-    return np.array(corners)
-
-
-def _on_a_face(vertex: Array, faces: list[Joint]) -> bool:
-    return any(np.array_equal(vertex, end) for j in faces for end in (j.inner, j.outer))
-
-
-def _footing(joint: Joint, size: float, inset: float) -> Array:
-    """Return a slab under a springing, wider than the joint by its length on both sides."""
-    into = side(joint, joint.bears) * joint.normal
-    span = joint.tangent * joint.length / size
-    ends = np.array([joint.inner / size - span, joint.outer / size + span]) - into * inset
-    return np.concatenate([ends, ends[::-1] - into * joint.length / size])
