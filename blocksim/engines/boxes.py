@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import defaultdict
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,8 +18,12 @@ PLATE = 0.15
 """Thickness of the box on a face, in units of the block's extent normal to it."""
 THINNEST = 2e-4
 """Least thickness of the box on a face [size]."""
-BALL = 2e-4
-"""Radius of the balls at the two ends of a corner [size]."""
+ROD = 1e-4
+"""Thickness of the rod in a corner [size]."""
+FLAT = 1e-9
+"""Distance within which sides lie on each other."""
+FLUSH = 0.1
+"""Sine of the angle between two sides that do not end each other."""
 TRIM = 3e-4
 """How far one side of a joint ends short of the other where neither may reach beyond it, in
 units of the joint's length."""
@@ -85,25 +91,17 @@ class Frame:
 
 @dataclass(frozen=True)
 class Box:
-    """A box in the frame of its body: half extents, centre, orientation.
-
-    A corner is a box without extent but in depth, along which it is two balls.
-    """
+    """A box in the frame of its body: half extents, centre, orientation."""
 
     half: list[float]
     centre: list[float]
     quaternion: list[float]
 
-    @property
-    def is_corner(self) -> bool:
-        """Whether it is a corner on a face."""
-        return self.half[0] == 0
-
 
 def plate(
     side: Side, depth: float, origin: Array, overlap: float, thickness: float | None = None
 ) -> Box:
-    """Return the box on one side of a joint.
+    """Return the box on one side of a joint; a thin rod for a corner.
 
     Parameters
     ----------
@@ -122,10 +120,11 @@ def plate(
     Box
         Its first axis is the joint's tangent, and its last is the depth.
     """
-    along = side.ends[1] - side.ends[0]
-    length = float(np.hypot(*along))
+    along = np.array([-side.inward[1], side.inward[0]])
+    length = abs(float((side.ends[1] - side.ends[0]) @ along))
     thick = max(PLATE * side.room, THINNEST) if thickness is None else thickness
-    thick = 2 * BALL if side.is_corner else thick
+    if side.is_corner:
+        length = thick = ROD
     centre = side.ends.mean(axis=0) + side.inward * (thick - overlap) / 2 - origin
     angle = math.atan2(along[1], along[0])
     return Box(
@@ -135,73 +134,117 @@ def plate(
     )
 
 
-def depths(assembly: Assembly, sides: tuple[Side, Side]) -> tuple[float, float]:
-    """Return how deep the two sides of a joint are: one reaches beyond the other."""
-    bodies = [side.body for side in sides]
-    if SUPPORT in bodies:
-        depth = float(assembly.depths[max(bodies)])
-        return (depth, 2 * depth) if bodies[1] == SUPPORT else (2 * depth, depth)
-    first, second = assembly.depths[bodies].tolist()
-    if sides[1].is_corner:
-        return first + 2 * LEDGE, second
-    return first, second + 2 * LEDGE
+def uneven_depths(assembly: Assembly) -> Array:
+    """Depths of blocks, of two that touch one a little more, shape (blocks,), scaled."""
+    joints = assembly.joint_arrays
+    rank = np.zeros(len(assembly.blocks))
+    near: dict[int, set[int]] = defaultdict(set)
+    for one, other in zip(joints.before.tolist(), joints.after.tolist(), strict=True):
+        near[one].add(other)
+        near[other].add(one)
+    for index in range(len(rank)):
+        taken = {rank[other] for other in near[index] if 0 <= other < index}
+        rank[index] = next(k for k in itertools.count() if k not in taken)
+    return assembly.depths + 2 * LEDGE * rank / max(1.0, rank.max())
 
 
-def snug(assembly: Assembly) -> list[tuple[tuple[Side, float], tuple[Side, float]]]:
-    """Return what touches at each joint so that other sides of the same blocks do not.
+def support_of(joint: int) -> int:
+    """Return a name for what bears a joint with the support."""
+    return -1 - joint
+
+
+def snug(assembly: Assembly) -> dict[int, list[tuple[Side, float]]]:
+    """Return what touches on each body, so that nothing else of it touches its neighbours.
 
     For an engine in which all parts of two blocks that share a joint may touch. A side keeps
     within its block: it reaches beyond the joint where it meets nothing there, and otherwise
     falls a little short of the other; where another joint of the block comes near at an acute
-    angle its box is thin, and ends where the block is as wide.
+    angle its box is thin, and ends where the block is as wide. A face is one side, however
+    many joints there are on it.
 
     Returns
     -------
-    list of ((Side, float), (Side, float))
-        Sides before and after each joint, with the thickness of their boxes.
+    dict of int to list of (Side, float)
+        Of each block, and of what bears each joint with the support (`support_of`): sides,
+        and how thick their boxes are.
     """
     pairs = sides_of(assembly)
     of_body: dict[int, list[Side]] = defaultdict(list)
     near: dict[int, set[int]] = defaultdict(set)
-    for index, sides in enumerate(pairs):
-        # Each joint with the support has a body of its own there.
-        names = [-1 - index if side.body == SUPPORT else side.body for side in sides]
-        for name, other, side in zip(names, names[::-1], sides, strict=True):
+    names = [
+        [support_of(index) if side.body == SUPPORT else side.body for side in sides]
+        for index, sides in enumerate(pairs)
+    ]
+    for its, sides in zip(names, pairs, strict=True):
+        for name, other, side in zip(its, its[::-1], sides, strict=True):
             of_body[name].append(side)
             near[name].add(other)
-    joints = assembly.joint_arrays
-    found: list[tuple[tuple[Side, float], tuple[Side, float]]] = []
+
+    def meets(name: int, stretch: Array, joint: int) -> bool:
+        """Tell whether a ledge comes near anything of the body's neighbours."""
+        off = float(np.hypot(*(stretch[1] - stretch[0]))) / 20
+        others = (side for other in near[name] for side in of_body[other])
+        return any(_apart(stretch, side) < off for side in others if side.joint != joint)
+
+    kept: dict[int, list[Side]] = defaultdict(list)
     for index, sides in enumerate(pairs):
-        names = [-1 - index if side.body == SUPPORT else side.body for side in sides]
-        ends = [side.ends.copy() for side in sides]
-        along = joints.tangent[index]
-        length = float(joints.length[index]) or LEDGE
-        for end, outward in enumerate((-along, along)):
-            reach = [
-                float((side.ends[end] - joints.ends[index, end]) @ outward) for side in sides
-            ]
-            longer = int(reach[1] > reach[0])
-            beyond = reach[longer]
-            true = joints.ends[index, end]
-            if reach[1 - longer] > 0 or sides[longer].is_corner:
+        ends = _without_ledges(assembly, index, sides, names[index], meets)
+        for name, side, its in zip(names[index], sides, ends, strict=True):
+            kept[name].append(replace(side, ends=its))
+    return {
+        name: [_within(side, sides) for side in _as_faces(sides)]
+        for name, sides in kept.items()
+    }
+
+
+def _without_ledges(
+    assembly: Assembly,
+    index: int,
+    sides: tuple[Side, Side],
+    names: list[int],
+    meets: Callable[[int, Array, int], bool],
+) -> list[Array]:
+    """Return the ends of both sides of a joint, without ledges that meet anything."""
+    joints = assembly.joint_arrays
+    along, length = joints.tangent[index], float(joints.length[index])
+    ends = [side.ends.copy() for side in sides]
+    for end, outward in enumerate((-along, along)):
+        true = joints.ends[index, end]
+        reach = [float((its[end] - true) @ outward) for its in ends]
+        longer = int(reach[1] > reach[0])
+        # Where a face goes on beyond the joint there is no ledge.
+        if reach[1 - longer] > 0 or length == 0 or reach[longer] > 2 * LEDGE:
+            continue
+        if meets(names[longer], np.array([true, ends[longer][end]]), index):
+            ends[longer][end] = true
+            ends[1 - longer][end] = true - TRIM * length * outward
+    return ends
+
+
+def _as_faces(sides: list[Side]) -> list[Side]:
+    """Join sides of a body that lie on each other, as joints on one face do."""
+    kept: list[Side] = []
+    for side in sides:
+        for index, other in enumerate(kept):
+            along = np.array([-other.inward[1], other.inward[0]])
+            arms = side.ends - other.ends[0]
+            flat = np.abs(arms @ other.inward).max() < FLAT
+            if side.is_corner or other.is_corner or not flat or side.inward @ other.inward < 0:
                 continue
-            stretch = np.array([true + 0.1 * beyond * outward, true + beyond * outward])
-            met = any(
-                _apart(stretch, other) < beyond / 20
-                for name in near[names[longer]]
-                for other in of_body[name]
-                if other.joint != index
-            )
-            if met and not sides[1 - longer].is_corner:
-                ends[longer][end] = true
-                ends[1 - longer][end] = true - TRIM * length * outward
-        kept = [replace(side, ends=its) for side, its in zip(sides, ends, strict=True)]
-        before, after = (
-            _within(side, [each for each in of_body[name] if each.joint != index])
-            for side, name in zip(kept, names, strict=True)
-        )
-        found.append((before, after))
-    return found
+            where, own = np.sort(side.ends @ along), np.sort(other.ends @ along)
+            if min(where[1], own[1]) <= max(where[0], own[0]):
+                continue
+            # Ends that differ by no more than ledges are those of one face.
+            one_face = np.abs(where - own) < LEDGE
+            low = (max if one_face[0] else min)(where[0], own[0])
+            high = (min if one_face[1] else max)(where[1], own[1])
+            origin = other.ends[0] - along * (other.ends[0] @ along)
+            sense = 1 if (other.ends[1] - other.ends[0]) @ along > 0 else -1
+            kept[index] = replace(other, ends=(origin + np.outer([low, high], along))[::sense])
+            break
+        else:
+            kept.append(side)
+    return kept
 
 
 def _apart(stretch: Array, side: Side) -> float:
@@ -220,10 +263,11 @@ def _off(point: Array, stretch: Array) -> float:
     return float(np.hypot(*(arm - share * way)))
 
 
-def _within(side: Side, others: list[Side]) -> tuple[Side, float]:
+def _within(side: Side, sides: list[Side]) -> tuple[Side, float]:
     """Cut the box on a side so that it stays within the other sides of its body."""
+    others = [each for each in sides if abs(each.inward @ side.inward) < 1 - FLAT]
     if side.is_corner:
-        return side, 2 * BALL
+        return replace(side, ends=side.ends + _aside(side, others)), ROD
     ends = [point for each in others for point in each.ends]
     narrowest = min((_off(end, side.ends) for end in ends), default=math.inf)
     thickness = min(PLATE * side.room, max(narrowest / 2, THINNEST))
@@ -231,10 +275,25 @@ def _within(side: Side, others: list[Side]) -> tuple[Side, float]:
         thickness = min(thickness, THINNEST)
     cuts = _cuts(side, others, thickness)
     along = side.ends[1] - side.ends[0]
-    length = float(np.hypot(*along))
-    along = along / length
+    along = along / np.hypot(*along)
     ends = side.ends + np.array([[cuts[0]], [-cuts[1]]]) * along
     return replace(side, ends=ends), thickness
+
+
+def _aside(side: Side, others: list[Side]) -> Array:
+    """Return by how much the rod in a corner must be off it, to stay within other sides."""
+    inward = side.inward
+    along = np.array([-inward[1], inward[0]])
+    low, high = -math.inf, math.inf
+    for other in others:
+        rise = float(along @ other.inward)
+        if other.is_corner or abs(rise) < FLUSH or _off(side.ends[0], other.ends) > 2 * ROD:
+            continue
+        # The farthest corner of the rod.
+        far = ROD / 2 * abs(rise) + ROD * max(0.0, -float(inward @ other.inward))
+        bound = (far - float((side.ends[0] - other.ends[0]) @ other.inward)) / rise
+        low, high = (max(low, bound), high) if rise > 0 else (low, min(high, bound))
+    return along * max(low, min(0.0, high))
 
 
 def _cuts(side: Side, others: list[Side], thickness: float) -> tuple[float, float]:

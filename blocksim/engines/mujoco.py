@@ -26,7 +26,6 @@ The plane is MuJoCo's x and y; a block has three degrees of freedom, x, y and ro
 
 from __future__ import annotations
 
-import itertools
 import math
 from typing import Any
 
@@ -36,7 +35,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
-from blocksim.engines.boxes import Box, depths, plate
+from blocksim.engines.boxes import plate, uneven_depths
 from blocksim.engines.faces import sides_of
 
 library: Any = mujoco
@@ -255,44 +254,26 @@ def _model(problem: Problem) -> Any:
         body.add_joint(type=hinge, axis=[0.0, 0.0, 1.0])
         bodies.append(body)
     centres = np.vstack([assembly.centres / size, np.zeros(2)])
+    depth = np.append(uneven_depths(assembly), 2 * assembly.depths.max())
     for k, sides in enumerate(sides_of(assembly)):
-        names: list[list[str]] = []
-        for side, depth in zip(sides, depths(assembly, sides), strict=True):
+        for side in sides:
             body = spec.worldbody if side.body == SUPPORT else bodies[side.body]
-            box = plate(side, depth, centres[side.body], overlap=0.0)
-            names.append(_add(body, box, f"joint {k}, block {side.body}"))
-        for one, other in itertools.product(*names):
-            spec.add_pair(
-                geomname1=one,
-                geomname2=other,
-                condim=3,
-                friction=[min(float(problem.friction[k]), FRICTION_CAP)] * 2 + [0.0] * 3,
+            box = plate(side, float(depth[side.body]), centres[side.body], overlap=0.0)
+            x, y, z, w = box.quaternion
+            body.add_geom(
+                name=f"joint {k}, block {side.body}",
+                type=library.mjtGeom.mjGEOM_BOX,
+                size=box.half,
+                pos=box.centre,
+                quat=[w, x, y, z],
+                contype=0,
+                conaffinity=0,
             )
+        mu = min(float(problem.friction[k]), FRICTION_CAP)
+        spec.add_pair(
+            geomname1=f"joint {k}, block {sides[0].body}",
+            geomname2=f"joint {k}, block {sides[1].body}",
+            condim=3,
+            friction=[mu] * 2 + [0.0] * 3,
+        )
     return spec.compile()
-
-
-def _add(body: Any, box: Box, name: str) -> list[str]:
-    """Add a box to a body, or the two balls of a corner; they touch nothing unasked."""
-    x, y, z, w = box.quaternion
-    if not box.is_corner:
-        body.add_geom(
-            name=name,
-            type=library.mjtGeom.mjGEOM_BOX,
-            size=box.half,
-            pos=box.centre,
-            quat=[w, x, y, z],
-            contype=0,
-            conaffinity=0,
-        )
-        return [name]
-    names = [f"{name}, {end}" for end in ("front", "back")]
-    for each, sign in zip(names, (1.0, -1.0), strict=True):
-        body.add_geom(
-            name=each,
-            type=library.mjtGeom.mjGEOM_SPHERE,
-            size=[box.half[1], 0.0, 0.0],
-            pos=[*box.centre[:2], sign * box.half[2]],
-            contype=0,
-            conaffinity=0,
-        )
-    return names

@@ -41,7 +41,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality, Settings, World
-from blocksim.engines.boxes import Box, Frame, depths, plate, snug
+from blocksim.engines.boxes import Box, Frame, plate, snug, support_of, uneven_depths
 
 
 @contextmanager
@@ -68,6 +68,8 @@ MOST_FRICTION = 10.0
 """Bullet's own bound of a pair's friction."""
 OVERLAP = 2e-5
 """Overlap of two closed faces, and slop [size]."""
+DEEPEST = 3e-5
+"""Overlap of blocks as built from which they are not trusted: they are drawn into each other."""
 BREAKING = 0.1
 """Distance at which contact points count as one, in units of the shortest joint."""
 MOST_BREAKING = 0.02
@@ -79,6 +81,8 @@ SWEEPS = 100
 """Most sweeps of a step, for each pair of blocks."""
 HOLD_SWEEPS = 300
 """Most sweeps of the onset test, for each pair of blocks."""
+LEAST_HOLD = 100_000
+"""The same at least: friction begins from nothing each time."""
 STILL = 1e-5
 NOISE = 1e-6
 """Way of an arch at rest by the last of each step's errors, in hundreds of units of time."""
@@ -129,9 +133,10 @@ class Bullet:
         return Settings(
             step=STEP,
             sweeps=round(SWEEPS * pairs),
-            hold_sweeps=round(HOLD_SWEEPS * pairs),
+            hold_sweeps=max(LEAST_HOLD, round(HOLD_SWEEPS * pairs)),
             still=STILL,
             noise=NOISE,
+            penetration=DEEPEST,
         )
 
     def build(self, problem: Problem, settings: Settings) -> World:
@@ -171,6 +176,8 @@ class _Bodies:
         self._sides: dict[tuple[int, int], list[int]] = defaultdict(list)
         self._bodies = self._build()
         bullet.stepSimulation(physicsClientId=self._client)
+        contacts = bullet.getContactPoints(physicsClientId=self._client)
+        self._deepest = max((-contact[8] for contact in contacts), default=0.0)
         bullet.setGravity(
             *frame.vector(*problem.gravity.tolist()),
             physicsClientId=self._client,
@@ -187,39 +194,30 @@ class _Bodies:
     def _build(self) -> list[int]:
         """Create a body for each block, and one for each joint with the support."""
         assembly, problem = self._assembly, self._problem
-        count = len(assembly.blocks)
-        plates: list[list[Box]] = [[] for _ in range(count)]
-        pairs: list[list[int]] = []
-        centres = assembly.centres / assembly.size
-        supports: list[tuple[Box, Array, float]] = []
-        for index, sides in enumerate(snug(assembly)):
-            names: list[int] = []
-            deep = depths(assembly, (sides[0][0], sides[1][0]))
-            for (side, thickness), depth in zip(sides, deep, strict=True):
-                if side.body == SUPPORT:
-                    middle = side.ends.mean(axis=0)
-                    box = plate(side, depth, middle, OVERLAP, thickness)
-                    names.append(count + len(supports))
-                    supports.append((box, middle, self._friction_of_support(index)))
-                else:
-                    origin = centres[side.body]
-                    plates[side.body].append(plate(side, depth, origin, OVERLAP, thickness))
-                    names.append(side.body)
-            pairs.append(names)
+        plates, centres = snug(assembly), assembly.centres / assembly.size
+        deep, masses = uneven_depths(assembly), assembly.spatial_masses
         friction = math.sqrt(min(problem.mu, MOST_FRICTION))
-        masses = assembly.spatial_masses
-        bodies = [
-            self._body(self._shape(boxes), place, friction, mass)
-            for boxes, place, mass in zip(plates, self._places, masses, strict=True)
-        ]
-        for box, middle, mu in supports:
-            place = self._frame.place(middle)
-            bodies.append(self._body(self._shape([box]), place, mu, None))
-        for index, names in enumerate(pairs):
-            one, other = (bodies[name] for name in names)
+        bodies: dict[int, int] = {}
+        for index, place in enumerate(self._places):
+            boxes = [
+                plate(side, float(deep[index]), centres[index], OVERLAP, thickness)
+                for side, thickness in plates[index]
+            ]
+            bodies[index] = self._body(boxes, place, friction, masses[index])
+        for index, joint in enumerate(assembly.joints):
+            pair = [joint.before, joint.after]
+            if SUPPORT in pair:
+                name, depth = support_of(index), 2 * float(deep[joint.bears])
+                ((side, thickness),) = plates[name]
+                middle = side.ends.mean(axis=0)
+                box = plate(side, depth, middle, OVERLAP, thickness)
+                place, mu = self._frame.place(middle), self._friction_of_support(index)
+                bodies[name] = self._body([box], place, mu, None)
+                pair[pair.index(SUPPORT)] = name
+            one, other = (bodies[name] for name in pair)
             self._sides[one, other].append(index)
             bullet.setCollisionFilterPair(one, other, -1, -1, 1, physicsClientId=self._client)
-        return bodies[:count]
+        return [bodies[index] for index in range(len(assembly.blocks))]
 
     def _friction_of_support(self, joint: int) -> float:
         """Return what with the friction of blocks makes that of a joint with the support."""
@@ -227,32 +225,17 @@ class _Bodies:
         mu = min(self._problem.mu, MOST_FRICTION)
         return own / math.sqrt(mu) if mu > 0 else 0.0
 
-    def _shape(self, boxes: list[Box]) -> int:
-        """Create boxes, and two balls for each corner."""
-        parts: list[tuple[int, list[float], float, list[float], list[float]]] = []
-        for box in boxes:
-            if not box.is_corner:
-                parts.append((bullet.GEOM_BOX, box.half, 0.0, box.centre, box.quaternion))
-                continue
-            for sign in (1.0, -1.0):
-                at = [*box.centre[:2], sign * box.half[2]]
-                parts.append((bullet.GEOM_SPHERE, [0.0] * 3, box.half[1], at, box.quaternion))
-        # Bullet takes lists only.
-        kinds, halves, radii, places, turns = map(list, zip(*parts, strict=True))
-        shape: int = bullet.createCollisionShapeArray(
-            shapeTypes=kinds,
-            halfExtents=halves,
-            radii=radii,
-            collisionFramePositions=places,
-            collisionFrameOrientations=turns,
-            physicsClientId=self._client,
-        )
-        return shape
-
     def _body(
-        self, shape: int, place: list[float], friction: float, masses: Array | None
+        self, boxes: list[Box], place: list[float], friction: float, masses: Array | None
     ) -> int:
         """Create a body with its masses and moments of inertia; without them it stays."""
+        shape = bullet.createCollisionShapeArray(
+            shapeTypes=[bullet.GEOM_BOX] * len(boxes),
+            halfExtents=[box.half for box in boxes],
+            collisionFramePositions=[box.centre for box in boxes],
+            collisionFrameOrientations=[box.quaternion for box in boxes],
+            physicsClientId=self._client,
+        )
         # Without maximal coordinates Bullet forgets all impulses and damps every motion.
         body: int = bullet.createMultiBody(
             0.0 if masses is None else float(masses[0]),
@@ -387,8 +370,8 @@ class _Bodies:
         return joints[int(np.hypot(*off).min(axis=1).argmin())]
 
     def quality(self) -> Quality:
-        """Bullet does not tell."""
-        return Quality()
+        """Tell how deep blocks as built overlap; Bullet does not tell more."""
+        return Quality(penetration=self._deepest)
 
     def _velocities(self) -> Array:
         read = [
