@@ -12,9 +12,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from blocksim import engines
+from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.setup import BY_RULE, SETTINGS, Overrides, require_setting
@@ -37,9 +36,6 @@ class Method:
         Smallest relative width of a bracket it can answer for; its error is less.
     is_spatial : bool
         Whether it sees motion out of the plane.
-    is_general : bool
-        Whether it is right on any assembly, with any load. Others were shown right on
-        chains of blocks under their own weight, of which arches are one kind.
     reduces : bool
         Whether it tells what joints carry, which a reduced arch takes.
     settings : tuple of str
@@ -50,7 +46,6 @@ class Method:
     sees: str
     finest: float
     is_spatial: bool = False
-    is_general: bool = False
     reduces: bool = False
     settings: tuple[str, ...] = ()
 
@@ -72,13 +67,11 @@ METHODS = {
             name="limit",
             sees="the arch as built: the same, and the joints that turn or slide",
             finest=0.0,
-            is_general=True,
         ),
         Method(
             name="direct",
             sees="motion in the plane: each step's contact and Coulomb friction solved exactly",
             finest=1e-8,
-            is_general=True,
             reduces=True,
             settings=("step", "still", "rest"),
         ),
@@ -106,8 +99,6 @@ METHODS = {
 }
 
 CHOICES = ("auto", *METHODS)
-CHAIN = 2
-"""Most joints of a block in a chain."""
 
 
 def choose(
@@ -187,32 +178,17 @@ def _beyond(method: Method, problem: Problem | None) -> str:
         return f"{SPATIAL} where gravity leans out of the plane"
     if method.name == "theory" and not problem.origin:
         return "limit or an engine: theory is of circular arches only"
-    if method.is_general or method.is_static:
-        return ""
-    able = " or ".join(each.name for each in METHODS.values() if each.is_general)
-    for has, what in (
-        (problem.dead or (problem.live and problem.load), "loads besides gravity"),
-        (_own_friction(problem), "joints with friction of their own"),
-        (problem.assembly.joint_arrays.is_corner.any(), "corners on faces"),
-        (not _is_chain(problem), "blocks that are no chain"),
-    ):
-        if has:
-            return f"{able}: {method.name} was not shown right on {what}"
+    if method.is_spatial and _own_friction(problem):
+        able = ", ".join(name for name in METHODS if name not in ("theory", SPATIAL))
+        return f"one of {able}: {SPATIAL} knows no friction of single joints between blocks"
     return ""
 
 
 def _own_friction(problem: Problem) -> bool:
-    own = problem.assembly.joint_arrays.friction
-    return bool((np.isfinite(own) | np.isinf(own)).any())
-
-
-def _is_chain(problem: Problem) -> bool:
-    """Tell whether blocks stand in a row, each between two joints at most."""
-    joints = problem.assembly.joint_arrays
-    sides = np.concatenate([joints.before, joints.after])
-    met = np.bincount(sides[sides >= 0], minlength=len(problem.assembly.blocks))
-    sizes = [len(block.polygons) for block in problem.assembly.blocks]
-    return int(met.max(initial=0)) <= CHAIN and max(sizes) == 1
+    """Tell whether joints between blocks have friction of their own."""
+    joints, mu = problem.assembly.joint_arrays, problem.friction
+    between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
+    return bool((mu[between] != problem.mu).any()) or (problem.mu == 0 and bool(mu.any()))
 
 
 def chosen_words(method: str, rung: Method) -> str:

@@ -120,11 +120,12 @@ def plate(
     Box
         Its first axis is the joint's tangent, and its last is the depth.
     """
-    along = np.array([-side.inward[1], side.inward[0]])
-    length = abs(float((side.ends[1] - side.ends[0]) @ along))
+    along = side.ends[1] - side.ends[0]
+    length = float(np.hypot(*along))
     thick = max(PLATE * side.room, THINNEST) if thickness is None else thickness
     if side.is_corner:
         length = thick = ROD
+        along = np.array([-side.inward[1], side.inward[0]])
     centre = side.ends.mean(axis=0) + side.inward * (thick - overlap) / 2 - origin
     angle = math.atan2(along[1], along[0])
     return Box(

@@ -26,6 +26,7 @@ directions of friction Bullet chooses at rest lie in the plane and across it.
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import sys
@@ -69,7 +70,7 @@ MOST_FRICTION = 10.0
 OVERLAP = 2e-5
 """Overlap of two closed faces, and slop [size]."""
 DEEPEST = 3e-5
-"""Overlap of blocks as built from which they are not trusted: they are drawn into each other."""
+"""Overlap of blocks as built from which they are not trusted, drawn into each other [size]."""
 BREAKING = 0.1
 """Distance at which contact points count as one, in units of the shortest joint."""
 MOST_BREAKING = 0.02
@@ -79,9 +80,9 @@ SHORT, SHORTEST = 0.1, 1e-3
 """Length of a joint below which errors shrink more slowly, and shortest measured [size]."""
 SWEEPS = 100
 """Most sweeps of a step, for each pair of blocks."""
-HOLD_SWEEPS = 300
+HOLD_SWEEPS = 600
 """Most sweeps of the onset test, for each pair of blocks."""
-LEAST_HOLD = 100_000
+LEAST_HOLD = 300_000
 """The same at least: friction begins from nothing each time."""
 STILL = 1e-5
 NOISE = 1e-6
@@ -216,8 +217,15 @@ class _Bodies:
                 pair[pair.index(SUPPORT)] = name
             one, other = (bodies[name] for name in pair)
             self._sides[one, other].append(index)
-            bullet.setCollisionFilterPair(one, other, -1, -1, 1, physicsClientId=self._client)
+        self._keep_apart(list(bodies.values()))
         return [bodies[index] for index in range(len(assembly.blocks))]
+
+    def _keep_apart(self, bodies: list[int]) -> None:
+        """Let nothing touch but what shares a joint."""
+        touching = {frozenset(pair) for pair in self._sides}
+        for pair in itertools.combinations(bodies, 2):
+            if frozenset(pair) not in touching:
+                bullet.setCollisionFilterPair(*pair, -1, -1, 0, physicsClientId=self._client)
 
     def _friction_of_support(self, joint: int) -> float:
         """Return what with the friction of blocks makes that of a joint with the support."""
@@ -263,8 +271,6 @@ class _Bodies:
                 localInertiaDiagonal=[*across, inertia],
                 physicsClientId=self._client,
             )
-        # Nothing touches but what shares a joint.
-        bullet.setCollisionFilterGroupMask(body, -1, 0, 0, physicsClientId=self._client)
         return body
 
     def hold(self, sweeps: int) -> Array:
