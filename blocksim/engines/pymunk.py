@@ -20,16 +20,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import cached_property
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 import pymunk
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Quality, Settings, World
 from blocksim.engines.faces import Side, sides_of
+from blocksim.engines.solids import Solids, smaller, width
 
 INSET = 1e-6
 """Most a face is set back; no more than `INSET_SHARE` of the shortest joint."""
@@ -44,6 +46,10 @@ THICK = 0.8
 SWEEPS = 100
 """Sweeps of a moving run per unit of time, for each block."""
 LEAST_SWEEPS = 5
+RUBBLE_SWEEPS, MOST_PARTS = 100, 100
+"""Least sweeps, and most parts of a step, once blocks may meet."""
+ROUND = 0.005
+"""Radius of the corners of blocks that meet, in units of their least width."""
 HOLD_SWEEPS, LEAST_HOLD = 4000, 50_000
 """Most sweeps of the onset test for each pair of blocks, and at least."""
 SLENDER, SLENDEREST = 80, 2.5e-4
@@ -100,6 +106,8 @@ class _Space:
         self._inset = min(INSET, INSET_SHARE * assembly.shortest)
         self._loaded = bool(problem.dead or (problem.live and problem.load))
         self._shapes: dict[pymunk.Shape, tuple[int, float, pymunk.Body]] = {}
+        self._polygons: dict[pymunk.Shape, int] = {}
+        self._penetration = 0.0
         self._space, self._bodies = self._build()
 
     def _build(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
@@ -109,7 +117,7 @@ class _Space:
         space.gravity = (float(self._problem.gravity[0]), float(self._problem.gravity[1]))
         space.collision_slop = self._inset
         space.collision_persistence = 1
-        space.on_collision(begin=self._only_partners)
+        space.on_collision(begin=self._choose)
         bodies: list[pymunk.Body] = []
         for block, (mass, _, inertia) in zip(assembly.blocks, assembly.masses, strict=True):
             body = pymunk.Body(float(mass), float(inertia))
@@ -122,6 +130,7 @@ class _Space:
                 body = space.static_body if side.body == SUPPORT else bodies[side.body]
                 shape = self._shape(body, side)
                 shape.friction = math.sqrt(min(float(mu), FRICTION_CAP))
+                shape.filter = pymunk.ShapeFilter(categories=1, mask=1)
                 space.add(shape)
                 self._shapes[shape] = side.joint, sense, body
         return space, bodies
@@ -136,17 +145,57 @@ class _Space:
         corners = [*ends.tolist(), *(ends[::-1] + back).tolist()]
         return pymunk.Poly(body, corners, radius=radius)
 
-    def _only_partners(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
-        """Let the two sides of a joint touch, and nothing else."""
-        one, other = (self._shapes[shape][0] for shape in arbiter.shapes)
-        if one != other:
+    def _choose(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        """Let the two sides of a joint touch, and polygons that no joint holds."""
+        one, other = arbiter.shapes
+        if one in self._polygons:
+            meet = self._solids.may_meet(self._polygons[one], self._polygons[other])
+        else:
+            meet = self._shapes[one][0] == self._shapes[other][0]
+        if not meet:
             arbiter.process_collision = False
+
+    @cached_property
+    def _solids(self) -> Solids:
+        return Solids(self._assembly)
+
+    def _make_solid(self) -> None:
+        """Add the polygons of blocks, what they stand on and the floor."""
+        friction = math.sqrt(min(self._problem.mu, FRICTION_CAP))
+        bodies = [self._bodies[index] for index, _ in self._solids.moving]
+        bodies += [self._space.static_body] * len(self._solids.fixed)
+        corners = [polygon for _, polygon in self._solids.moving] + self._solids.fixed
+        for index, (body, polygon) in enumerate(zip(bodies, corners, strict=True)):
+            radius = ROUND * width(polygon)
+            # Corners that coincide are collided wrongly: rounded ones do not.
+            shape = pymunk.Poly(body, smaller(polygon, radius).tolist(), radius=radius)
+            shape.friction = friction
+            shape.filter = pymunk.ShapeFilter(categories=2, mask=2)
+            self._space.add(shape)
+            self._polygons[shape] = index
+
+    def _part(self) -> None:
+        """Give up joints that have come apart: their blocks are solid to each other."""
+        ended = set(self._solids.update(self.poses()).tolist())
+        if self._solids.loose and not self._polygons:
+            self._make_solid()
+        if not ended:
+            return
+        over = [shape for shape, (joint, *_) in self._shapes.items() if joint in ended]
+        self._space.remove(*over)
+        for shape in over:
+            del self._shapes[shape]
+        parted = set[int]().union(*(self._solids.sides[joint] for joint in ended))
+        again = [shape for shape, index in self._polygons.items() if index in parted]
+        # What has been turned down while it touched is asked again.
+        self._space.remove(*again)
+        self._space.add(*again)
 
     def hold(self, sweeps: int) -> Array:
         """Solve the contacts of one step from rest, then put every block back."""
         # Positions are integrated first and at rest, so they never change here.
         self._space.iterations = sweeps
-        self._step()
+        self._step(self._settings.step)
         rates = [(*body.velocity, body.angular_velocity) for body in self._bodies]
         for body in self._bodies:
             body.velocity = (0.0, 0.0)
@@ -172,19 +221,31 @@ class _Space:
         return True
 
     def advance(self, steps: int) -> None:
-        """Let the blocks move."""
-        self._space.iterations = self._settings.sweeps
+        """Let the blocks move, in parts of a step once they may meet."""
         for _ in range(steps):
-            self._step()
+            self._part()
+            if not self._solids.loose:
+                self._space.iterations = self._settings.sweeps
+                self._step(self._settings.step)
+                continue
+            moved = np.array([(*b.velocity, b.angular_velocity) for b in self._bodies])
+            speed = float(displacement(moved, self._assembly)) + self._settings.step
+            parts = math.ceil(speed * self._settings.step / self._solids.largest)
+            parts = min(parts, MOST_PARTS)
+            self._space.iterations = max(RUBBLE_SWEEPS, self._settings.sweeps // parts)
+            for _ in range(parts):
+                self._forget()
+                self._step(self._settings.step / parts)
+            self._penetration = max(self._penetration, self._deepest())
 
-    def _step(self) -> None:
+    def _step(self, step: float) -> None:
         """Take a step under gravity and loads, which pymunk forgets after each."""
         if self._loaded:
             pull = self._problem.pull(self.poses())
             pull[:, :2] -= self._assembly.masses[:, :2] * self._problem.gravity[:2]
             for body, (x, y, moment) in zip(self._bodies, pull.tolist(), strict=True):
                 body.force, body.torque = (x, y), moment
-        self._space.step(self._settings.step)
+        self._space.step(step)
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
@@ -210,13 +271,9 @@ class _Space:
         contact : Any
             Chipmunk's own: `jnAcc` and `jtAcc` are its impulses.
         """
-        space: Any = self._space
-        shapes: dict[Any, pymunk.Shape] = {}
-        for shape in self._shapes:
-            its: Any = shape
-            shapes[its._shape] = shape
-        for pair in space._get_arbiters():
-            one, other = shapes[pair.a], shapes[pair.b]
+        for one, other, pair in self._pairs():
+            if one in self._polygons:
+                continue
             joint, sense, body = self._shapes[one]
             first, second = body.position, self._shapes[other][2].position
             normal = pymunk.Vec2d(pair.n.x, pair.n.y)
@@ -228,6 +285,37 @@ class _Space:
                 y = first.y + contact.r1.y + second.y + contact.r2.y
                 yield joint, np.array([x, y]) / 2, axes, contact
 
+    def _pairs(self) -> Iterator[tuple[pymunk.Shape, pymunk.Shape, Any]]:
+        """Go through the pairs of shapes that touch."""
+        space: Any = self._space
+        shapes: dict[Any, pymunk.Shape] = {}
+        for shape in (*self._shapes, *self._polygons):
+            its: Any = shape
+            shapes[its._shape] = shape
+        for pair in space._get_arbiters():
+            yield shapes[pair.a], shapes[pair.b], pair
+
+    def _forget(self) -> None:
+        """Forget impulses: those of an impact, taken for those of rest, would throw blocks."""
+        space: Any = self._space
+        for pair in space._get_arbiters():
+            for contact in pair.contacts[0 : pair.count]:
+                contact.jnAcc = contact.jtAcc = 0.0
+
+    def _deepest(self) -> float:
+        """Return the deepest overlap of any two blocks."""
+        found = 0.0
+        for one, other, pair in self._pairs():
+            first, second = one.body, other.body
+            if first is None or second is None:
+                continue
+            (x1, y1), (x2, y2) = first.position, second.position
+            for contact in pair.contacts[0 : pair.count]:
+                x = x2 + contact.r2.x - x1 - contact.r1.x
+                y = y2 + contact.r2.y - y1 - contact.r1.y
+                found = max(found, -(x * pair.n.x + y * pair.n.y))
+        return found
+
     def quality(self) -> Quality:
-        """Chipmunk does not tell."""
-        return Quality()
+        """Tell how deep blocks that meet have overlapped; Chipmunk does not tell more."""
+        return Quality(penetration=self._penetration if self._polygons else None)
