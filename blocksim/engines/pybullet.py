@@ -34,6 +34,7 @@ import weakref
 from collections import defaultdict
 from collections.abc import Generator
 from contextlib import contextmanager
+from functools import cached_property
 from importlib.metadata import version
 from typing import Any
 
@@ -43,6 +44,7 @@ from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacem
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality, Settings, World
 from blocksim.engines.boxes import Box, Frame, plate, snug, support_of, uneven_depths
+from blocksim.engines.solids import Solids, smaller
 
 
 @contextmanager
@@ -97,6 +99,11 @@ TRAVEL = 5e-3
 """Way of a corner in a step above which the step is divided [size]."""
 FINEST = 20
 """Most parts of a step."""
+LONGEST_TUMBLE, MOST_PARTS = 0.005, 400
+"""Longest part of a step, and most of them, once blocks may meet."""
+TUMBLE_SWEEPS = 100
+MARGIN = 0.001
+"""What Bullet adds to hulls."""
 
 
 class Bullet:
@@ -175,6 +182,7 @@ class _Bodies:
         self._loaded = bool(problem.dead or (problem.live and problem.load))
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
         self._sides: dict[tuple[int, int], list[int]] = defaultdict(list)
+        self._is_rubble = False
         self._bodies = self._build()
         bullet.stepSimulation(physicsClientId=self._client)
         contacts = bullet.getContactPoints(physicsClientId=self._client)
@@ -196,7 +204,7 @@ class _Bodies:
         """Create a body for each block, and one for each joint with the support."""
         assembly, problem = self._assembly, self._problem
         plates, centres = snug(assembly), assembly.centres / assembly.size
-        deep, masses = uneven_depths(assembly), assembly.spatial_masses
+        deep = uneven_depths(assembly)
         friction = math.sqrt(min(problem.mu, MOST_FRICTION))
         bodies: dict[int, int] = {}
         for index, place in enumerate(self._places):
@@ -204,7 +212,7 @@ class _Bodies:
                 plate(side, float(deep[index]), centres[index], OVERLAP, thickness)
                 for side, thickness in plates[index]
             ]
-            bodies[index] = self._body(boxes, place, friction, masses[index])
+            bodies[index] = self._body(boxes, place, friction, index)
         for index, joint in enumerate(assembly.joints):
             pair = [joint.before, joint.after]
             if SUPPORT in pair:
@@ -213,7 +221,7 @@ class _Bodies:
                 middle = side.ends.mean(axis=0)
                 box = plate(side, depth, middle, OVERLAP, thickness)
                 place, mu = self._frame.place(middle), self._friction_of_support(index)
-                bodies[name] = self._body([box], place, mu, None)
+                bodies[name] = self._body([box], place, mu)
                 pair[pair.index(SUPPORT)] = name
             one, other = (bodies[name] for name in pair)
             self._sides[one, other].append(index)
@@ -234,9 +242,9 @@ class _Bodies:
         return own / math.sqrt(mu) if mu > 0 else 0.0
 
     def _body(
-        self, boxes: list[Box], place: list[float], friction: float, masses: Array | None
+        self, boxes: list[Box], place: list[float], friction: float, index: int | None = None
     ) -> int:
-        """Create a body with its masses and moments of inertia; without them it stays."""
+        """Create a body of boxes; that of no block stays where it is."""
         shape = bullet.createCollisionShapeArray(
             shapeTypes=[bullet.GEOM_BOX] * len(boxes),
             halfExtents=[box.half for box in boxes],
@@ -244,6 +252,13 @@ class _Bodies:
             collisionFrameOrientations=[box.quaternion for box in boxes],
             physicsClientId=self._client,
         )
+        return self._add(shape, place, friction, index)
+
+    def _add(
+        self, shape: int, place: list[float], friction: float, index: int | None = None
+    ) -> int:
+        """Create a body of a shape; that of a block has its masses and moments of inertia."""
+        masses = None if index is None else self._assembly.spatial_masses[index]
         # Without maximal coordinates Bullet forgets all impulses and damps every motion.
         body: int = bullet.createMultiBody(
             0.0 if masses is None else float(masses[0]),
@@ -303,6 +318,13 @@ class _Bodies:
         """Let the blocks move, in parts of a step where they move far."""
         for _ in range(steps):
             speed = float(displacement(self._velocities(), self._assembly))
+            if not self._is_rubble:
+                self._solids.update(self.poses())
+                if self._solids.loose:
+                    self._make_solid()
+            if self._is_rubble:
+                self._tumble(speed)
+                continue
             parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
             step = self._settings.step / parts
             change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
@@ -313,6 +335,70 @@ class _Bodies:
             )
             for _ in range(parts):
                 self._step()
+
+    @cached_property
+    def _solids(self) -> Solids:
+        return Solids(self._assembly)
+
+    def _make_solid(self) -> None:
+        """Make blocks the bodies they are, with what they stand on and the floor."""
+        self._is_rubble = True
+        states = [
+            (
+                bullet.getBasePositionAndOrientation(body, physicsClientId=self._client),
+                bullet.getBaseVelocity(body, physicsClientId=self._client),
+            )
+            for body in self._bodies
+        ]
+        for body in {body for pair in self._sides for body in pair}:
+            bullet.removeBody(body, physicsClientId=self._client)
+        self._sides.clear()
+        assembly, friction = self._assembly, math.sqrt(min(self._problem.mu, MOST_FRICTION))
+        for index, ((place, turn), (shift, spin)) in enumerate(states):
+            block, depth = assembly.blocks[index], float(assembly.depths[index])
+            outline = (block.vertices - block.centre) / assembly.size
+            body = self._add(self._prism(outline, depth), list(place), friction, index)
+            bullet.resetBasePositionAndOrientation(
+                body, place, turn, physicsClientId=self._client
+            )
+            bullet.resetBaseVelocity(body, shift, spin, physicsClientId=self._client)
+            self._bodies[index] = body
+        deep = float(assembly.depths.max())
+        for polygon in self._solids.fixed[:-1]:
+            middle = polygon.mean(axis=0)
+            shape = self._prism(polygon - middle, 2 * deep)
+            self._add(shape, self._frame.place(middle), friction)
+        low, high = self._solids.fixed[-1].min(axis=0), self._solids.fixed[-1].max(axis=0)
+        half = [*((high - low) / 2).tolist(), float(high[0] - low[0]) / 2]
+        floor = bullet.createCollisionShape(
+            bullet.GEOM_BOX, halfExtents=half, physicsClientId=self._client
+        )
+        self._add(floor, self._frame.place((low + high) / 2), friction)
+
+    def _prism(self, outline: Array, depth: float) -> int:
+        """Return the hull of a block, set back by the margin that Bullet adds to it."""
+        corners = smaller(outline, MARGIN)
+        half = depth / 2 - MARGIN
+        points = [[x, y, z] for z in (-half, half) for x, y in corners.tolist()]
+        shape: int = bullet.createCollisionShape(
+            bullet.GEOM_MESH, vertices=points, physicsClientId=self._client
+        )
+        return shape
+
+    def _tumble(self, speed: float) -> None:
+        """Take a step of blocks that meet."""
+        way = self._settings.step * (speed + self._settings.step)
+        finest = self._settings.step / LONGEST_TUMBLE
+        parts = min(math.ceil(max(way / self._solids.largest, finest)), MOST_PARTS)
+        self._set(
+            fixedTimeStep=self._settings.step / parts,
+            numSolverIterations=TUMBLE_SWEEPS,
+            solverResidualThreshold=0,
+            # Impulses of an impact, taken for those of rest, would throw blocks.
+            warmStartingFactor=0,
+        )
+        for _ in range(parts):
+            self._step()
 
     def _step(self) -> None:
         """Take a step under gravity and loads, which Bullet forgets after each."""
