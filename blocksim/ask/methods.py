@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
+from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
@@ -24,12 +23,12 @@ _STATICS = (
         name="theory",
         sees="the continuous arch: least thickness, mode, thrust, hinge and sliding angles",
         finest=0.0,
+        has_joint_friction=False,
     ),
     Method(
         name="limit",
         sees="the arch as built: the same, and the joints that turn or slide",
         finest=0.0,
-        is_general=True,
         chart={"voussoirs": (7, 13, 27, 53, 101, 201, 401)},
         colour="#E69F00",
         tint="#fbeccc",
@@ -42,8 +41,6 @@ SPATIAL = next(engine.name for engine in ENGINES.values() if engine.is_spatial)
 """The method that sees out of the plane."""
 
 CHOICES = ("auto", *METHODS)
-CHAIN = 2
-"""Most joints of a block in a chain."""
 
 
 def choose(
@@ -123,17 +120,9 @@ def _beyond(method: Method, problem: Problem | None) -> str:
         return f"{SPATIAL} where gravity leans out of the plane"
     if method.name == "theory" and "half_angle" not in problem.origin:
         return "limit or an engine: theory is of symmetric circular arches only"
-    if method.is_general or method.is_static:
-        return ""
-    able = " or ".join(each.name for each in METHODS.values() if each.is_general)
-    for has, what in (
-        (problem.dead or (problem.live and problem.load), "loads besides gravity"),
-        (_own_friction(problem), "joints with friction of their own"),
-        (problem.assembly.joint_arrays.is_corner.any(), "corners on faces"),
-        (not _is_chain(problem), "blocks that are no chain"),
-    ):
-        if has:
-            return f"{able}: {method.name} was not shown right on {what}"
+    if not method.has_joint_friction and _own_friction(problem):
+        able = ", ".join(each.name for each in METHODS.values() if each.has_joint_friction)
+        return f"one of {able}: {method.name} knows no friction of single joints between blocks"
     return ""
 
 
@@ -143,17 +132,10 @@ def _reduces(method: Method) -> bool:
 
 
 def _own_friction(problem: Problem) -> bool:
-    own = problem.assembly.joint_arrays.friction
-    return bool((np.isfinite(own) | np.isinf(own)).any())
-
-
-def _is_chain(problem: Problem) -> bool:
-    """Tell whether blocks stand in a row, each between two joints at most."""
-    joints = problem.assembly.joint_arrays
-    sides = np.concatenate([joints.before, joints.after])
-    met = np.bincount(sides[sides >= 0], minlength=len(problem.assembly.blocks))
-    sizes = [len(block.polygons) for block in problem.assembly.blocks]
-    return int(met.max(initial=0)) <= CHAIN and max(sizes) == 1
+    """Tell whether joints between blocks have friction of their own."""
+    joints, mu = problem.assembly.joint_arrays, problem.friction
+    between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
+    return bool((mu[between] != problem.mu).any()) or (problem.mu == 0 and bool(mu.any()))
 
 
 def chosen_words(method: str, rung: Method) -> str:

@@ -180,9 +180,8 @@ class Method:
         What it can tell.
     finest : float
         Smallest relative width of a bracket it can answer for; its error is less.
-    is_general : bool
-        Whether it is right on any assembly, with any load. Others were shown right on
-        chains of blocks under their own weight, of which arches are one kind.
+    has_joint_friction : bool
+        Whether joints between blocks may have friction of their own.
     is_spatial : bool
         Whether it sees motion out of the plane.
     adjustable : tuple of str
@@ -198,7 +197,7 @@ class Method:
     name: str
     sees: str
     finest: float
-    is_general: bool = False
+    has_joint_friction: bool = True
     is_spatial: bool = False
     adjustable: tuple[str, ...] = ()
     chart: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])

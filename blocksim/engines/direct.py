@@ -222,7 +222,6 @@ ENGINE = Engine(
     build=Blocks,
     adjustable=("step", "still", "rest"),
     finest=1e-8,
-    is_general=True,
     most_friction=math.inf,
     finds_rest=True,
     tells_forces=True,

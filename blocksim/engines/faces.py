@@ -1,12 +1,23 @@
-"""The faces of blocks at their joints, as engines with shapes of their own need them."""
+"""What touches at each joint, as engines with shapes of their own need it.
+
+A joint is two sides, one on the face of either block, and each side touches the other and
+nothing else. So faces that continue each other, or meet at a corner, never get into each
+other's way, however many joints there are on a face.
+
+Where the faces of a joint end at the same place, as voussoirs do, their corners coincide, which
+engines do not bear: there one side reaches beyond the other by a ledge. The contacts are those
+of the shorter side, whose corners are true. Where one face goes on beyond the joint, it is that
+which is longer, and nothing has to be added.
+"""
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.engines.contact.geometry import faces_at_joints
 
 LEDGE = 2e-3
 """Most that one face of each joint reaches beyond the other [size]."""
@@ -14,58 +25,84 @@ LEDGE_SHARE = 0.05
 """The same, in units of the joint's length."""
 
 
-def faces_of(assembly: Assembly) -> list[list[Joint]]:
-    """Return the joints of each block, in order."""
-    faces: list[list[Joint]] = [[] for _ in assembly.blocks]
-    for joint in assembly.joints:
-        for index in (joint.before, joint.after):
-            if index != SUPPORT:
-                faces[index].append(joint)
-    return faces
-
-
-def side(joint: Joint, index: int) -> float:
-    """Sign of the direction from the joint into the block."""
-    return 1.0 if joint.after == index else -1.0
-
-
-def ledge(joint: Joint, index: int, size: float) -> float:
-    """Return how far the face of a block reaches beyond the joint, in units of the size.
-
-    One face of each joint is the larger; a support is wider than any joint, so that only
-    between blocks one has to be.
-    """
-    larger = joint.after == index and joint.before != SUPPORT
-    return min(LEDGE, LEDGE_SHARE * joint.length / size) if larger else 0.0
-
-
-def crowding(end: Array, along: Array, faces: list[Joint], size: float, width: float) -> float:
-    """Return how far a face must end short of a corner, for the block to be wide enough.
-
-    Where the intrados shrinks to a point (eta near 2) neighbouring faces would cross
-    there, and voussoirs that do not share a joint would touch.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Side:
+    """One side of a joint, scaled.
 
     Parameters
     ----------
-    end, along : (2,) float
-        The corner [m] and the direction from it along the face.
-    faces : list of Joint
-        All joints of the block.
-    size : float
-        Of the assembly [m].
-    width : float
-        Least width of the block where the face ends [size].
-
-    Returns
-    -------
-    float
-        In units of the size; negative where there is room.
+    joint : int
+    body : int
+        Index of its block, or `SUPPORT`.
+    ends : (2, 2) float
+        Inner and outer end of what touches; the same twice for a corner.
+    inward : (2,) float
+        Unit normal into the body.
+    room : float
+        Extent of the body along `inward`; of a support the length of the joint.
     """
-    cut = -math.inf
-    for joint in faces:
-        for other, direction in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
-            apart = float(np.hypot(*(other - end))) / size
-            spread = float(np.hypot(*(direction - along)))
-            if 0 < spread < 1:
-                cut = max(cut, (width - apart) / spread)
-    return cut
+
+    joint: int
+    body: int
+    ends: Array
+    inward: Array
+    room: float
+
+    @property
+    def is_corner(self) -> bool:
+        """Whether it is a corner that rests on the other side."""
+        return bool((self.ends[0] == self.ends[1]).all())
+
+
+def sides_of(assembly: Assembly) -> tuple[tuple[Side, Side], ...]:
+    """Return what touches at each joint: the side of `before` and that of `after`."""
+    faces, joints = faces_at_joints(assembly), assembly.joint_arrays
+    found: list[tuple[Side, Side]] = []
+    for index, joint in enumerate(assembly.joints):
+        reach = _reaches(assembly, joint, faces[index], int(joints.carrier[index]))
+        first, second = (
+            Side(
+                joint=index,
+                body=body,
+                ends=joints.ends[index] + joints.tangent[index] * reach[side, :, None],
+                inward=(1.0 if side else -1.0) * joints.normal[index],
+                room=_room(assembly, joint, side),
+            )
+            for side, body in enumerate((joint.before, joint.after))
+        )
+        found.append((first, second))
+    return tuple(found)
+
+
+def _reaches(assembly: Assembly, joint: Joint, faces: Array, carrier: int) -> Array:
+    """Return where both sides end, along the tangent from the joint's ends, shape (2, 2)."""
+    ends = np.stack([joint.inner, joint.outer]) / assembly.size
+    reach = ((faces - ends) * joint.tangent).sum(axis=-1)
+    bodies = (joint.before, joint.after)
+    length = joint.length / assembly.size
+    if joint.is_corner:
+        longer = carrier
+        least = LEDGE
+    else:
+        # A support is as wide as needed, and else the block after the joint.
+        longer = bodies.index(SUPPORT) if SUPPORT in bodies else 1
+        least = min(LEDGE, LEDGE_SHARE * length)
+    for end, outward in enumerate((-1.0, 1.0)):
+        beyond = outward * reach[:, end]
+        if not joint.is_corner and not assembly.supports and bodies[longer] == SUPPORT:
+            beyond[longer] = max(beyond[longer], length)
+        if abs(beyond[1] - beyond[0]) < least:
+            wide = longer if beyond[0] == beyond[1] else int(beyond.argmax())
+            beyond[wide] = beyond[1 - wide] + least
+        reach[:, end] = outward * beyond
+    return reach
+
+
+def _room(assembly: Assembly, joint: Joint, side: int) -> float:
+    """Return how far a body reaches from a joint, along the normal."""
+    sign = 1.0 if side else -1.0
+    polygons = assembly.polygons_at(joint, side)
+    if (joint.before, joint.after)[side] == SUPPORT or not polygons:
+        return max(joint.length / assembly.size, LEDGE)
+    corners = np.concatenate(polygons)
+    return float(((corners - joint.inner) @ (sign * joint.normal)).max()) / assembly.size

@@ -34,8 +34,8 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Engine, Library, Quality, Settings
-from blocksim.engines.boxes import Box, footing, plate
-from blocksim.engines.faces import faces_of
+from blocksim.engines.boxes import plate, uneven_depths
+from blocksim.engines.faces import sides_of
 
 library: Any = Library("mujoco")
 
@@ -94,16 +94,19 @@ class _Bodies:
     """
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        assembly, mu = problem.assembly, problem.mu
+        assembly = problem.assembly
+        self._problem = problem
+        self._loaded = bool(problem.dead or (problem.live and problem.load))
         self._part = settings.step / settings.sweeps
         self._parts = settings.sweeps
         self._scatter, self._steady = 0.0, True
-        self._model = _model(assembly, min(mu, FRICTION_CAP), problem.gravity)
+        self._model = _model(problem)
         self._state = library.MjData(self._model)
         self._places = np.column_stack(
             [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
         )
         self._zero = np.zeros(self._places.size)
+        self._pull()
         self._softness, self._force = HARDEST, 1 / HARDEST
         self._choose(HOLD_STEP, LOOSE)
         # With the hardest contacts the blocks as built fall a little: that tells of all others.
@@ -126,6 +129,14 @@ class _Bodies:
         # How far one block's weight presses into a contact.
         model.pair_margin[:] = self._softness * (DAMPING * period) ** 2
         self._pause = math.ceil(PAUSE * period / step)
+
+    def _pull(self) -> None:
+        """Let loads act; MuJoCo keeps them until told others."""
+        if self._loaded:
+            poses = self._places + self._state.qpos.reshape(-1, 3)
+            pull = self._problem.pull(poses)
+            pull[:, :2] -= self._problem.assembly.masses[:, :2] * self._problem.gravity[:2]
+            self._state.qfrc_applied[:] = pull.ravel()
 
     def _settle(self, sweeps: int) -> None:
         """Let the contacts take up the weight, stopping the blocks again and again."""
@@ -170,7 +181,9 @@ class _Bodies:
             self._settle(SETTLING)
             self._zero = self._state.qpos.copy()
             self._choose(self._part, 0.0)
-        library.mj_step(self._model, self._state, steps * self._parts)
+        for _ in range(steps):
+            self._pull()
+            library.mj_step(self._model, self._state, self._parts)
 
     def poses(self) -> Array:
         """Return centres of mass and rotations, less how far contacts had given way at rest."""
@@ -181,8 +194,9 @@ class _Bodies:
         return Quality(residual=self._scatter if self._steady else math.inf)
 
 
-def _model(assembly: Assembly, mu: float, gravity: Array) -> Any:
+def _model(problem: Problem) -> Any:
     """Return a model of bodies that touch where the assembly has joints."""
+    assembly, gravity = problem.assembly, problem.gravity
     size = assembly.size
     spec = library.MjSpec()
     option = spec.option
@@ -193,21 +207,7 @@ def _model(assembly: Assembly, mu: float, gravity: Array) -> Any:
     option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
     # It would put all blocks back in silence where numbers overflow.
     option.disableflags |= library.mjtDisableBit.mjDSBL_AUTORESET
-    number = {id(joint): k for k, joint in enumerate(assembly.joints)}
-
-    def add(body: Any, box: Box, joint: int, index: int) -> None:
-        x, y, z, w = box.quaternion
-        body.add_geom(
-            name=f"joint {joint}, block {index}",
-            type=library.mjtGeom.mjGEOM_BOX,
-            size=box.half,
-            pos=box.centre,
-            quat=[w, x, y, z],
-            contype=0,
-            conaffinity=0,
-        )
-
-    faces = faces_of(assembly)
+    bodies: list[Any] = []
     for index, block in enumerate(assembly.blocks):
         mass, _, inertia, _, *across = assembly.spatial_masses[index].tolist()
         body = spec.worldbody.add_body(
@@ -223,18 +223,29 @@ def _model(assembly: Assembly, mu: float, gravity: Array) -> Any:
         body.add_joint(type=slide, axis=[1.0, 0.0, 0.0])
         body.add_joint(type=slide, axis=[0.0, 1.0, 0.0])
         body.add_joint(type=hinge, axis=[0.0, 0.0, 1.0])
-        for joint in faces[index]:
-            box = plate(block, index, joint, faces[index], size, overlap=0.0)
-            add(body, box, number[id(joint)], index)
-    for joint in assembly.springings:
-        box, centre = footing(assembly.blocks[joint.bears], joint, size, overlap=0.0)
-        add(spec.worldbody.add_body(pos=[*centre, 0.0]), box, number[id(joint)], SUPPORT)
-    for k, joint in enumerate(assembly.joints):
+        bodies.append(body)
+    centres = np.vstack([assembly.centres / size, np.zeros(2)])
+    depth = np.append(uneven_depths(assembly), 2 * assembly.depths.max())
+    for k, sides in enumerate(sides_of(assembly)):
+        for side in sides:
+            body = spec.worldbody if side.body == SUPPORT else bodies[side.body]
+            box = plate(side, float(depth[side.body]), centres[side.body], overlap=0.0)
+            x, y, z, w = box.quaternion
+            body.add_geom(
+                name=f"joint {k}, block {side.body}",
+                type=library.mjtGeom.mjGEOM_BOX,
+                size=box.half,
+                pos=box.centre,
+                quat=[w, x, y, z],
+                contype=0,
+                conaffinity=0,
+            )
+        mu = min(float(problem.friction[k]), FRICTION_CAP)
         spec.add_pair(
-            geomname1=f"joint {k}, block {joint.before}",
-            geomname2=f"joint {k}, block {joint.after}",
+            geomname1=f"joint {k}, block {sides[0].body}",
+            geomname2=f"joint {k}, block {sides[1].body}",
             condim=3,
-            friction=[0.0 if joint.friction == 0 else mu] * 2 + [0.0] * 3,
+            friction=[mu] * 2 + [0.0] * 3,
         )
     return spec.compile()
 

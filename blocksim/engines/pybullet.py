@@ -26,18 +26,21 @@ directions of friction Bullet chooses at rest lie in the plane and across it.
 
 from __future__ import annotations
 
+import itertools
 import math
 import weakref
+from collections import defaultdict
+from functools import cached_property
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint, displacement
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Library, Quality, Settings
-from blocksim.engines.boxes import Frame, footing, plate
-from blocksim.engines.faces import faces_of
+from blocksim.engines.boxes import Box, Frame, plate, snug, support_of, uneven_depths
+from blocksim.engines.solids import Solids, smaller
 
 bullet: Any = Library("pybullet", quiet=True)
 UNTURNED = Frame()
@@ -46,6 +49,8 @@ MOST_FRICTION = 10.0
 """Bullet's own bound of a pair's friction."""
 OVERLAP = 2e-5
 """Overlap of two closed faces, and slop [size]."""
+DEEPEST = 3e-5
+"""Overlap of blocks as built from which they are not trusted, drawn into each other [size]."""
 BREAKING = 0.1
 """Distance at which contact points count as one, in units of the shortest joint."""
 MOST_BREAKING = 0.02
@@ -55,8 +60,10 @@ SHORT, SHORTEST = 0.1, 1e-3
 """Length of a joint below which errors shrink more slowly, and shortest measured [size]."""
 SWEEPS = 100
 """Most sweeps of a step, for each pair of blocks."""
-HOLD_SWEEPS = 300
+HOLD_SWEEPS = 600
 """Most sweeps of the onset test, for each pair of blocks."""
+LEAST_HOLD = 300_000
+"""The same at least: friction begins from nothing each time."""
 STILL = 1e-5
 NOISE = 1e-6
 """Way of an arch at rest by the last of each step's errors, in hundreds of units of time."""
@@ -70,6 +77,11 @@ TRAVEL = 5e-3
 """Way of a corner in a step above which the step is divided [size]."""
 FINEST = 20
 """Most parts of a step."""
+LONGEST_TUMBLE, MOST_PARTS = 0.005, 400
+"""Longest part of a step, and most of them, once blocks may meet."""
+TUMBLE_SWEEPS = 100
+MARGIN = 0.001
+"""What Bullet adds to hulls."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -82,9 +94,10 @@ def rule(assembly: Assembly) -> Settings:
     return Settings(
         step=STEP,
         sweeps=round(SWEEPS * pairs),
-        hold_sweeps=round(HOLD_SWEEPS * pairs),
+        hold_sweeps=max(LEAST_HOLD, round(HOLD_SWEEPS * pairs)),
         still=STILL,
         noise=NOISE,
+        penetration=DEEPEST,
     )
 
 
@@ -106,7 +119,8 @@ class Bodies:
     """
 
     def __init__(self, problem: Problem, settings: Settings, frame: Frame = UNTURNED) -> None:
-        assembly, mu = problem.assembly, problem.mu
+        assembly = problem.assembly
+        self._problem = problem
         self._assembly, self._settings, self._frame = assembly, settings, frame
         self._pairs = settings.sweeps / SWEEPS
         self._client = bullet.connect(bullet.DIRECT)
@@ -123,21 +137,14 @@ class Bodies:
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
         )
-        self._friction = math.sqrt(min(mu, MOST_FRICTION))
+        self._loaded = bool(problem.dead or (problem.live and problem.load))
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
-        faces = faces_of(assembly)
-        self._bodies = [self._block(index, faces[index]) for index in range(len(faces))]
-        self._footings: list[int] = []
-        for joint in assembly.springings:
-            footing = self._footing(joint)
-            self._footings.append(footing)
-            # A support touches only the block that stands on it.
-            for index, body in enumerate(self._bodies):
-                if index != joint.bears:
-                    bullet.setCollisionFilterPair(
-                        footing, body, -1, -1, 0, physicsClientId=self._client
-                    )
+        self._sides: dict[tuple[int, int], list[int]] = defaultdict(list)
+        self._is_rubble = False
+        self._bodies = self._build()
         bullet.stepSimulation(physicsClientId=self._client)
+        contacts = bullet.getContactPoints(physicsClientId=self._client)
+        self._deepest = max((-contact[8] for contact in contacts), default=0.0)
         bullet.setGravity(
             *frame.vector(*problem.gravity.tolist()),
             physicsClientId=self._client,
@@ -151,10 +158,51 @@ class Bodies:
             physicsClientId=self._client,
         )
 
-    def _block(self, index: int, faces: list[Joint]) -> int:
-        """Create a body that is a thin box on each of its block's faces."""
-        block, size = self._assembly.blocks[index], self._assembly.size
-        boxes = [plate(block, index, joint, faces, size, OVERLAP) for joint in faces]
+    def _build(self) -> list[int]:
+        """Create a body for each block, and one for each joint with the support."""
+        assembly, problem = self._assembly, self._problem
+        plates, centres = snug(assembly), assembly.centres / assembly.size
+        deep = uneven_depths(assembly)
+        friction = math.sqrt(min(problem.mu, MOST_FRICTION))
+        bodies: dict[int, int] = {}
+        for index, place in enumerate(self._places):
+            boxes = [
+                plate(side, float(deep[index]), centres[index], OVERLAP, thickness)
+                for side, thickness in plates[index]
+            ]
+            bodies[index] = self._body(boxes, place, friction, index)
+        for index, joint in enumerate(assembly.joints):
+            pair = [joint.before, joint.after]
+            if SUPPORT in pair:
+                name, depth = support_of(index), 2 * float(deep[joint.bears])
+                ((side, thickness),) = plates[name]
+                middle = side.ends.mean(axis=0)
+                box = plate(side, depth, middle, OVERLAP, thickness)
+                place, mu = self._frame.place(middle), self._friction_of_support(index)
+                bodies[name] = self._body([box], place, mu)
+                pair[pair.index(SUPPORT)] = name
+            one, other = (bodies[name] for name in pair)
+            self._sides[one, other].append(index)
+        self._keep_apart(list(bodies.values()))
+        return [bodies[index] for index in range(len(assembly.blocks))]
+
+    def _keep_apart(self, bodies: list[int]) -> None:
+        """Let nothing touch but what shares a joint."""
+        touching = {frozenset(pair) for pair in self._sides}
+        for pair in itertools.combinations(bodies, 2):
+            if frozenset(pair) not in touching:
+                bullet.setCollisionFilterPair(*pair, -1, -1, 0, physicsClientId=self._client)
+
+    def _friction_of_support(self, joint: int) -> float:
+        """Return what with the friction of blocks makes that of a joint with the support."""
+        own = min(float(self._problem.friction[joint]), MOST_FRICTION)
+        mu = min(self._problem.mu, MOST_FRICTION)
+        return own / math.sqrt(mu) if mu > 0 else 0.0
+
+    def _body(
+        self, boxes: list[Box], place: list[float], friction: float, index: int | None = None
+    ) -> int:
+        """Create a body of boxes; that of no block stays where it is."""
         shape = bullet.createCollisionShapeArray(
             shapeTypes=[bullet.GEOM_BOX] * len(boxes),
             halfExtents=[box.half for box in boxes],
@@ -162,37 +210,16 @@ class Bodies:
             collisionFrameOrientations=[box.quaternion for box in boxes],
             physicsClientId=self._client,
         )
-        mass, _, inertia, _, *across = self._assembly.spatial_masses[index].tolist()
-        body = self._body(mass, shape, self._places[index])
-        bullet.changeDynamics(
-            body,
-            -1,
-            mass=mass,
-            localInertiaDiagonal=[*across, inertia],
-            physicsClientId=self._client,
-        )
-        return body
+        return self._add(shape, place, friction, index)
 
-    def _footing(self, joint: Joint) -> int:
-        """Create a slab under a springing, wider than the joint on all sides."""
-        block = self._assembly.blocks[joint.bears]
-        box, centre = footing(block, joint, self._assembly.size, OVERLAP)
-        shape = bullet.createCollisionShapeArray(
-            shapeTypes=[bullet.GEOM_BOX],
-            halfExtents=[box.half],
-            collisionFramePositions=[[0.0, 0.0, 0.0]],
-            collisionFrameOrientations=[box.quaternion],
-            physicsClientId=self._client,
-        )
-        body = self._body(0.0, shape, self._frame.place(centre))
-        if joint.friction == 0:
-            bullet.changeDynamics(body, -1, lateralFriction=0, physicsClientId=self._client)
-        return body
-
-    def _body(self, mass: float, shape: int, place: list[float]) -> int:
+    def _add(
+        self, shape: int, place: list[float], friction: float, index: int | None = None
+    ) -> int:
+        """Create a body of a shape; that of a block has its masses and moments of inertia."""
+        masses = None if index is None else self._assembly.spatial_masses[index]
         # Without maximal coordinates Bullet forgets all impulses and damps every motion.
         body: int = bullet.createMultiBody(
-            mass,
+            0.0 if masses is None else float(masses[0]),
             shape,
             basePosition=place,
             baseOrientation=self._frame.quaternion,
@@ -202,12 +229,21 @@ class Bodies:
         bullet.changeDynamics(
             body,
             -1,
-            lateralFriction=self._friction,
+            lateralFriction=friction,
             linearDamping=0,
             angularDamping=0,
             restitution=0,
             physicsClientId=self._client,
         )
+        if masses is not None:
+            mass, _, inertia, _, *across = masses.tolist()
+            bullet.changeDynamics(
+                body,
+                -1,
+                mass=mass,
+                localInertiaDiagonal=[*across, inertia],
+                physicsClientId=self._client,
+            )
         return body
 
     def hold(self, sweeps: int) -> Array:
@@ -217,7 +253,7 @@ class Bodies:
         """
         step = self._settings.step
         self._set(fixedTimeStep=step, numSolverIterations=sweeps, solverResidualThreshold=0)
-        bullet.stepSimulation(physicsClientId=self._client)
+        self._step()
         accelerations = self._velocities() / step
         nothing = [0.0, 0.0, 0.0]
         for body, place in zip(self._bodies, self._places, strict=True):
@@ -231,6 +267,13 @@ class Bodies:
         """Let the blocks move, in parts of a step where they move far."""
         for _ in range(steps):
             speed = float(displacement(self._velocities(), self._assembly))
+            if not self._is_rubble:
+                self._solids.update(self.poses())
+                if self._solids.loose:
+                    self._make_solid()
+            if self._is_rubble:
+                self._tumble(speed)
+                continue
             parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
             step = self._settings.step / parts
             change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
@@ -240,7 +283,97 @@ class Bodies:
                 solverResidualThreshold=change**2,
             )
             for _ in range(parts):
-                bullet.stepSimulation(physicsClientId=self._client)
+                self._step()
+
+    @cached_property
+    def _solids(self) -> Solids:
+        return Solids(self._assembly)
+
+    def _make_solid(self) -> None:
+        """Make blocks the bodies they are, with what they stand on and the floor."""
+        self._is_rubble = True
+        states = [
+            (
+                bullet.getBasePositionAndOrientation(body, physicsClientId=self._client),
+                bullet.getBaseVelocity(body, physicsClientId=self._client),
+            )
+            for body in self._bodies
+        ]
+        for body in {body for pair in self._sides for body in pair}:
+            bullet.removeBody(body, physicsClientId=self._client)
+        self._sides.clear()
+        assembly, friction = self._assembly, math.sqrt(min(self._problem.mu, MOST_FRICTION))
+        for index, ((place, turn), (shift, spin)) in enumerate(states):
+            block, depth = assembly.blocks[index], float(assembly.depths[index])
+            outline = (block.vertices - block.centre) / assembly.size
+            body = self._add(self._prism(outline, depth), list(place), friction, index)
+            bullet.resetBasePositionAndOrientation(
+                body, place, turn, physicsClientId=self._client
+            )
+            bullet.resetBaseVelocity(body, shift, spin, physicsClientId=self._client)
+            self._bodies[index] = body
+        deep = float(assembly.depths.max())
+        for polygon in self._solids.fixed[:-1]:
+            middle = polygon.mean(axis=0)
+            shape = self._prism(polygon - middle, 2 * deep)
+            self._add(shape, self._frame.place(middle), friction)
+        low, high = self._solids.fixed[-1].min(axis=0), self._solids.fixed[-1].max(axis=0)
+        half = [*((high - low) / 2).tolist(), float(high[0] - low[0]) / 2]
+        floor = bullet.createCollisionShape(
+            bullet.GEOM_BOX, halfExtents=half, physicsClientId=self._client
+        )
+        self._add(floor, self._frame.place((low + high) / 2), friction)
+
+    def _prism(self, outline: Array, depth: float) -> int:
+        """Return the hull of a block, set back by the margin that Bullet adds to it."""
+        corners = smaller(outline, MARGIN)
+        half = depth / 2 - MARGIN
+        points = [[x, y, z] for z in (-half, half) for x, y in corners.tolist()]
+        shape: int = bullet.createCollisionShape(
+            bullet.GEOM_MESH, vertices=points, physicsClientId=self._client
+        )
+        return shape
+
+    def _tumble(self, speed: float) -> None:
+        """Take a step of blocks that meet."""
+        way = self._settings.step * (speed + self._settings.step)
+        finest = self._settings.step / LONGEST_TUMBLE
+        parts = min(math.ceil(max(way / self._solids.largest, finest)), MOST_PARTS)
+        self._set(
+            fixedTimeStep=self._settings.step / parts,
+            numSolverIterations=TUMBLE_SWEEPS,
+            solverResidualThreshold=0,
+            # Impulses of an impact, taken for those of rest, would throw blocks.
+            warmStartingFactor=0,
+        )
+        for _ in range(parts):
+            self._step()
+
+    def _step(self) -> None:
+        """Take a step under gravity and loads, which Bullet forgets after each."""
+        if self._loaded:
+            pull = self._problem.pull(self.poses()[:, :PLANAR])
+            pull[:, :2] -= self._assembly.masses[:, :2] * self._problem.gravity[:2]
+            for body, (x, y, moment) in zip(self._bodies, pull.tolist(), strict=True):
+                place, _ = bullet.getBasePositionAndOrientation(
+                    body, physicsClientId=self._client
+                )
+                bullet.applyExternalForce(
+                    body,
+                    -1,
+                    self._frame.vector(x, y, 0.0),
+                    place,
+                    bullet.WORLD_FRAME,
+                    physicsClientId=self._client,
+                )
+                bullet.applyExternalTorque(
+                    body,
+                    -1,
+                    self._frame.vector(0.0, 0.0, moment),
+                    bullet.WORLD_FRAME,
+                    physicsClientId=self._client,
+                )
+        bullet.stepSimulation(physicsClientId=self._client)
 
     def poses(self) -> Array:
         """Return places and rotations, shape (blocks, 6)."""
@@ -253,15 +386,7 @@ class Bodies:
 
     def resultants(self) -> Array:
         """Add up the forces of contacts in the plane."""
-        footings = iter(self._footings)
-        joints = {
-            tuple(
-                next(footings) if side == SUPPORT else self._bodies[side]
-                for side in (joint.before, joint.after)
-            ): index
-            for index, joint in enumerate(self._assembly.joints)
-        }
-        found = np.zeros((len(joints), 3))
+        found = np.zeros((len(self._assembly.joints), 3))
         # Asked for one pair, Bullet may turn the normal round, and not the friction.
         for contact in bullet.getContactPoints(physicsClientId=self._client):
             sides = contact[1:3]
@@ -272,15 +397,22 @@ class Bodies:
             place = (np.array(contact[5]) + contact[6]) / 2
             wrench = self._frame.wrench(place, force)
             # It acts on the first body.
-            if sides in joints:
-                found[joints[sides]] -= wrench
-            else:
-                found[joints[sides[::-1]]] += wrench
+            forth = sides in self._sides
+            joints = self._sides[sides if forth else sides[::-1]]
+            found[self._nearest(joints, place)] += -wrench if forth else wrench
         return found
 
+    def _nearest(self, joints: list[int], place: Array) -> int:
+        """Tell which joint of two blocks a contact belongs to."""
+        if len(joints) == 1:
+            return joints[0]
+        ends = self._assembly.joint_arrays.ends[joints]
+        off = np.moveaxis(ends - self._frame.point(place), -1, 0)
+        return joints[int(np.hypot(*off).min(axis=1).argmin())]
+
     def quality(self) -> Quality:
-        """Bullet does not tell."""
-        return Quality()
+        """Tell how deep blocks as built overlap; Bullet does not tell more."""
+        return Quality(penetration=self._deepest)
 
     def _velocities(self) -> Array:
         read = [
@@ -301,6 +433,7 @@ ENGINE = Engine(
     adjustable=("step", "sweeps", "hold_sweeps", "still", "rest"),
     finest=1e-3,
     is_spatial=True,
+    has_joint_friction=False,
     most_friction=MOST_FRICTION,
     tells_forces=True,
     contacts=4,

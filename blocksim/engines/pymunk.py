@@ -18,18 +18,19 @@ How a near-critical arch has to be put into it (each point measured, see ARCHITE
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
+from functools import cached_property
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Engine, Library, Quality, Settings
-from blocksim.engines.faces import crowding, faces_of, ledge, side
+from blocksim.engines.faces import Side, sides_of
+from blocksim.engines.solids import Solids, smaller, width
 
 if TYPE_CHECKING:
     import pymunk
@@ -41,21 +42,24 @@ INSET = 1e-6
 INSET_SHARE = 1e-4
 OVERLAP = 0.25
 """Overlap of two closed shapes, in units of the inset."""
-CLEARANCE = 6.0
-"""Least width of a block between two faces, in units of the inset."""
+PLATE, THINNEST = 0.15, 100.0
+"""Thickness of what touches in units of the block's extent, and at least of the inset."""
 LONGEST_STEP = 1 / 100
 THICK = 0.8
 """Joint length from which the longest step will do [size]."""
 SWEEPS = 100
 """Sweeps of a moving run per unit of time, for each block."""
 LEAST_SWEEPS = 5
+RUBBLE_SWEEPS, MOST_PARTS = 100, 100
+"""Least sweeps, and most parts of a step, once blocks may meet."""
+ROUND = 0.005
+"""Radius of the corners of blocks that meet, in units of their least width."""
 HOLD_SWEEPS, LEAST_HOLD = 4000, 50_000
 """Most sweeps of the onset test for each pair of blocks, and at least."""
 SLENDER, SLENDEREST = 80, 2.5e-4
 """The same over the length of the shortest joint, and the shortest that was measured [size]."""
 LONGEST_HOLD = 5e9
 """Most of these sweeps times blocks, about four minutes."""
-SUPPORT_BIT = 1 << 31
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -83,65 +87,104 @@ def rule(assembly: Assembly) -> Settings:
 
 
 class _Space:
-    """A pymunk space with one body for each block."""
+    """A pymunk space with one body for each block, and one shape for each side of a joint."""
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        assembly, mu = problem.assembly, problem.mu
-        self._assembly, self._settings = assembly, settings
-        self._gravity = (float(problem.gravity[0]), float(problem.gravity[1]))
+        assembly = problem.assembly
+        self._problem, self._assembly, self._settings = problem, assembly, settings
         self._inset = min(INSET, INSET_SHARE * assembly.shortest)
-        self._friction = math.sqrt(min(mu, FRICTION_CAP))
-        # Footings come after the blocks, in the order of their joints.
-        names = itertools.count(len(assembly.blocks))
-        self._sides = [
-            tuple(next(names) if side == SUPPORT else side for side in (j.before, j.after))
-            for j in assembly.joints
-        ]
-        self._space, self._bodies, self._shapes = self._build()
+        self._loaded = bool(problem.dead or (problem.live and problem.load))
+        self._shapes: dict[pymunk.Shape, tuple[int, float, pymunk.Body]] = {}
+        self._polygons: dict[pymunk.Shape, int] = {}
+        self._penetration = 0.0
+        self._space, self._bodies = self._build()
 
-    def _build(self) -> tuple[pymunk.Space, list[pymunk.Body], list[pymunk.Shape]]:
+    def _build(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
         """Put the blocks into a new space, without impulses."""
         assembly, size = self._assembly, self._assembly.size
         space = pymunk.Space()
-        space.gravity = self._gravity
+        space.gravity = (float(self._problem.gravity[0]), float(self._problem.gravity[1]))
         space.collision_slop = self._inset
         space.collision_persistence = 1
-        faces = faces_of(assembly)
+        space.on_collision(begin=self._choose)
         bodies: list[pymunk.Body] = []
-        shapes: list[pymunk.Shape] = []
-        for index, block in enumerate(assembly.blocks):
-            mass, _, inertia = assembly.masses[index].tolist()
-            body = pymunk.Body(mass, inertia)
+        for block, (mass, _, inertia) in zip(assembly.blocks, assembly.masses, strict=True):
+            body = pymunk.Body(float(mass), float(inertia))
             centre = block.centre / size
             body.position = (float(centre[0]), float(centre[1]))
-            outline = _outline(block.vertices, index, faces[index], size, self._inset)
-            shape = self._shape(body, outline - centre)
-            bits = [k for k, joint in enumerate(assembly.springings) if index == joint.bears]
-            shape.filter = pymunk.ShapeFilter(categories=1 | sum(2 << k for k in bits))
-            space.add(body, shape)
+            space.add(body)
             bodies.append(body)
-            shapes.append(shape)
-        for k, joint in enumerate(assembly.springings):
-            shape = self._shape(space.static_body, _footing(joint, size, self._inset))
-            # A support touches only the block that stands on it.
-            shape.filter = pymunk.ShapeFilter(categories=SUPPORT_BIT, mask=2 << k)
-            if joint.friction == 0:
-                shape.friction = 0.0
-            space.add(shape)
-            shapes.append(shape)
-        return space, bodies, shapes
+        for sides, mu in zip(sides_of(assembly), self._problem.friction, strict=True):
+            for side, sense in zip(sides, (1.0, -1.0), strict=True):
+                body = space.static_body if side.body == SUPPORT else bodies[side.body]
+                shape = self._shape(body, side)
+                shape.friction = math.sqrt(min(float(mu), FRICTION_CAP))
+                shape.filter = pymunk.ShapeFilter(categories=1, mask=1)
+                space.add(shape)
+                self._shapes[shape] = side.joint, sense, body
+        return space, bodies
 
-    def _shape(self, body: pymunk.Body, outline: Array) -> pymunk.Poly:
-        corners = [(float(x), float(y)) for x, y in outline]
-        shape = pymunk.Poly(body, corners, radius=self._inset * (1 + OVERLAP / 2))
-        shape.friction = self._friction
-        return shape
+    def _shape(self, body: pymunk.Body, side: Side) -> pymunk.Shape:
+        """Return a plate on a face, or a dot for a corner, set back and made round."""
+        radius = self._inset * (1 + OVERLAP / 2)
+        ends = side.ends + side.inward * self._inset - np.array(body.position)
+        if side.is_corner:
+            return pymunk.Circle(body, radius, (float(ends[0, 0]), float(ends[0, 1])))
+        back = side.inward * max(PLATE * side.room, THINNEST * self._inset)
+        corners = [*ends.tolist(), *(ends[::-1] + back).tolist()]
+        return pymunk.Poly(body, corners, radius=radius)
+
+    def _choose(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: Any) -> None:
+        """Let the two sides of a joint touch, and polygons that no joint holds."""
+        one, other = arbiter.shapes
+        if one in self._polygons:
+            meet = self._solids.may_meet(self._polygons[one], self._polygons[other])
+        else:
+            meet = self._shapes[one][0] == self._shapes[other][0]
+        if not meet:
+            arbiter.process_collision = False
+
+    @cached_property
+    def _solids(self) -> Solids:
+        return Solids(self._assembly)
+
+    def _make_solid(self) -> None:
+        """Add the polygons of blocks, what they stand on and the floor."""
+        friction = math.sqrt(min(self._problem.mu, FRICTION_CAP))
+        bodies = [self._bodies[index] for index, _ in self._solids.moving]
+        bodies += [self._space.static_body] * len(self._solids.fixed)
+        corners = [polygon for _, polygon in self._solids.moving] + self._solids.fixed
+        for index, (body, polygon) in enumerate(zip(bodies, corners, strict=True)):
+            radius = ROUND * width(polygon)
+            # Corners that coincide are collided wrongly: rounded ones do not.
+            shape = pymunk.Poly(body, smaller(polygon, radius).tolist(), radius=radius)
+            shape.friction = friction
+            shape.filter = pymunk.ShapeFilter(categories=2, mask=2)
+            self._space.add(shape)
+            self._polygons[shape] = index
+
+    def _part(self) -> None:
+        """Give up joints that have come apart: their blocks are solid to each other."""
+        ended = set(self._solids.update(self.poses()).tolist())
+        if self._solids.loose and not self._polygons:
+            self._make_solid()
+        if not ended:
+            return
+        over = [shape for shape, (joint, *_) in self._shapes.items() if joint in ended]
+        self._space.remove(*over)
+        for shape in over:
+            del self._shapes[shape]
+        parted = set[int]().union(*(self._solids.sides[joint] for joint in ended))
+        again = [shape for shape, index in self._polygons.items() if index in parted]
+        # What has been turned down while it touched is asked again.
+        self._space.remove(*again)
+        self._space.add(*again)
 
     def hold(self, sweeps: int) -> Array:
         """Solve the contacts of one step from rest, then put every block back."""
         # Positions are integrated first and at rest, so they never change here.
         self._space.iterations = sweeps
-        self._space.step(self._settings.step)
+        self._step(self._settings.step)
         rates = [(*body.velocity, body.angular_velocity) for body in self._bodies]
         for body in self._bodies:
             body.velocity = (0.0, 0.0)
@@ -155,14 +198,37 @@ class _Space:
         along = np.stack([joints.normal, joints.tangent], axis=1)
         impulses = self._settings.step * np.einsum("jek,jkd->jed", forces, along)
         for joint, place, axes, contact in self._contacts():
-            end = np.hypot(*(joints.ends[joint] - place).T).argmin()
-            contact.jnAcc, contact.jtAcc = (axes @ impulses[joint, end]).tolist()
+            end = int(np.hypot(*(joints.ends[joint] - place).T).argmin())
+            corner = joints.is_corner[joint]
+            given = impulses[joint].sum(axis=0) if corner else impulses[joint, end]
+            contact.jnAcc, contact.jtAcc = (axes @ given).tolist()
 
     def advance(self, steps: int) -> None:
-        """Let the blocks move."""
-        self._space.iterations = self._settings.sweeps
+        """Let the blocks move, in parts of a step once they may meet."""
         for _ in range(steps):
-            self._space.step(self._settings.step)
+            self._part()
+            if not self._solids.loose:
+                self._space.iterations = self._settings.sweeps
+                self._step(self._settings.step)
+                continue
+            moved = np.array([(*b.velocity, b.angular_velocity) for b in self._bodies])
+            speed = float(displacement(moved, self._assembly)) + self._settings.step
+            parts = math.ceil(speed * self._settings.step / self._solids.largest)
+            parts = min(parts, MOST_PARTS)
+            self._space.iterations = max(RUBBLE_SWEEPS, self._settings.sweeps // parts)
+            for _ in range(parts):
+                self._forget()
+                self._step(self._settings.step / parts)
+            self._penetration = max(self._penetration, self._deepest())
+
+    def _step(self, step: float) -> None:
+        """Take a step under gravity and loads, which pymunk forgets after each."""
+        if self._loaded:
+            pull = self._problem.pull(self.poses())
+            pull[:, :2] -= self._assembly.masses[:, :2] * self._problem.gravity[:2]
+            for body, (x, y, moment) in zip(self._bodies, pull.tolist(), strict=True):
+                body.force, body.torque = (x, y), moment
+        self._space.step(step)
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
@@ -170,7 +236,7 @@ class _Space:
 
     def resultants(self) -> Array:
         """Add up the impulses of contacts."""
-        found = np.zeros((len(self._sides), 3))
+        found = np.zeros((len(self._assembly.joints), 3))
         for joint, place, axes, contact in self._contacts():
             x, y = np.array([contact.jnAcc, contact.jtAcc]) @ axes
             found[joint] += x, y, place[0] * y - place[1] * x
@@ -188,55 +254,54 @@ class _Space:
         contact : Any
             Chipmunk's own: `jnAcc` and `jtAcc` are its impulses.
         """
-        space: Any = self._space
-        shapes: list[Any] = self._shapes
-        names = {shape._shape: index for index, shape in enumerate(shapes)}
-        joints = {sides: index for index, sides in enumerate(self._sides)}
-        for pair in space._get_arbiters():
-            sides = names[pair.a], names[pair.b]
-            forth, back = joints.get(sides), joints.get(sides[::-1])
-            first, second = (shapes[side].body.position for side in sides)
+        for one, other, pair in self._pairs():
+            if one in self._polygons:
+                continue
+            joint, sense, body = self._shapes[one]
+            first, second = body.position, self._shapes[other][2].position
             normal = pymunk.Vec2d(pair.n.x, pair.n.y)
-            axes = np.array([normal, normal.perpendicular()])
+            # It leads from the first shape to the second.
+            axes = sense * np.array([normal, normal.perpendicular()])
             for contact in pair.contacts[0 : pair.count]:
                 # The two shapes overlap: the contact is midway.
                 x = first.x + contact.r1.x + second.x + contact.r2.x
                 y = first.y + contact.r1.y + second.y + contact.r2.y
-                place = np.array([x, y]) / 2
-                if forth is not None:
-                    yield forth, place, axes, contact
-                elif back is not None:
-                    yield back, place, -axes, contact
+                yield joint, np.array([x, y]) / 2, axes, contact
+
+    def _pairs(self) -> Iterator[tuple[pymunk.Shape, pymunk.Shape, Any]]:
+        """Go through the pairs of shapes that touch."""
+        space: Any = self._space
+        shapes: dict[Any, pymunk.Shape] = {}
+        for shape in (*self._shapes, *self._polygons):
+            its: Any = shape
+            shapes[its._shape] = shape
+        for pair in space._get_arbiters():
+            yield shapes[pair.a], shapes[pair.b], pair
+
+    def _forget(self) -> None:
+        """Forget impulses: those of an impact, taken for those of rest, would throw blocks."""
+        space: Any = self._space
+        for pair in space._get_arbiters():
+            for contact in pair.contacts[0 : pair.count]:
+                contact.jnAcc = contact.jtAcc = 0.0
+
+    def _deepest(self) -> float:
+        """Return the deepest overlap of any two blocks."""
+        found = 0.0
+        for one, other, pair in self._pairs():
+            first, second = one.body, other.body
+            if first is None or second is None:
+                continue
+            (x1, y1), (x2, y2) = first.position, second.position
+            for contact in pair.contacts[0 : pair.count]:
+                x = x2 + contact.r2.x - x1 - contact.r1.x
+                y = y2 + contact.r2.y - y1 - contact.r1.y
+                found = max(found, -(x * pair.n.x + y * pair.n.y))
+        return found
 
     def quality(self) -> Quality:
-        """Chipmunk does not tell."""
-        return Quality()
-
-
-def _outline(
-    vertices: Array, index: int, faces: list[Joint], size: float, inset: float
-) -> Array:
-    """Corners of a block with its joint faces set back, scaled, shape (k, 2)."""
-    corners: list[Array] = [v / size for v in vertices if not _on_a_face(v, faces)]
-    for joint in faces:
-        inward = side(joint, index) * joint.normal * inset
-        beyond = ledge(joint, index, size)
-        for end, along in ((joint.inner, joint.tangent), (joint.outer, -joint.tangent)):
-            cut = max(-beyond, crowding(end, along, faces, size, CLEARANCE * inset))
-            corners.append(end / size + inward + along * cut)
-    return np.array(corners)
-
-
-def _on_a_face(vertex: Array, faces: list[Joint]) -> bool:
-    return any(np.array_equal(vertex, end) for j in faces for end in (j.inner, j.outer))
-
-
-def _footing(joint: Joint, size: float, inset: float) -> Array:
-    """Return a slab under a springing, wider than the joint by its length on both sides."""
-    into = side(joint, joint.bears) * joint.normal
-    span = joint.tangent * joint.length / size
-    ends = np.array([joint.inner / size - span, joint.outer / size + span]) - into * inset
-    return np.concatenate([ends, ends[::-1] - into * joint.length / size])
+        """Tell how deep blocks that meet have overlapped; Chipmunk does not tell more."""
+        return Quality(penetration=self._penetration if self._polygons else None)
 
 
 ENGINE = Engine(

@@ -48,6 +48,8 @@ FRAME = 0.05
 """Time between frames."""
 SPARSE, UNMOVED = 4, 1e-5
 """Frames in one while nothing has moved by that; it may not have passed `EARLY` after them."""
+AT_REST = 20
+"""Frames without motion after which what has collapsed lies still."""
 EARLY = 3e-4
 """Displacement at which the motion still is the collapse mechanism."""
 
@@ -96,8 +98,8 @@ def moving_run(
     repeat : callable
         Holds another world of it likewise, if the run must be repeated.
     until : float, optional
-        Time to record for, whatever happens [sqrt(r/g)]; by default the run stops as
-        soon as its verdict is certain.
+        Time to record for [sqrt(r/g)], or until what has collapsed lies still; by default
+        the run stops as soon as its verdict is certain.
     progress : Progress, optional
 
     Returns
@@ -136,6 +138,8 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
             overlap = max(overlap, overlap_share(assembly, poses[-1]))
         if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
             break
+        if until is not None and _lies_still(assembly, poses, moved):
+            break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
     reason = _reason(verdict, times, moved, overlap, setup.length)
@@ -149,6 +153,13 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
         overlap=overlap,
         recording=setup.record(times, poses, quality),
     )
+
+
+def _lies_still(assembly: Assembly, poses: list[Array], moved: list[float]) -> bool:
+    """Tell whether what has collapsed has come to rest."""
+    if moved[-1] <= MOVED or len(poses) <= AT_REST:
+        return False
+    return float(displacement(poses[-1] - poses[-1 - AT_REST], assembly)) < UNMOVED
 
 
 def _distrust(quality: Quality, settings: Settings, length: str) -> str:

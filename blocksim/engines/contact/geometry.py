@@ -54,7 +54,7 @@ class Geometry:
         # The ground is a block at the origin that stays, index -1.
         centres = np.vstack([assembly.centres / size, np.zeros(2)])
         self._sides = np.concatenate([self.before, self.after])
-        faces = _faces(assembly)
+        faces = faces_at_joints(assembly)
         self._arms = np.concatenate([faces[:, 0], faces[:, 1]]) - centres[self._sides][:, None]
         self._axes = np.concatenate([joints.tangent, joints.tangent])
         lengths = ((faces[:, :, 1] - faces[:, :, 0]) * joints.tangent[:, None]).sum(axis=-1)
@@ -138,7 +138,7 @@ class Geometry:
         )
 
 
-def _faces(assembly: Assembly) -> Array:
+def faces_at_joints(assembly: Assembly) -> Array:
     """Return ends of the faces of both blocks of each joint, (joints, 2, 2, 2), scaled.
 
     They lie on the line of the joint. Where it ends though neither face does, as of a joint

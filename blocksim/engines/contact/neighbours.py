@@ -55,7 +55,7 @@ class Neighbours:
         self._loose = False
         # Whose each polygon is: those of the blocks come first, -1 is what stays.
         parts = [len(block.polygons) for block in assembly.blocks]
-        self._owner = np.repeat(np.arange(self._count), parts)
+        self.owner = np.repeat(np.arange(self._count), parts)
         none = np.zeros(0, dtype=np.int64)
         self._meet = (none, none)
         self._list()
@@ -80,13 +80,13 @@ class Neighbours:
         moved[:, :2] -= self._start
         moved[:, 2] *= self._reach
         way = float(np.abs(moved).max())
-        self._loose = self._loose or (way > TIGHT and way > self._free)
+        self._loose = self._loose or (way > TIGHT and way > self.free)
         if not self._loose:
             return touch
         self._holds &= holds
-        poses = poses[self._owner]
+        poses = poses[self.owner]
         near = self._polygons.near(poses, NEAR + 2 * reach) & ~self._same
-        joint, first, second = self._sides
+        joint, first, second = self.sides
         first, second = first[self._holds[joint]], second[self._holds[joint]]
         near[first, second] = False
         before, after = (index.astype(np.int64) for index in np.nonzero(near))
@@ -118,21 +118,21 @@ class Neighbours:
     def _same(self) -> NDArray[np.bool_]:
         """Which polygons are of one block."""
         others = len(standing(self._assembly)) + 1
-        every = np.concatenate([self._owner, np.full(others, SUPPORT)])
-        return self._owner[:, None] == every[None]
+        every = np.concatenate([self.owner, np.full(others, SUPPORT)])
+        return self.owner[:, None] == every[None]
 
     @cached_property
-    def _sides(self) -> tuple[NDArray[np.int64], ...]:
+    def sides(self) -> tuple[NDArray[np.int64], ...]:
         """Polygons that meet in joints: the joint, and the polygons, the smaller first."""
         assembly, stands = self._assembly, standing(self._assembly)
-        first = np.searchsorted(self._owner, np.arange(self._count))
+        first = np.searchsorted(self.owner, np.arange(self._count))
         found: list[tuple[int, int, int]] = []
         on = standing_at(assembly)
         for index, joint in enumerate(assembly.joints):
             sides: list[list[int]] = []
             for body in (joint.before, joint.after):
                 if body == SUPPORT:
-                    begin, polygons = len(self._owner), [stands[k] for k in on[index]]
+                    begin, polygons = len(self.owner), [stands[k] for k in on[index]]
                     begin += on[index].start
                 else:
                     begin, polygons = int(first[body]), assembly.blocks[body].polygons
@@ -143,13 +143,13 @@ class Neighbours:
         return joints, one, other
 
     @cached_property
-    def _free(self) -> float:
+    def free(self) -> float:
         """Motion up to which nothing can touch but what shares a joint."""
         if not self._assembly.supports:
             return LOOSE
-        poses = np.column_stack([self._start, np.zeros(self._count)])[self._owner]
+        poses = np.column_stack([self._start, np.zeros(self._count)])[self.owner]
         near = self._polygons.near(poses, 4 * LOOSE) & ~self._same
-        _, first, second = self._sides
+        _, first, second = self.sides
         near[first, second] = False
         before, after = (index.astype(np.int64) for index in np.nonzero(near))
         gap = self._polygons.apart(poses, before, after)
@@ -158,8 +158,8 @@ class Neighbours:
 
     def _list(self) -> None:
         held, (before, after) = self._holds, self._meet
-        owner = np.append(self._owner, SUPPORT)
-        count = len(self._owner)
+        owner = np.append(self.owner, SUPPORT)
+        count = len(self.owner)
         self.before = np.concatenate([self._joints.before[held], owner[before]])
         self.after = np.concatenate([self._joints.after[held], owner[np.minimum(after, count)]])
         # There are no more polygons that stay than this many.

@@ -1,0 +1,127 @@
+"""Blocks as the solid bodies they are, for engines with shapes of their own.
+
+While joints are joints their two sides are all that touches (`faces`). From the motion on at
+which anything else can touch, blocks, what they stand on and the floor are solid: their
+polygons meet, except those that a joint still holds. A joint that has come apart, slid off
+or turned far is given up for good, and its blocks are two like any others. The rules are
+those of `direct` (`contact.neighbours`).
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import PLANAR, Array, Assembly
+from blocksim.engines.contact.geometry import Geometry
+from blocksim.engines.contact.neighbours import TIGHT, Neighbours
+from blocksim.engines.ground import ground_level, standing
+
+FLOOR = 100.0
+"""Half the width of the floor, and its depth, beyond the blocks [size]."""
+LARGEST = 0.004
+"""Way in a step, in units of a block's least extent, that keeps overlaps small."""
+
+SHARPEST = 0.05
+"""Of one and the cosine between two faces, where the corner between them is set back."""
+
+
+class Solids:
+    """The polygons of an assembly, and which of them may meet.
+
+    Parameters
+    ----------
+    assembly : Assembly
+
+    Attributes
+    ----------
+    moving : list of (int, (k, 2) float)
+        Polygons of blocks: the block, and corners from its centre of mass, scaled.
+    fixed : list of (k, 2) float
+        Polygons of what stays, where they are, scaled; they are numbered on from the others.
+    loose : bool
+        Whether blocks may meet that share no joint.
+    holds : (joints,) bool
+        Which joints still are joints.
+    """
+
+    def __init__(self, assembly: Assembly) -> None:
+        size = assembly.size
+        self._assembly = assembly
+        self._geometry, neighbours = Geometry(assembly), Neighbours(assembly)
+        self._start, self._reach = assembly.centres / size, assembly.reach / size
+        self.moving = [
+            (index, (polygon - block.centre) / size)
+            for index, block in enumerate(assembly.blocks)
+            for polygon in block.polygons
+        ]
+        level = ground_level(assembly) / size
+        wide = FLOOR + float(np.abs(self._start).max())
+        floor = np.array([(-wide, level - FLOOR), (wide, level - FLOOR), (wide, level)])
+        floor = np.vstack([floor, [(-wide, level)]])
+        self.fixed = [*(each / size for each in standing(assembly)), floor]
+        self.loose = False
+        self.holds = np.ones(len(assembly.joints), dtype=np.bool_)
+        self._free = neighbours.free
+        self._joints: dict[tuple[int, int], list[int]] = defaultdict(list)
+        self.sides: dict[int, set[int]] = defaultdict(set)
+        for joint, one, other in zip(
+            *(each.tolist() for each in neighbours.sides), strict=True
+        ):
+            self._joints[one, other].append(joint)
+            self.sides[joint] |= {one, other}
+        self.largest = LARGEST * min(width(polygon) for _, polygon in self.moving)
+
+    def update(self, poses: Array) -> NDArray[np.int64]:
+        """Look where blocks are, and return the joints that have ended since.
+
+        Parameters
+        ----------
+        poses : (blocks, 3 or 6) float
+        """
+        planar = poses[:, :PLANAR]
+        moved = poses.copy()
+        moved[:, :2] -= self._start
+        moved[:, [2, *range(4, moved.shape[1])]] *= self._reach[:, None]
+        way = float(np.abs(moved).max())
+        self.loose = self.loose or (way > TIGHT and way > self._free)
+        if not self.loose:
+            return np.zeros(0, dtype=np.int64)
+        _, holds = self._geometry.touch(planar)
+        ended = np.flatnonzero(self.holds & ~holds)
+        self.holds &= holds
+        return ended
+
+    def may_meet(self, one: int, other: int) -> bool:
+        """Tell whether two polygons are solid to each other."""
+        first, second = min(one, other), max(one, other)
+        if second < len(self.moving) and self.moving[first][0] == self.moving[second][0]:
+            return False
+        return not any(self.holds[joint] for joint in self._joints.get((first, second), ()))
+
+
+def width(polygon: Array) -> float:
+    """Return the least width of a convex polygon."""
+    inward = _inward(polygon)
+    along = polygon @ inward[np.hypot(*inward.T) > 0].T
+    return float((along.max(axis=0) - along.min(axis=0)).min())
+
+
+def smaller(polygon: Array, inset: float) -> Array:
+    """Return a convex, counter-clockwise polygon with its faces set back."""
+    inward = _inward(polygon)
+    kept = np.hypot(*inward.T) > 0
+    polygon, after = polygon[kept], inward[kept]
+    before = np.roll(after, 1, axis=0)
+    bend = 1 + (before * after).sum(axis=1, keepdims=True)
+    return polygon + inset * (before + after) / np.maximum(bend, SHARPEST)
+
+
+def _inward(polygon: Array) -> Array:
+    """Return unit normals of the faces, from each corner on; 0 if a corner is there twice."""
+    edge = np.roll(polygon, -1, axis=0) - polygon
+    length = np.hypot(*edge.T)[:, None]
+    inward = np.stack([-edge[:, 1], edge[:, 0]], axis=1)
+    return np.divide(inward, length, out=np.zeros_like(inward), where=length > 0)
