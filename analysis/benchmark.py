@@ -35,7 +35,7 @@ from blocksim.arch.motion import simulate
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines import ENGINES
-from blocksim.evidence.trial import hold
+from blocksim.evidence.observation import hold
 from blocksim.report.tables import processor
 from blocksim.view.film import Film
 

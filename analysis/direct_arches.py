@@ -30,7 +30,7 @@ from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
 from blocksim.common.processes import crew
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
 from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
@@ -84,7 +84,7 @@ def ask(draw: Draw) -> Outcome:
         tol=TOL,
     )
     below, above = (
-        trial(draw.arch(factor).problem(draw.mu), "direct", moving=False).verdict
+        observe(draw.arch(factor).problem(draw.mu), "direct", moving=False).verdict
         for factor in (1 - ASIDE, 1 + ASIDE)
     )
     return Outcome(

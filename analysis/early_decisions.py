@@ -27,9 +27,9 @@ import numpy as np
 
 from analysis.command import run
 from analysis.drawing import Draw, draws
-from analysis.keeping import Row, answers
+from analysis.saved_answers import Row, answers
 from blocksim import Verdict
-from blocksim.evidence.trial import hold
+from blocksim.evidence.observation import hold
 
 SEED = 2026
 ARCHES = 48

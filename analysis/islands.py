@@ -28,9 +28,9 @@ from matplotlib.figure import Figure
 
 from analysis.command import run
 from analysis.drawing import Draw, draws
-from analysis.keeping import Row, answers
+from analysis.saved_answers import Row, answers
 from blocksim import Verdict
-from blocksim.evidence.trial import conclude, hold
+from blocksim.evidence.observation import conclude, hold
 from blocksim.view.style import FONT, MISS, QUIET, VERDICTS
 
 SEED = 2025

@@ -26,10 +26,10 @@ from pathlib import Path
 import numpy as np
 
 from analysis.command import run
-from analysis.keeping import Row, answers
+from analysis.saved_answers import Row, answers
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.limit import least_thickness
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
 
 SEED = 14
@@ -95,7 +95,7 @@ def ask(case: Case) -> Row:
         voussoirs=case.voussoirs,
         weight=case.weight,
     )
-    found = trial(arch.problem(case.mu), "direct", moving=False)
+    found = observe(arch.problem(case.mu), "direct", moving=False)
     return {
         "verdict": found.verdict,
         "reason": found.reason,

@@ -35,8 +35,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.command import run
-from analysis.keeping import Row, answers
 from analysis.mode_draws import critical_draws, draw
+from analysis.saved_answers import Row, answers
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.mechanism import mechanism
@@ -45,7 +45,7 @@ from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness as theory_of
 from blocksim.arch.theory.regions import landmarks
 from blocksim.ask.search import ETA_MAX
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
 from blocksim.many.answers import version_of
 from blocksim.view.mapregions import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
@@ -131,7 +131,7 @@ def ask(fine: Fine, engine: str) -> Row:
     else:
         mu *= below
     arch = Arch(half_angle=alpha, eta=eta, voussoirs=fine.voussoirs)
-    seen = trial(arch.problem(mu), engine, moving=False)
+    seen = observe(arch.problem(mu), engine, moving=False)
     mode = observed_mode(seen.joints, arch)
     there = mechanism(arch, mu).mode
     return {

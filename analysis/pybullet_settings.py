@@ -37,7 +37,7 @@ from blocksim import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.engines import pybullet as bullet
-from blocksim.evidence.setup import Setup
+from blocksim.evidence.simulation import Simulation
 from blocksim.view.style import FONT
 
 ARCHES = {"semicircle": (90.0, 0.35, 27), "thin": (45.0, 0.9, 13)}
@@ -96,19 +96,19 @@ def variant(name: str) -> Generator[None]:
         yield
 
 
-def setup(arch: str, ratio: float) -> Setup:
+def simulation(arch: str, ratio: float) -> Simulation:
     """Return an arch at a ratio of its least thickness."""
     degrees, mu, voussoirs = ARCHES[arch]
     alpha = math.radians(degrees)
     least = least_thickness(alpha, mu, voussoirs).eta or 0.0
     built = Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs)
-    return Setup.of(built.problem(mu), "pybullet")
+    return Simulation.of(built.problem(mu), "pybullet")
 
 
 def left_over(arch: str, name: str, sweeps: Array) -> list[float]:
     """Acceleration after single solves with ever more sweeps, each in a new world."""
     with variant(name):
-        case = setup(arch, 1.002)
+        case = simulation(arch, 1.002)
         found: list[float] = []
         for count in sweeps:
             world = case.world()
@@ -120,7 +120,7 @@ def left_over(arch: str, name: str, sweeps: Array) -> list[float]:
 
 def moved(step: float, sweeps: int, until: float) -> tuple[list[float], list[float]]:
     """Let a standing semicircle go in steps of one length, all with the same sweeps."""
-    case = setup("semicircle", 1.01)
+    case = simulation("semicircle", 1.01)
     case = replace(case, settings=replace(case.settings, step=step, sweeps=sweeps))
     world = case.world()
     for _ in range(3):

@@ -32,7 +32,7 @@ from matplotlib.figure import Figure
 
 from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
-from analysis.keeping import Row, answers
+from analysis.saved_answers import Row, answers
 from blocksim import bracket
 from blocksim.arch.limit import least_thickness
 from blocksim.view.style import FONT, QUIET

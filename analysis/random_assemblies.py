@@ -35,10 +35,10 @@ from matplotlib.figure import Figure
 
 from analysis.assemblies import KINDS, Sketch, running_bond, sketch
 from analysis.command import run
-from analysis.keeping import Row, answers
+from analysis.saved_answers import Row, answers
 from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import collapse, equilibrium
 from blocksim.limit.programme import Collapse
@@ -222,7 +222,7 @@ def verdicts(
         sign = 1 if side == "above" else -1
         loaded = problem.with_load(factor * (1 + sign * SHARE))
         started = time.process_time()
-        answer = trial(loaded, "direct", moving=let_go)
+        answer = observe(loaded, "direct", moving=let_go)
         row[side] = answer.onset.verdict
         row[f"{side}_reason"] = answer.reason if answer.verdict is Verdict.UNDECIDED else ""
         row[f"{side}_let_go"] = answer.motion.verdict if answer.motion else ""

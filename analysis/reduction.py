@@ -32,8 +32,8 @@ from analysis.drawing import Draw, draws
 from blocksim import Arch, Bracket, Mode, bracket
 from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
+from blocksim.evidence.observation import Observation, observe
 from blocksim.evidence.onset import PROBE, Onset
-from blocksim.evidence.trial import Trial, trial
 from blocksim.view.style import FONT, INK, METHODS
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (154, 2.6))
@@ -136,11 +136,11 @@ def ask(row: tuple[str, float, float, Weight, int]) -> Row | None:
     return Row(*row, whole=whole, whole_s=whole_s, reduced=reduced, reduced_s=reduced_s)
 
 
-def pair(draw: Draw, ratio: float) -> tuple[Arch, Trial, Trial]:
+def pair(draw: Draw, ratio: float) -> tuple[Arch, Observation, Observation]:
     """Put one arch to the onset test of `direct`, all voussoirs and reduced."""
     arch = draw.arch(ratio)
     whole, reduced = (
-        trial(
+        observe(
             arch.problem(draw.mu),
             "direct",
             moving=False,

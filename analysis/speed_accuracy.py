@@ -27,9 +27,9 @@ from blocksim import Arch
 from blocksim.arch import limit
 from blocksim.ask.search import Answer, Bisection
 from blocksim.engines import ENGINES
-from blocksim.evidence.setup import Setup
+from blocksim.evidence.simulation import Simulation
 from blocksim.report.chart import write_chart
-from blocksim.studies.chart import START, Case, cases, gain, measure
+from blocksim.studies.chart import START, ChartArch, cases, gain, measure
 from blocksim.studies.refinement import STEP, TOL, let_go
 
 SETTLED, LATE = 0.05, 10.0
@@ -89,15 +89,15 @@ def main(out: Path, *, quick: bool = False) -> Result:
     )
 
 
-def lenient_error(case: Case) -> float:
+def lenient_error(case: ChartArch) -> float:
     """Bracket an arch by pymunk, let go at once, that stands if it settles at all."""
     exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta or math.nan
     settings = {"step": STEP, "sweeps": ENGINES["pymunk"].usual_sweeps}
 
     def judge(eta: float) -> Answer:
         arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
-        setup = Setup.of(arch.problem(case.mu), "pymunk", settings=settings)
-        return Answer(let_go(setup, moved=SETTLED, until=LATE).verdict, math.nan)
+        simulation = Simulation.of(arch.problem(case.mu), "pymunk", settings=settings)
+        return Answer(let_go(simulation, moved=SETTLED, until=LATE).verdict, math.nan)
 
     search = Bisection(judge)
     search.expand(exact * START)

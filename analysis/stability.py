@@ -46,10 +46,10 @@ from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES, get_engine
 from blocksim.engines.base import Engine
 from blocksim.evidence.motion import moving_run
+from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.recording import Recording
-from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import trial
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 RATIOS = (0.98, 0.995, 1.005, 1.02)
@@ -98,9 +98,9 @@ def arch_at(case: Case, ratio: float) -> Arch:
     return Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs)
 
 
-def setup_of(engine: str, case: Case, ratio: float) -> Setup:
+def simulation_of(engine: str, case: Case, ratio: float) -> Simulation:
     """Return such an arch in an engine."""
-    return Setup.of(arch_at(case, ratio).problem(case[1]), engine)
+    return Simulation.of(arch_at(case, ratio).problem(case[1]), engine)
 
 
 def judged(verdict: Verdict, ratio: float) -> str:
@@ -114,17 +114,19 @@ def released(engine: str, grid: Grid) -> Iterator[Row]:
     """Release arches in steps and with sweeps that are multiples of the rule's."""
     for case in grid.arches:
         for ratio in RATIOS:
-            setup = setup_of(engine, case, ratio)
-            sure = onset(setup.world(), setup.engine, setup.taken, setup.settings)
+            simulation = simulation_of(engine, case, ratio)
+            sure = onset(
+                simulation.world(), simulation.engine, simulation.taken, simulation.settings
+            )
             for step in grid.steps:
                 for sweeps in grid.sweeps:
                     chosen = replace(
-                        setup.settings,
+                        simulation.settings,
                         repeats=0,
-                        step=setup.settings.step * step,
-                        sweeps=max(1, round(setup.settings.sweeps * sweeps * step)),
+                        step=simulation.settings.step * step,
+                        sweeps=max(1, round(simulation.settings.sweeps * sweeps * step)),
                     )
-                    trying = replace(setup, settings=chosen)
+                    trying = replace(simulation, settings=chosen)
                     world = trying.world()
                     sure.repeat(world)
                     seen = moving_run(trying, world, sure.repeat)
@@ -139,15 +141,15 @@ def held(engine: str, grid: Grid) -> Iterator[Row]:
     """Ask the onset test with ever fewer sweeps allowed."""
     for case in grid.held:
         for ratio in RATIOS:
-            setup = setup_of(engine, case, ratio)
-            length, squared = setup.assembly.shortest, case[2] ** 2
-            rule = setup.settings.hold_sweeps / squared
+            simulation = simulation_of(engine, case, ratio)
+            length, squared = simulation.assembly.shortest, case[2] ** 2
+            rule = simulation.settings.hold_sweeps / squared
             decided = False
             for share in (*grid.allowed, rule):
                 if decided and share != rule:
                     continue  # More of them are not spent.
-                allowed = replace(setup.settings, hold_sweeps=math.ceil(share * squared))
-                seen = onset(setup.world(), setup.engine, setup.taken, allowed)
+                allowed = replace(simulation.settings, hold_sweeps=math.ceil(share * squared))
+                seen = onset(simulation.world(), simulation.engine, simulation.taken, allowed)
                 at = {"length": length, "allowed": share, "rule": rule}
                 yield Row(
                     "held",
@@ -173,7 +175,7 @@ def lines(engine: str, grid: Grid) -> Iterator[Row]:
     for name, value, case, radius in asked:
         for ratio in RATIOS:
             arch = replace(arch_at(case, ratio), radius=radius, depth=radius)
-            seen = trial(arch.problem(case[1]), engine)
+            seen = observe(arch.problem(case[1]), engine)
             yield Row(
                 "lines",
                 engine,
@@ -188,15 +190,15 @@ def lines(engine: str, grid: Grid) -> Iterator[Row]:
 def lasting(engine: str, grid: Grid) -> Iterator[Row]:
     """Watch arches that stand for a hundred times as long."""
     for case in grid.lasting:
-        setup = setup_of(engine, case, 1.005)
-        world = setup.world()
-        sure = onset(world, setup.engine, setup.taken, setup.settings)
-        seen = moving_run(setup, world, sure.repeat, until=grid.last)
+        simulation = simulation_of(engine, case, 1.005)
+        world = simulation.world()
+        sure = onset(world, simulation.engine, simulation.taken, simulation.settings)
+        seen = moving_run(simulation, world, sure.repeat, until=grid.last)
         ways, times = seen.recording.displacement, seen.recording.times
         for mark in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0):
-            if mark <= times[-1] + setup.settings.step:
+            if mark <= times[-1] + simulation.settings.step:
                 way = float(ways[: np.searchsorted(times, mark) + 1].max())
-                state = "right" if way < setup.settings.rest else "wrong"
+                state = "right" if way < simulation.settings.rest else "wrong"
                 yield Row("lasting", engine, case, 1.005, {"time": mark}, state, way)
 
 
@@ -216,13 +218,15 @@ def energy_gained(recording: Recording, assembly: Assembly) -> float:
 def energy(engine: str, grid: Grid) -> Iterator[Row]:
     """Let arches collapse in ever longer steps, and see what energy they gain."""
     for case in grid.arches:
-        setup = setup_of(engine, case, COLLAPSING)
+        simulation = simulation_of(engine, case, COLLAPSING)
         for factor in grid.steps:
-            step = setup.settings.step * factor
-            sweeps = max(1, round(setup.settings.sweeps * factor))
-            trying = replace(setup, settings=replace(setup.settings, step=step, sweeps=sweeps))
+            step = simulation.settings.step * factor
+            sweeps = max(1, round(simulation.settings.sweeps * factor))
+            trying = replace(
+                simulation, settings=replace(simulation.settings, step=step, sweeps=sweeps)
+            )
             world = trying.world()
-            onset(world, setup.engine, setup.taken, trying.settings)
+            onset(world, simulation.engine, simulation.taken, trying.settings)
             poses = [world.poses()]
             for _ in range(max(3, math.ceil(WATCHED / step))):
                 world.advance(1)
@@ -230,7 +234,7 @@ def energy(engine: str, grid: Grid) -> Iterator[Row]:
             recording = trying.record(
                 [k * step for k in range(len(poses))], poses, world.quality()
             )
-            gained = energy_gained(recording, setup.assembly)
+            gained = energy_gained(recording, simulation.assembly)
             state = "right" if gained < 0.01 else "wrong"
             yield Row("energy", engine, case, COLLAPSING, {"step": factor}, state, gained)
 
@@ -256,15 +260,15 @@ def away(engine: str, grid: Grid) -> Iterator[Row]:
     library: Engine = get_engine(engine)
     for case in grid.away:
         for ratio in RATIOS:
-            setup = setup_of(engine, case, ratio)
-            start = setup.world().hold(10_000)
+            simulation = simulation_of(engine, case, ratio)
+            start = simulation.world().hold(10_000)
             for distance in grid.distances:
-                assembly = moved_away(setup.assembly, distance)
-                problem = Problem(assembly=assembly, mu=setup.problem.mu)
-                world = library.build(problem, setup.settings)
-                off = float(displacement(world.hold(10_000) - start, setup.assembly))
-                world = library.build(problem, setup.settings)
-                anywhere = replace(setup.settings, farthest=math.inf)
+                assembly = moved_away(simulation.assembly, distance)
+                problem = Problem(assembly=assembly, mu=simulation.problem.mu)
+                world = library.build(problem, simulation.settings)
+                off = float(displacement(world.hold(10_000) - start, simulation.assembly))
+                world = library.build(problem, simulation.settings)
+                anywhere = replace(simulation.settings, farthest=math.inf)
                 verdict = onset(world, library, problem, anywhere).verdict
                 at = {"distance": distance}
                 yield Row("away", engine, case, ratio, at, judged(verdict, ratio), off)

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from blocksim.engines.base import Settings
-from blocksim.evidence.setup import FEWER, LONGER
+from blocksim.evidence.simulation import FEWER, LONGER
 from blocksim.evidence.verdict import Verdict
 from blocksim.view.style import FONT, INK, METHODS, MISS, QUIET, UNNAMED, VERDICTS
 

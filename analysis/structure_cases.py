@@ -25,7 +25,7 @@ from analysis.command import run
 from blocksim import Verdict
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
 from blocksim.limit import collapse, equilibrium
 from tests.structure_cases import case, names, scenes
 
@@ -248,7 +248,7 @@ def answered(name: str, question: Question, *, moving: bool) -> Line:
         problem = question.at(at)
         if len(problem.assembly.blocks) > MOST:
             return ""
-        return str(trial(problem, "direct", moving=moving).verdict)
+        return str(observe(problem, "direct", moving=moving).verdict)
 
     if question.name == "stands":
         said = [direct(0.0), ""] if value else ["", direct(0.0)]

@@ -12,7 +12,7 @@ from blocksim.arch.modes import Mode
 from blocksim.engines.base import Settings
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
-from blocksim.studies.validate import Row
+from blocksim.studies.validate import Validation
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
 
@@ -33,7 +33,7 @@ def sliding() -> Recording:
     )
 
 
-ROW = Row(
+ROW = Validation(
     scenario="semicircle",
     engine="pymunk",
     half_angle=math.pi / 2,
@@ -57,7 +57,7 @@ ROW = Row(
 )
 
 
-def rows() -> list[Row]:
+def rows() -> list[Validation]:
     """Two arches by two engines: all kinds of values that a row can have."""
     hostile = replace(
         ROW,

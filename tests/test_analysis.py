@@ -82,7 +82,7 @@ def test_what_limits_pybullet(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_every_method_is_charted(tmp_path: Path) -> None:
-    """What the figures are depends on the machine; `test_workprec` has the errors."""
+    """What the figures are depends on the machine; `test_work_precision` has the errors."""
     result = study("speed_accuracy").main(tmp_path, quick=True)
     assert len(result.over_pymunk) == 2
     assert all(errors["pymunk, sweeps 10"] > 0.1 for errors in result.alone.values())

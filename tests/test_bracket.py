@@ -20,7 +20,7 @@ from blocksim.arch.modes import Mode
 from blocksim.ask.search import ETA_MAX, Answer, Bisection
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
-from blocksim.evidence.trial import Held, hold
+from blocksim.evidence.observation import Held, hold
 from blocksim.evidence.verdict import Verdict
 
 tolerances = st.floats(1e-4, 0.3)

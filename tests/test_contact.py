@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from blocksim.engines.contact.banded import Bands
-from blocksim.engines.contact.law import Friction, cut
-from blocksim.engines.contact.path import Balance, come_together
+from blocksim.engines.contact.coulomb import Friction, cut
+from blocksim.engines.contact.path_following import Balance, come_together
 from blocksim.engines.contact.solver import ContactProblem
 
 

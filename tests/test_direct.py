@@ -14,9 +14,9 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
+from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import onset
-from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import trial
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 CASES = [
@@ -36,7 +36,7 @@ CASES = [
 
 
 def held(arch, mu):
-    return trial(arch.problem(mu), "direct", moving=False).verdict
+    return observe(arch.problem(mu), "direct", moving=False).verdict
 
 
 def world_of(arch, mu, step=0.01):
@@ -131,10 +131,12 @@ def test_it_is_repeatable_bit_by_bit():
 
 
 def test_over_its_residual_the_answer_is_undecided():
-    setup = Setup.of(arch_at(0.9, 90, 0.9, 20).problem(0.9), "direct")
-    settings = replace(setup.settings, residual=0.0)
-    world = replace(setup, settings=settings).world()
-    assert onset(world, setup.engine, setup.taken, settings).verdict is Verdict.UNDECIDED
+    simulation = Simulation.of(arch_at(0.9, 90, 0.9, 20).problem(0.9), "direct")
+    settings = replace(simulation.settings, residual=0.0)
+    world = replace(simulation, settings=settings).world()
+    assert (
+        onset(world, simulation.engine, simulation.taken, settings).verdict is Verdict.UNDECIDED
+    )
     assert not trusted(world, settings)
 
 
@@ -150,7 +152,7 @@ def test_a_recording_keeps_its_quality(tmp_path):
 
 def test_onset_and_motion_agree_close_to_the_limit():
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
-        seen = trial(arch_at(ratio, 90, 0.9, 12).problem(0.9), "direct")
+        seen = observe(arch_at(ratio, 90, 0.9, 12).problem(0.9), "direct")
         assert seen.verdict is expected
         assert seen.motion.verdict is expected
 

@@ -14,7 +14,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.motion import moving_run
-from blocksim.evidence.setup import Setup
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 
@@ -85,17 +85,17 @@ def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
 
-    setup = Setup.of(arch_at(0.9, 90, 0.9, 12).problem(0.9), "direct")
+    simulation = Simulation.of(arch_at(0.9, 90, 0.9, 12).problem(0.9), "direct")
     # Below the round-off of corners at rest nothing could pass.
-    strict = replace(setup, settings=replace(setup.settings, penetration=-1.0))
+    strict = replace(simulation, settings=replace(simulation.settings, penetration=-1.0))
     world = strict.world()
     world.hold(1)
     motion = moving_run(strict, world, hold)
     assert motion.verdict is Verdict.UNDECIDED
     assert "overlap" in motion.reason
-    world = setup.world()
+    world = simulation.world()
     world.hold(1)
-    assert moving_run(setup, world, hold).verdict is Verdict.COLLAPSES
+    assert moving_run(simulation, world, hold).verdict is Verdict.COLLAPSES
 
 
 def test_a_recording_of_a_collapse_goes_to_the_ground():

@@ -17,7 +17,7 @@ from blocksim.blocks.structure import structure_of
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
 
 MOVED = [
@@ -68,7 +68,7 @@ def test_nearly_all_cases_are_asked() -> None:
 def test_a_thousandth_of_a_known_value_decides(name: str) -> None:
     for question in questions(name):
         for problem, true in ends(question):
-            found = trial(problem, "direct", moving=False).verdict
+            found = observe(problem, "direct", moving=False).verdict
             allowed = {true}
             if name in OPEN and true is Verdict.COLLAPSES:
                 allowed.add(Verdict.UNDECIDED)
@@ -79,7 +79,7 @@ def test_a_thousandth_of_a_known_value_decides(name: str) -> None:
 def test_let_go_it_does_what_it_begins(name: str) -> None:
     for question in questions(name):
         for problem, true in ends(question):
-            found = trial(problem, "direct", moving=True)
+            found = observe(problem, "direct", moving=True)
             assert found.verdict is true, found.reason
             assert {joint.state for joint in found.joints} - {JointState.CLOSED} or (
                 true is Verdict.STANDS

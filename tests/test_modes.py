@@ -19,7 +19,7 @@ from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import load_scenario
 from blocksim.blocks.joints import JointState
 from blocksim.cli import app
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
 from blocksim.studies.validate import validate_one
 from blocksim.view.archfigure import picture_of_arch
 
@@ -45,13 +45,13 @@ def test_direct_confirms_every_mode_close_to_the_limit(
     built = limit.least_thickness(arch.half_angle, mu, count)
     assert mode == built.mode == continuous.mode
     assert mechanism(arch, mu).mode is mode
-    seen = trial(arch.problem(mu), "direct", moving=False)
+    seen = observe(arch.problem(mu), "direct", moving=False)
     assert observed_mode(seen.joints, arch) is mode
 
 
 def test_direct_confirms_pure_sliding_where_nothing_stands() -> None:
     arch = Arch(half_angle=math.pi / 2, eta=2.0, voussoirs=27)
-    seen = trial(arch.problem(0.3), "direct", moving=False)
+    seen = observe(arch.problem(0.3), "direct", moving=False)
     assert observed_mode(seen.joints, arch) is Mode.SS
     assert mechanism(arch, 0.3).mode is Mode.SS
 

@@ -23,8 +23,8 @@ from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import MissingPart
 from blocksim.engines import get_engine
+from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.onset import onset
-from blocksim.evidence.trial import hold, trial
 from blocksim.evidence.verdict import Verdict
 from blocksim.studies.validate import installed
 
@@ -56,7 +56,7 @@ def test_both_sides_of_the_least_thickness(
     expected: Verdict,
 ) -> None:
     arch = arch_at(ratio, angle, mu, count, weight)
-    seen = trial(arch.problem(mu), "mujoco", moving=False)
+    seen = observe(arch.problem(mu), "mujoco", moving=False)
     assert seen.verdict is expected
     assert observed_mode(seen.joints, arch) is (mode if ratio < 1 else None)
 
@@ -65,7 +65,7 @@ def test_both_sides_of_the_least_thickness(
     ("ratio", "expected"), [SIDES[0], pytest.param(*SIDES[1], marks=pytest.mark.long)]
 )
 def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict) -> None:
-    seen = trial(arch_at(ratio, 90, 0.7, 7).problem(0.7), "mujoco")
+    seen = observe(arch_at(ratio, 90, 0.7, 7).problem(0.7), "mujoco")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -81,14 +81,14 @@ def test_bracket_holds_the_limit() -> None:
 @pytest.mark.parametrize("ratio", [0.99, 1.002])
 def test_few_thick_voussoirs_with_much_friction(ratio: float) -> None:
     """Known limit: below its least thickness, joints slide too fast for its contacts."""
-    seen = trial(arch_at(ratio, 155, 3.0, 11).problem(3.0), "mujoco", moving=False)
+    seen = observe(arch_at(ratio, 155, 3.0, 11).problem(3.0), "mujoco", moving=False)
     assert seen.verdict is (Verdict.UNDECIDED if ratio < 1 else Verdict.STANDS)
 
 
 def test_what_still_settles_is_no_collapse() -> None:
     """The first thousand steps of this arch end in a motion that opens joints only."""
     arch = arch_at(1.005, 145, 1.6, 17)
-    assert trial(arch.problem(1.6), "mujoco", moving=False).verdict is Verdict.STANDS
+    assert observe(arch.problem(1.6), "mujoco", moving=False).verdict is Verdict.STANDS
 
 
 @pytest.mark.parametrize("ratio", [0.9, 1.1])

@@ -21,7 +21,7 @@ from blocksim.arch.theory.map import divide_friction
 from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
 from blocksim.engines.contact import ContactProblem, Solution
-from blocksim.evidence.trial import hold, trial
+from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.verdict import Verdict
 
 TWO_ANSWERS = [
@@ -57,7 +57,7 @@ def test_motion_is_an_answer_above_the_limit(case: Case) -> None:
 def test_an_arch_stands_if_it_can_rest(
     engine: str, ratio: float, right: str, case: Case
 ) -> None:
-    assert trial(arch_at(ratio, *case).problem(case[1]), engine).verdict == right
+    assert observe(arch_at(ratio, *case).problem(case[1]), engine).verdict == right
 
 
 @every_case
@@ -124,7 +124,7 @@ def test_pymunk_is_right_where_two_answers_are_likeliest(reduce: bool) -> None:
         arches += 1
         for ratio in (0.97, 0.99, 0.998, 1.0005, 1.002, 1.01, 1.03, 1.1):
             arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
-            seen = trial(
+            seen = observe(
                 arch.problem(mu),
                 "pymunk",
                 moving=arches % 5 == 0,

@@ -23,7 +23,7 @@ from blocksim.arch.observed import observed_mode
 from blocksim.blocks.assembly import SPATIAL, Array, Assembly
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Engine
-from blocksim.evidence.trial import hold, trial
+from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
@@ -63,7 +63,7 @@ def test_both_sides_of_the_least_thickness(
 ) -> None:
     """Onset test and moving run, 1 % below and above."""
     assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    seen = trial(arch_at(ratio, angle, mu, count, weight).problem(mu), "pybullet")
+    seen = observe(arch_at(ratio, angle, mu, count, weight).problem(mu), "pybullet")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -73,7 +73,7 @@ def test_mode_just_below_the_least_thickness(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     arch = arch_at(0.995, angle, mu, count, weight)
-    seen = trial(arch.problem(mu), "pybullet", moving=False)
+    seen = observe(arch.problem(mu), "pybullet", moving=False)
     assert seen.verdict is Verdict.COLLAPSES
     assert observed_mode(seen.joints, arch) is mode
 
@@ -166,8 +166,8 @@ def test_a_thin_arch_is_never_answered_wrongly(ratio: float, right: Verdict) -> 
 
 def test_the_reason_names_bounded_friction() -> None:
     thick = replace(THIN, eta=0.3)
-    assert "as friction" not in trial(thick.problem(0.7), "pybullet", moving=False).reason
-    rough = trial(thick.problem(20.0), "pybullet", moving=False)
+    assert "as friction" not in observe(thick.problem(0.7), "pybullet", moving=False).reason
+    rough = observe(thick.problem(20.0), "pybullet", moving=False)
     assert "pybullet took 10 as friction" in rough.reason
 
 
@@ -202,4 +202,4 @@ def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
 def test_the_thinnest_arches_are_given_up_soon() -> None:
     """Sweeps would grow without end as joints shorten; what few can tell is undecided."""
     arch = Arch(half_angle=math.radians(60), eta=1e-9, voussoirs=3)
-    assert trial(arch.problem(1.0), "pybullet").verdict is Verdict.UNDECIDED
+    assert observe(arch.problem(1.0), "pybullet").verdict is Verdict.UNDECIDED

@@ -31,9 +31,9 @@ from blocksim.common.errors import InputError, MissingPart
 from blocksim.engines import get_engine
 from blocksim.engines.base import Settings
 from blocksim.evidence.motion import SOONEST, moving_run
+from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import onset
-from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import trial
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 ARCHES = [
@@ -58,11 +58,11 @@ def test_both_sides_of_the_least_thickness(
 ) -> None:
     """Onset test and moving run, 1 % below and above."""
     assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    thin = trial(arch_at(0.99, angle, mu, count, weight).problem(mu), "pymunk")
+    thin = observe(arch_at(0.99, angle, mu, count, weight).problem(mu), "pymunk")
     assert thin.verdict is Verdict.COLLAPSES
     assert thin.motion.verdict is Verdict.COLLAPSES
     assert observed_mode(thin.joints, arch_at(0.99, angle, mu, count, weight)) is not None
-    thick = trial(arch_at(1.01, angle, mu, count, weight).problem(mu), "pymunk")
+    thick = observe(arch_at(1.01, angle, mu, count, weight).problem(mu), "pymunk")
     assert thick.verdict is Verdict.STANDS
     assert thick.onset.acceleration < Settings.still
     assert {joint.state for joint in thick.joints} == {JointState.CLOSED}
@@ -73,7 +73,7 @@ def test_mode_just_below_the_least_thickness(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     arch = arch_at(0.998, angle, mu, count, weight)
-    seen = trial(arch.problem(mu), "pymunk", moving=False)
+    seen = observe(arch.problem(mu), "pymunk", moving=False)
     assert seen.verdict is Verdict.COLLAPSES
     assert observed_mode(seen.joints, arch) is mode
 
@@ -82,7 +82,7 @@ def test_mode_just_below_the_least_thickness(
 def test_purely_sliding_at_any_thickness(eta: float) -> None:
     arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=15)
     assert limit.least_thickness(arch.half_angle, 0.28, 15).eta is None
-    seen = trial(arch.problem(0.28), "pymunk")
+    seen = observe(arch.problem(0.28), "pymunk")
     assert seen.verdict is Verdict.COLLAPSES
     if eta >= 0.5:  # thin ones are overcome by turning, too
         assert observed_mode(seen.joints, arch) is Mode.SS
@@ -105,10 +105,10 @@ def test_bracket_holds_the_limit(
 def test_thin_arches_are_never_answered_wrongly() -> None:
     """Known limit: thin shallow arches of many voussoirs need more sweeps than allowed."""
     for ratio, right in ((0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)):
-        setup = Setup.of(arch_at(ratio, 20, 0.7, 27).problem(0.7), "pymunk")
+        simulation = Simulation.of(arch_at(ratio, 20, 0.7, 27).problem(0.7), "pymunk")
         for sweeps in (1000, 20_000, 100_000):
-            chosen = replace(setup.settings, hold_sweeps=sweeps)
-            seen = onset(setup.world(), setup.engine, setup.taken, chosen)
+            chosen = replace(simulation.settings, hold_sweeps=sweeps)
+            seen = onset(simulation.world(), simulation.engine, simulation.taken, chosen)
             assert seen.verdict in {right, Verdict.UNDECIDED}
             assert seen.sweeps <= sweeps
         assert seen.verdict is Verdict.UNDECIDED
@@ -119,16 +119,16 @@ def test_thin_arches_are_never_answered_wrongly() -> None:
 @pytest.mark.parametrize("ratio", [0.98, 1.02])
 def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> None:
     """Impulses that overshoot open joints without overlap, but against the weight."""
-    setup = Setup.of(arch_at(ratio, 20, 0.7, count).problem(0.7), "pymunk")
-    chosen = replace(setup.settings, hold_sweeps=100_000)
-    seen = onset(setup.world(), setup.engine, setup.taken, chosen)
+    simulation = Simulation.of(arch_at(ratio, 20, 0.7, count).problem(0.7), "pymunk")
+    chosen = replace(simulation.settings, hold_sweeps=100_000)
+    seen = onset(simulation.world(), simulation.engine, simulation.taken, chosen)
     assert seen.verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize(("ratio", "right"), [(0.98, "collapses"), (1.02, "stands")])
 def test_twice_as_wide_arches_are_answered(ratio: float, right: str) -> None:
     """The other side of that limit: 40 degrees."""
-    seen = trial(arch_at(ratio, 40, 0.7, 12).problem(0.7), "pymunk", moving=False)
+    seen = observe(arch_at(ratio, 40, 0.7, 12).problem(0.7), "pymunk", moving=False)
     assert seen.verdict.value == right
 
 
@@ -137,11 +137,11 @@ def test_the_weight_drives_the_mechanism(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     """Work balance: what weight gives, motion gains, but for friction where joints slide."""
-    setup = Setup.of(arch_at(0.99, angle, mu, count, weight).problem(mu), "pymunk")
-    world = setup.world()
+    simulation = Simulation.of(arch_at(0.99, angle, mu, count, weight).problem(mu), "pymunk")
+    world = simulation.world()
     for _ in range(4):
         motion = world.hold(20_000)
-    blocks = setup.assembly.blocks
+    blocks = simulation.assembly.blocks
     mass, inertia = blocks[0].mass, blocks[0].inertia
     given_up = -mass * motion[:, 1].sum()
     gained = mass * (motion[:, :2] ** 2).sum() + inertia * (motion[:, 2] ** 2).sum()
@@ -210,7 +210,7 @@ def test_size_and_material_change_no_verdict(
         depth=depth,
     )
     expected = Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES
-    assert trial(arch.problem(0.9), "pymunk").verdict is expected
+    assert observe(arch.problem(0.9), "pymunk").verdict is expected
 
 
 def held(assembly: Assembly, mu: float) -> tuple[Verdict, Array]:
@@ -321,10 +321,10 @@ def test_energy_does_not_grow(
     """Poses alone give it: with central differences free fall conserves it exactly."""
     assert mode in set(Mode)
     arch = arch_at(0.9, angle, mu, count, weight)
-    setup = Setup.of(arch.problem(mu), "pymunk")
-    world = setup.world()
-    onset(world, setup.engine, setup.taken, setup.settings)
-    step = setup.settings.step
+    simulation = Simulation.of(arch.problem(mu), "pymunk")
+    world = simulation.world()
+    onset(world, simulation.engine, simulation.taken, simulation.settings)
+    step = simulation.settings.step
     poses = []
     for _ in range(round(2.0 / step)):
         poses.append(world.poses())
@@ -332,7 +332,7 @@ def test_energy_does_not_grow(
     path = np.array(poses)
     speed = (path[2:] - path[:-2]) / (2 * step)
     # One block weighs 1; lengths in units of r.
-    blocks = setup.assembly.blocks
+    blocks = simulation.assembly.blocks
     mass = np.array([block.mass for block in blocks]) / blocks[0].mass
     inertia = np.array([block.inertia for block in blocks]) / blocks[0].mass
     kinetic = (mass * (speed[..., :2] ** 2).sum(-1) + inertia * speed[..., 2] ** 2).sum(1) / 2
@@ -346,24 +346,24 @@ def test_energy_does_not_grow(
 
 def test_blocks_at_rest_are_put_back() -> None:
     """`hold` moves nothing, however often."""
-    setup = Setup.of(replace(SMALL, eta=0.05).problem(0.6), "pymunk")
-    world = setup.world()
+    simulation = Simulation.of(replace(SMALL, eta=0.05).problem(0.6), "pymunk")
+    world = simulation.world()
     before = world.poses()
     for _ in range(3):
         world.hold(100)
     assert np.array_equal(world.poses(), before)
-    assert before[:, :2] == pytest.approx(setup.assembly.centres, abs=1e-15)
+    assert before[:, :2] == pytest.approx(simulation.assembly.centres, abs=1e-15)
 
 
 def test_standing_arch_stays_where_it_was_built() -> None:
-    setup = Setup.of(replace(SMALL, eta=0.15).problem(0.6), "pymunk")
-    world = setup.world()
-    first = onset(world, setup.engine, setup.taken, setup.settings)
-    motion = moving_run(setup, world, first.repeat)
+    simulation = Simulation.of(replace(SMALL, eta=0.15).problem(0.6), "pymunk")
+    world = simulation.world()
+    first = onset(world, simulation.engine, simulation.taken, simulation.settings)
+    motion = moving_run(simulation, world, first.repeat)
     assert motion.verdict is Verdict.STANDS
     assert motion.recording.displacement.max() < 1e-5
     assert motion.recording.times[-1] >= SOONEST
-    gaps = joint_motion(setup.assembly, motion.recording.poses[-1]).gap
+    gaps = joint_motion(simulation.assembly, motion.recording.poses[-1]).gap
     assert np.abs(gaps).max() < 1e-5
 
 
@@ -393,7 +393,7 @@ def test_what_it_starts_with_names_the_mode() -> None:
     mu = 0.1802
     arch = Arch(half_angle=math.radians(75), eta=0.126, voussoirs=20)
     published = least_thickness(arch.half_angle, mu)
-    seen = trial(arch.problem(mu), "pymunk")
+    seen = observe(arch.problem(mu), "pymunk")
     assert observed_mode(seen.joints, arch) is Mode.SS
     assert published.modes == (Mode.SS,)
     sliding = sorted({abs(joint.angle) for joint in seen.joints if joint.state == "slides"})

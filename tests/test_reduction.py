@@ -28,9 +28,9 @@ from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES, get_engine
+from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.onset import onset
-from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import hold, trial
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 CASES = [
@@ -203,7 +203,7 @@ def test_nothing_holds_a_block_on_a_smooth_slope(engine):
 def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
     arch = arch_at(ratio, 125, 0.9, voussoirs)
     for reduction in (None, Reduction.of(arch, 0.9)):
-        world = Setup.of(arch.problem(0.9), engine, reduction=reduction).world()
+        world = Simulation.of(arch.problem(0.9), engine, reduction=reduction).world()
         rates = world.hold(SWEEPS[engine])[:, :3]
         left = unbalanced(arch.assembly(), world.resultants(), rates)
         # Bodies that overlap have two places for one force.
@@ -214,8 +214,8 @@ def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
 def test_resultants_are_those_of_all_voussoirs(voussoirs):
     """In a collapse hinges fix the resultants; at rest there is a choice."""
     arch = arch_at(0.97, 90, 0.7, voussoirs)
-    every = Setup.of(arch.problem(0.7), "direct").world()
-    few = Setup.of(arch.problem(0.7), "direct", reduction=Reduction.of(arch, 0.7)).world()
+    every = Simulation.of(arch.problem(0.7), "direct").world()
+    few = Simulation.of(arch.problem(0.7), "direct", reduction=Reduction.of(arch, 0.7)).world()
     every.hold(1)
     few.hold(1)
     assert few.resultants() == pytest.approx(every.resultants(), abs=1e-7)
@@ -233,7 +233,7 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
     wrong = Reduction(arch.assembly(), (0, *crown))
     held = hold(arch.problem(mu), "direct", reduction=wrong)
     assert held.onset.verdict is hold(arch.problem(mu), "direct").onset.verdict
-    assert held.setup.blocks < 10
+    assert held.simulation.blocks < 10
     half = every_joint(arch, mu)
     scale = max(half.onset.acceleration, 1e-6)
     assert accelerations(held) == pytest.approx(accelerations(half), abs=1e-6 * scale)
@@ -242,9 +242,12 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
 def test_without_a_second_look_a_wrong_guess_would_stand():
     arch = arch_at(0.98, 90, 0.7, 28)
     wrong = Reduction(arch.assembly(), (0, 14))
-    setup = Setup.of(arch.problem(0.7), "direct", reduction=wrong)
-    world = setup.world()
-    assert onset(world, setup.engine, setup.taken, setup.settings).verdict is Verdict.STANDS
+    simulation = Simulation.of(arch.problem(0.7), "direct", reduction=wrong)
+    world = simulation.world()
+    assert (
+        onset(world, simulation.engine, simulation.taken, simulation.settings).verdict
+        is Verdict.STANDS
+    )
     assert wrong.overstrained(world.resultants(), 0.7, 1e-9)
     held = hold(arch.problem(0.7), "direct", reduction=wrong)
     assert held.onset.verdict is Verdict.COLLAPSES
@@ -288,7 +291,7 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
     """Five voussoirs with much friction: the halves of the keystone would part."""
     arch = Arch(half_angle=math.radians(146.91), eta=0.5742, voussoirs=5)
     few, every = (
-        trial(
+        observe(
             arch.problem(2.43),
             "direct",
             moving=False,
@@ -320,7 +323,9 @@ def test_limit_analysis_names_the_joints_that_act_at_the_least_thickness():
 def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight):
     for ratio, expected in ((1 - 1e-9, Verdict.COLLAPSES), (1 + 1e-9, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = trial(arch.problem(mu), "direct", moving=False, reduction=Reduction.of(arch, mu))
+        seen = observe(
+            arch.problem(mu), "direct", moving=False, reduction=Reduction.of(arch, mu)
+        )
         assert seen.verdict is expected
         assert seen.blocks <= 6
 
@@ -339,7 +344,7 @@ def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
     assume(eta is not None and 1e-3 < eta * ratio <= 2)
     arch = Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
     few, every = (
-        trial(
+        observe(
             arch.problem(mu),
             "direct",
             moving=False,
@@ -356,7 +361,7 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
     """All 301 voussoirs would take it minutes."""
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = trial(arch.problem(mu), "pymunk", reduction=Reduction.of(arch, mu))
+        seen = observe(arch.problem(mu), "pymunk", reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected, seen.reason
         if expected is Verdict.COLLAPSES:
             state = limit.least_thickness(arch.half_angle, mu, voussoirs, weight)
@@ -370,7 +375,7 @@ def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
     pytest.importorskip("pybullet")
     for ratio, expected in ((0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
-        seen = trial(arch.problem(mu), "pybullet", reduction=Reduction.of(arch, mu))
+        seen = observe(arch.problem(mu), "pybullet", reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected, seen.reason
         assert seen.motion.recording.poses.shape[1:] == (voussoirs, 6)
 
@@ -402,7 +407,7 @@ def test_where_no_thickness_stands_none_is_found():
 def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
     arch = arch_at(0.98, 125, 0.9, voussoirs)
     few, every = (
-        trial(
+        observe(
             arch.problem(0.9), "direct", reduction=Reduction.of(arch, 0.9) if reduce else None
         )
         for reduce in (True, False)

@@ -11,38 +11,38 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis.stability import moved_away, setup_of
+from analysis.stability import moved_away, simulation_of
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import overlap_share
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality
 from blocksim.evidence import motion
 from blocksim.evidence.motion import Motion, moving_run
+from blocksim.evidence.observation import Held, conclude
 from blocksim.evidence.onset import Onset, onset
-from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import Held, conclude
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
 
 
-def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> Setup:
+def setup_at(ratio: float, angle: float, mu: float, count: int, engine: str) -> Simulation:
     if engine == "pybullet":
         pytest.importorskip("pybullet", exc_type=ImportError)
-    return setup_of(engine, (angle, mu, count), ratio)
+    return simulation_of(engine, (angle, mu, count), ratio)
 
 
-def held(setup: Setup) -> Onset:
-    return onset(setup.world(), setup.engine, setup.taken, setup.settings)
+def held(simulation: Simulation) -> Onset:
+    return onset(simulation.world(), simulation.engine, simulation.taken, simulation.settings)
 
 
-def released(setup: Setup, until: float | None = None) -> Motion:
+def released(simulation: Simulation, until: float | None = None) -> Motion:
     """Let go from impulses that the rule's own settings have converged."""
-    ruled = replace(setup, settings=setup.engine.rule(setup.assembly))
+    ruled = replace(simulation, settings=simulation.engine.rule(simulation.assembly))
     repeat = held(ruled).repeat
-    world = setup.world()
+    world = simulation.world()
     repeat(world)
-    return moving_run(setup, world, repeat, until=until)
+    return moving_run(simulation, world, repeat, until=until)
 
 
 @pytest.mark.parametrize(("ratio", "right"), SIDES)
@@ -54,10 +54,10 @@ def test_sweeps_allowed_to_slender_arches(
     engine: str, angle: float, count: int, short: float, ratio: float, right: Verdict
 ) -> None:
     """The shorter the joints, the more sweeps; with too few of them it is undecided."""
-    setup = setup_at(ratio, angle, 0.9, count, engine)
-    assert held(setup).verdict is right
-    few = replace(setup.settings, hold_sweeps=round(short * count**2))
-    seen = held(replace(setup, settings=few))
+    simulation = setup_at(ratio, angle, 0.9, count, engine)
+    assert held(simulation).verdict is right
+    few = replace(simulation.settings, hold_sweeps=round(short * count**2))
+    seen = held(replace(simulation, settings=few))
     assert seen.verdict is Verdict.UNDECIDED
     assert "not converged" in seen.reason
 
@@ -66,25 +66,31 @@ def test_sweeps_allowed_to_slender_arches(
 @pytest.mark.parametrize("ratio", [0.98, 0.995])
 def test_sweeps_of_a_release(ratio: float, sweeps: float, right: bool) -> None:
     """Too few of them press blocks into each other, which is seen, and mended by more."""
-    setup = setup_at(ratio, 90, 0.7, 27, "pymunk")
-    changed = round(setup.settings.sweeps * sweeps)
-    setup = replace(setup, settings=replace(setup.settings, sweeps=changed))
-    seen = released(replace(setup, settings=replace(setup.settings, repeats=0)))
+    simulation = setup_at(ratio, 90, 0.7, 27, "pymunk")
+    changed = round(simulation.settings.sweeps * sweeps)
+    simulation = replace(simulation, settings=replace(simulation.settings, sweeps=changed))
+    seen = released(replace(simulation, settings=replace(simulation.settings, repeats=0)))
     assert seen.verdict is (Verdict.COLLAPSES if right else Verdict.UNDECIDED)
     assert right or "overlap" in seen.reason
-    assert released(setup).verdict is Verdict.COLLAPSES
+    assert released(simulation).verdict is Verdict.COLLAPSES
 
 
 @pytest.mark.parametrize(("longer", "right"), [(1, True), (4, True), (32, False)])
 def test_step_of_a_release(longer: float, right: bool) -> None:
     """The same sweeps in a unit of time, in fewer and longer steps."""
     for ratio, truth in SIDES:
-        setup = setup_at(ratio, 125, 0.9, 26, "pymunk")
-        step, sweeps = setup.settings.step * longer, round(setup.settings.sweeps * longer)
-        setup = replace(
-            setup, settings=replace(setup.settings, step=step, sweeps=sweeps, repeats=0)
+        simulation = setup_at(ratio, 125, 0.9, 26, "pymunk")
+        step, sweeps = (
+            simulation.settings.step * longer,
+            round(simulation.settings.sweeps * longer),
         )
-        assert released(setup).verdict in ({truth} if right else {truth, Verdict.UNDECIDED})
+        simulation = replace(
+            simulation,
+            settings=replace(simulation.settings, step=step, sweeps=sweeps, repeats=0),
+        )
+        assert released(simulation).verdict in (
+            {truth} if right else {truth, Verdict.UNDECIDED}
+        )
 
 
 @pytest.mark.parametrize("engine", ["direct", "pymunk", "pybullet"])
@@ -92,12 +98,14 @@ def test_step_of_a_release(longer: float, right: bool) -> None:
 @pytest.mark.parametrize(("ratio", "right"), SIDES)
 def test_far_from_the_origin(engine: str, far: bool, ratio: float, right: Verdict) -> None:
     """Beyond, round-off would hide what starts to move, or throw blocks."""
-    setup = setup_at(ratio, 90, 0.7, 9, engine)
-    farthest = setup.settings.farthest
-    assembly = moved_away(setup.assembly, farthest * (1.01 if far else 0.99))
-    world = setup.engine.build(Problem(assembly=assembly, mu=setup.problem.mu), setup.settings)
-    problem = Problem(assembly=assembly, mu=setup.problem.mu)
-    seen = onset(world, setup.engine, problem, setup.settings)
+    simulation = setup_at(ratio, 90, 0.7, 9, engine)
+    farthest = simulation.settings.farthest
+    assembly = moved_away(simulation.assembly, farthest * (1.01 if far else 0.99))
+    world = simulation.engine.build(
+        Problem(assembly=assembly, mu=simulation.problem.mu), simulation.settings
+    )
+    problem = Problem(assembly=assembly, mu=simulation.problem.mu)
+    seen = onset(world, simulation.engine, problem, simulation.settings)
     assert seen.verdict is (Verdict.UNDECIDED if far else right)
     assert ("from the origin" in seen.reason) == far
 
@@ -118,13 +126,13 @@ def test_settings_beyond_those_measured_are_named(
     step: float, sweeps: float, word: str, moving: bool
 ) -> None:
     """Of a moving run: what a setting does to the onset test shows in that itself."""
-    setup = setup_at(1.02, 90, 0.7, 27, "pymunk")
-    rule = setup.settings
+    simulation = setup_at(1.02, 90, 0.7, 27, "pymunk")
+    rule = simulation.settings
     chosen = replace(rule, step=rule.step * step, sweeps=round(rule.sweeps * sweeps))
-    changed = replace(setup, settings=chosen)
+    changed = replace(simulation, settings=chosen)
     world = changed.world()
     first = onset(world, changed.engine, changed.taken, chosen)
-    seen = conclude(Held(setup=changed, world=world, onset=first), moving=moving)
+    seen = conclude(Held(simulation=changed, world=world, onset=first), moving=moving)
     assert ("to be sure" in seen.reason) == (moving and word != "")
     assert not moving or word in seen.reason
 
@@ -132,8 +140,8 @@ def test_settings_beyond_those_measured_are_named(
 class Drifting:
     """A world whose blocks sink into each other, by so much in all and no more."""
 
-    def __init__(self, setup: Setup, way: float) -> None:
-        assembly = setup.assembly
+    def __init__(self, simulation: Simulation, way: float) -> None:
+        assembly = simulation.assembly
         self._start = np.column_stack(
             [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
         )
@@ -154,10 +162,10 @@ class Drifting:
 @pytest.mark.parametrize(("way", "right"), [(5e-7, True), (5e-6, False)])
 def test_what_counts_as_noise_of_a_release(way: float, right: bool) -> None:
     """What pybullet leaves over in each step adds up; that is no overlap yet."""
-    setup = setup_at(1.02, 90, 0.7, 9, "pybullet")
-    setup = replace(setup, settings=replace(setup.settings, repeats=0))
-    world = Drifting(setup, way)
-    seen = moving_run(setup, world, lambda _: None, until=10.0)
-    assert overlap_share(setup.assembly, world.poses()) > motion.OVERLAP
+    simulation = setup_at(1.02, 90, 0.7, 9, "pybullet")
+    simulation = replace(simulation, settings=replace(simulation.settings, repeats=0))
+    world = Drifting(simulation, way)
+    seen = moving_run(simulation, world, lambda _: None, until=10.0)
+    assert overlap_share(simulation.assembly, world.poses()) > motion.OVERLAP
     assert seen.verdict is (Verdict.STANDS if right else Verdict.UNDECIDED)
     assert (seen.recording.times[-1] == pytest.approx(10.0)) == right

@@ -131,7 +131,6 @@ def test_an_arch_on_a_tilted_table() -> None:
     [
         (["--alpha", "90"], "--alpha"),
         (["--reduce"], "--reduce"),
-        (["--method", "pymunk"], "no chain"),
         (["--method", "theory"], "circular arches"),
         (["--tilt", "nan"], "--tilt"),
         (["--set", "speed=1"], "speed"),

@@ -15,8 +15,8 @@ from blocksim.ask.methods import choose, chosen_words
 from blocksim.ask.search import ETA_MAX, THINNEST
 from blocksim.common.checks import is_number, require, require_friction
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.setup import BY_RULE, Overrides, given_words
-from blocksim.evidence.trial import Held, hold, reduced_words
+from blocksim.evidence.observation import Held, hold, reduced_words
+from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
 
 ANY_THICKNESS = "two joints on each half, and a line of thrust through the middle of both"
 
@@ -48,7 +48,7 @@ class Bracket:
     mode, mode_limit, mode_theory : Mode or None
         Of the mechanism it starts with at `eta_low`; exact, at the least thickness.
     mode_in_motion : Mode or None
-        As seen in the moving run at `eta_low`, see `Trial`; None where there was none.
+        As seen in the moving run at `eta_low`, see `Observation`; None where there was none.
     thrust, beta_r, beta_s : float or None
         Scaled thrust; angles of the inner hinge and inner sliding joint [rad]. For
         static methods.
@@ -138,7 +138,7 @@ def bracket(
     confirm : bool
         Let the arch go at both ends; without, an engine answers by the onset test alone.
     settings : mapping of str to float
-        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
     reduce : bool
         Simulate no more blocks than it takes (`blocksim.arch.reduction`).
     progress : Progress, optional
@@ -272,6 +272,6 @@ class _Thinning:
             reduction=reduction,
         )
         # An engine may have split it, or given it up.
-        kept = held.setup.reduction
+        kept = held.simulation.reduction
         self._reduction = kept if isinstance(kept, Reduction) else None
         return held

@@ -16,8 +16,8 @@ from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.common.checks import require_friction
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.setup import BY_RULE, Overrides
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
+from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 
 
@@ -39,7 +39,7 @@ class ArchCheck(Check):
         of eqs (15) and (16) by `limit`. By `theory`, which tells of no other thickness, as
         `mode_theory`. None where it stands or the joints form none of the modes.
     mode_in_motion : Mode or None
-        As seen in the moving run after a displacement of `motion.EARLY`; see `Trial`.
+        As seen in the moving run after a displacement of `motion.EARLY`; see `Observation`.
     mode_limit, mode_theory : Mode or None
         At the least thickness of the voussoirs as built and of the continuous arch, which
         need not be `mode`; at eta = 2 where no thickness up to that stands.
@@ -79,7 +79,7 @@ def check(
         Angle by which gravity leans out of the plane [rad]; `eta_limit` and `eta_theory`
         are those without it.
     settings : mapping of str to float
-        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
     reduce : bool
         Simulate no more blocks than it takes (`blocksim.arch.reduction`).
     progress : Progress, optional
@@ -113,7 +113,7 @@ def check(
             found = mechanism(arch, mu)
             mode, joints = found.mode, _limit_joints(found)
     else:
-        seen = trial(
+        seen = observe(
             leaning or arch.problem(mu),
             rung.name,
             settings=settings,

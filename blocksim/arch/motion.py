@@ -11,7 +11,7 @@ from blocksim.ask.simulate import simulate as simulate_problem
 from blocksim.blocks.record import to_record
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.recording import FORMAT, Recording, read_recording
-from blocksim.evidence.setup import BY_RULE, Overrides
+from blocksim.evidence.simulation import BY_RULE, Overrides
 
 
 def simulate(
@@ -38,7 +38,7 @@ def simulate(
     lean : float
         Angle by which gravity leans out of the plane [rad].
     settings : mapping of str to float
-        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns

@@ -12,8 +12,8 @@ from blocksim.ask.methods import choose, chosen_words
 from blocksim.ask.search import Answer, Bisection
 from blocksim.common.checks import is_number, require
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.setup import BY_RULE, Overrides, given_words
-from blocksim.evidence.trial import Held, Trial, conclude, hold
+from blocksim.evidence.observation import Held, Observation, conclude, hold
+from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
 
@@ -43,7 +43,7 @@ class Search:
     blocks, splits : int or None
         Most blocks simulated at any value, and how many joints in all a reduction merged
         and had to split again; None for static methods.
-    collapse : Trial or None
+    collapse : Observation or None
         By an engine, what was seen at the value that collapsed.
     """
 
@@ -55,7 +55,7 @@ class Search:
     reason: str = ""
     blocks: int | None = None
     splits: int | None = None
-    collapse: Trial | None = None
+    collapse: Observation | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +118,7 @@ def bracket(
     within : tuple of float, optional
         Where to search; by default where limit analysis says, within the family's range.
     settings : mapping of str to float
-        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns
@@ -241,7 +241,7 @@ def by_engine(
         nonlocal blocks, splits, both
         value = turned(strength)
         held = held_at(value)
-        blocks, splits = max(blocks, held.setup.blocks), splits + held.splits
+        blocks, splits = max(blocks, held.simulation.blocks), splits + held.splits
         both += held.onset.may_rest
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = value, held

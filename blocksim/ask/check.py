@@ -13,9 +13,9 @@ from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import PROBE
-from blocksim.evidence.setup import BY_RULE, Overrides
-from blocksim.evidence.trial import trial
+from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import Equilibrium, collapse, equilibrium
 
@@ -101,7 +101,7 @@ def check(
     method : str
         `auto`, `limit`, or the name of an engine.
     settings : mapping of str to float
-        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns
@@ -128,7 +128,7 @@ def check(
         reason = _static_words(static, problem)
         mechanism = static.mechanism
     else:
-        seen = trial(problem, chosen.name, settings=settings, progress=progress)
+        seen = observe(problem, chosen.name, settings=settings, progress=progress)
         verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
         if seen.onset.may_rest or seen.onset.forces is not None:
             rest = "can"

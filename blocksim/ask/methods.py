@@ -16,7 +16,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
 from blocksim.engines.base import Engine, Method
-from blocksim.evidence.setup import BY_RULE, Overrides, require_setting
+from blocksim.evidence.simulation import BY_RULE, Overrides, require_setting
 
 _STATICS = (
     Method(

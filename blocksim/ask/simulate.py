@@ -5,9 +5,9 @@ from __future__ import annotations
 from blocksim.ask.methods import choose
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.evidence.observation import hold
 from blocksim.evidence.recording import Recording
-from blocksim.evidence.setup import BY_RULE, Overrides
-from blocksim.evidence.trial import hold
+from blocksim.evidence.simulation import BY_RULE, Overrides
 
 
 def simulate(
@@ -28,7 +28,7 @@ def simulate(
     duration : float, optional
         Time to record [sqrt(size/g)]; by default until the verdict is certain.
     settings : mapping of str to float
-        Of `blocksim.evidence.setup.SETTINGS`, instead of what the engine's rule says.
+        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
 
     Returns

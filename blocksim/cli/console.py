@@ -18,7 +18,7 @@ from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.progress import Progress as Report
 from blocksim.report.answers import ratio, signed
 from blocksim.studies.chart import Point, on_front
-from blocksim.studies.validate import Row, Unasked, disagreements, numbered
+from blocksim.studies.validate import Unasked, Validation, disagreements, numbered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,7 +42,7 @@ def progress() -> Generator[Report]:
         yield report
 
 
-def validation_table(rows: list[Row]) -> Table:
+def validation_table(rows: list[Validation]) -> Table:
     """Lay out validation rows for a terminal: a line an arch, a column an engine."""
     table = Table(box=None, header_style="bold", pad_edge=False)
     engines = list(dict.fromkeys(row.engine for row in rows))
@@ -76,7 +76,7 @@ def validation_table(rows: list[Row]) -> Table:
     return table
 
 
-def validation_lines(rows: list[Row], unasked: Sequence[Unasked] = ()) -> list[str]:
+def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) -> list[str]:
     """Return how many rows agree, what does not, and where engines differ, in words."""
     misses = [row for row in rows if row.miss]
     right = f"{len(rows) - len(misses)} of {len(rows)}"
@@ -120,7 +120,7 @@ def chart_table(points: list[Point]) -> Table:
     return table
 
 
-def _answer(row: Row | None) -> str:
+def _answer(row: Validation | None) -> str:
     """Return what one engine saw, and the error of its bracket."""
     if row is None:
         return "-"

@@ -23,8 +23,8 @@ from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES
 from blocksim.evidence.motion import MOVED
+from blocksim.evidence.observation import conclude, hold
 from blocksim.evidence.recording import Recording
-from blocksim.evidence.trial import conclude, hold
 from blocksim.evidence.verdict import Verdict
 
 FALL = 6.0

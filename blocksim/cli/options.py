@@ -18,7 +18,7 @@ from blocksim.ask.methods import CHOICES
 from blocksim.ask.search import ETA_MAX
 from blocksim.common.checks import is_number, require, require_friction
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
-from blocksim.evidence.setup import SETTINGS
+from blocksim.evidence.simulation import SETTINGS
 from blocksim.evidence.verdict import Verdict
 
 Scene = Annotated[

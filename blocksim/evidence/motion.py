@@ -11,9 +11,9 @@ of sqrt(r/g):
   under an acceleration that would just show at `QUIET`. Near the limit an unstable arch
   starts slowly, but with the rest of 1e-5 of an impulse engine an acceleration of 1e-6 g
   shows even if it stays what it is, as where joints slide; where they turn it grows;
-- otherwise it is watched until `LONGEST` and is then *undecided*: it creeps if its
-  displacement grew less than threefold over the second half (steady drift doubles it), or
-  else starts too slowly.
+- otherwise it is watched until `LONGEST` and is then *undecided*: it gave way and rests again,
+  which is neither; it creeps if its displacement grew less than threefold over the second
+  half (steady drift doubles it); or else it starts too slowly.
 
 A run whose blocks overlap before it has moved by `EARLY`, by more than `OVERLAP` of the
 motion of their joints, was started by contacts that had not converged. It is thrown away
@@ -35,7 +35,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Quality, Settings, World, trusted
 from blocksim.evidence.onset import UNFOUND
 from blocksim.evidence.recording import Recording
-from blocksim.evidence.setup import Setup
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 MOVED = 2e-3
@@ -81,7 +81,7 @@ class Motion:
 
 
 def moving_run(
-    setup: Setup,
+    simulation: Simulation,
     held: World,
     repeat: Callable[[World], None],
     *,
@@ -92,7 +92,7 @@ def moving_run(
 
     Parameters
     ----------
-    setup : Setup
+    simulation : Simulation
     held : World
         Built from it and at rest, impulses converged as far as they go.
     repeat : callable
@@ -106,20 +106,26 @@ def moving_run(
     -------
     Motion
     """
-    motion = _released(setup, held, until, progress)
-    for _ in range(setup.settings.repeats):
+    motion = _released(simulation, held, until, progress)
+    for _ in range(simulation.settings.repeats):
         if motion.overlap <= OVERLAP:
             break
-        setup = setup.finer(FINER)
-        again = setup.world()
+        simulation = simulation.finer(FINER)
+        again = simulation.world()
         repeat(again)
-        motion = _released(setup, again, until, progress)
+        motion = _released(simulation, again, until, progress)
     return motion
 
 
-def _released(setup: Setup, world: World, until: float | None, progress: Progress) -> Motion:
+def _released(
+    simulation: Simulation, world: World, until: float | None, progress: Progress
+) -> Motion:
     """Record one release, as far as its blocks do not overlap."""
-    assembly, step, rest = setup.assembly, setup.settings.step, setup.settings.rest
+    assembly, step, rest = (
+        simulation.assembly,
+        simulation.settings.step,
+        simulation.settings.rest,
+    )
     stride = max(1, round(FRAME / step))
     taken = 0
     times, poses, moved = [0.0], [world.poses()], [0.0]
@@ -134,7 +140,7 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
         times.append(taken * step)
         poses.append(world.poses())
         moved.append(_moved(assembly, poses))
-        if moved[-1] > setup.settings.noise and moved[-2] < EARLY:
+        if moved[-1] > simulation.settings.noise and moved[-2] < EARLY:
             overlap = max(overlap, overlap_share(assembly, poses[-1]))
         if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
             break
@@ -142,16 +148,16 @@ def _released(setup: Setup, world: World, until: float | None, progress: Progres
             break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
-    reason = _reason(verdict, times, moved, overlap, setup.length)
+    reason = _reason(verdict, times, moved, overlap, simulation.length)
     quality = world.quality()
-    if not trusted(world, setup.settings):
+    if not trusted(world, simulation.settings):
         verdict = Verdict.UNDECIDED
-        reason = "released, " + _distrust(quality, setup.settings, setup.length)
+        reason = "released, " + _distrust(quality, simulation.settings, simulation.length)
     return Motion(
         verdict=verdict,
         reason=reason,
         overlap=overlap,
-        recording=setup.record(times, poses, quality),
+        recording=simulation.record(times, poses, quality),
     )
 
 
@@ -194,6 +200,8 @@ def _reason(
     if overlap > OVERLAP:
         return f"released, its blocks overlap by {overlap:.0%} of their motion: {way}"
     halfway = moved[int(np.searchsorted(times, times[-1] / 2))]
+    if moved[-1] - halfway < UNMOVED < halfway:
+        return f"released, it gave way and came to rest again: {way}"
     if moved[-1] < CREEP * halfway:
         return f"released, it creeps: {way}"
     return f"released, it starts too slowly to tell: {way}"

@@ -18,7 +18,7 @@ from blocksim.ask.methods import CHOICES, METHODS, STATIC
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
-from blocksim.evidence.setup import SETTINGS, require_setting
+from blocksim.evidence.simulation import SETTINGS, require_setting
 from blocksim.many.axis import DRAWN_AT_ONCE, Axis, AxisField, Number, require_axis
 from blocksim.many.case import AUTO_ENGINE, Case
 

@@ -16,7 +16,7 @@ from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES, METHODS
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
-from blocksim.evidence.setup import SETTINGS, require_setting
+from blocksim.evidence.simulation import SETTINGS, require_setting
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, Parameter, parameters_of
 from blocksim.kinds.circular import CircularArch

@@ -9,7 +9,7 @@ from typing import Any, BinaryIO
 
 from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, write_whole
-from blocksim.evidence.setup import SETTINGS
+from blocksim.evidence.simulation import SETTINGS
 from blocksim.many.shards import read_rows
 
 ROWS_AT_ONCE = 50_000

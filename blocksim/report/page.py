@@ -21,8 +21,8 @@ from blocksim.studies.validate import (
     ASIDE,
     ERROR_BOUND,
     TOLS,
-    Row,
     Unasked,
+    Validation,
     disagreements,
     numbered,
 )
@@ -41,7 +41,7 @@ STATES = {
 class Result:
     """A row as the page shows it; `thickest` where nothing thinner than eta = 2 was tried."""
 
-    row: Row
+    row: Validation
     anchor: str
     thickest: bool
     found: str
@@ -51,7 +51,7 @@ class Result:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Case:
+class Shown:
     """A scenario and what every engine showed of it."""
 
     number: int
@@ -59,13 +59,13 @@ class Case:
     results: tuple[Result, ...]
 
     @property
-    def row(self) -> Row:
+    def row(self) -> Validation:
         """What all engines were given."""
         return self.results[0].row
 
 
 def report_page(
-    rows: Sequence[Row],
+    rows: Sequence[Validation],
     map_svg: bytes,
     machine: Mapping[str, str],
     unasked: Sequence[Unasked] = (),
@@ -74,7 +74,7 @@ def report_page(
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of Validation
         Of one engine or several.
     map_svg : bytes
         The map with the results.
@@ -129,7 +129,7 @@ def report_page(
     )
 
 
-def summary(rows: Sequence[Row]) -> str:
+def summary(rows: Sequence[Validation]) -> str:
     """Say in a sentence or two how simulation and limit analysis agree."""
     agree = sum(not row.miss for row in rows)
     share = f"All {len(rows)}" if agree == len(rows) else f"{agree} of {len(rows)}"
@@ -149,9 +149,9 @@ def summary(rows: Sequence[Row]) -> str:
     return "; ".join(parts) + "."
 
 
-def _cases(rows: Sequence[Row]) -> list[Case]:
+def _cases(rows: Sequence[Validation]) -> list[Shown]:
     return [
-        Case(
+        Shown(
             number=number,
             anchor=f"case-{number}",
             results=tuple(
@@ -163,7 +163,7 @@ def _cases(rows: Sequence[Row]) -> list[Case]:
     ]
 
 
-def _result(row: Row, anchor: str) -> Result:
+def _result(row: Validation, anchor: str) -> Result:
     low, high = row.eta_low, row.eta_high
     if row.verdict is not None:
         bracket = "-"

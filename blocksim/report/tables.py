@@ -21,8 +21,8 @@ from blocksim.studies.validate import (
     ASIDE,
     ERROR_BOUND,
     TOLS,
-    Row,
     Unasked,
+    Validation,
     disagreements,
     installed,
     numbered,
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def as_record(row: Row) -> dict[str, object]:
+def as_record(row: Validation) -> dict[str, object]:
     """Return a row with its angles in degrees, without the motion recorded."""
     fields = asdict(replace(row, recording=None))
     left_out = {"half_angle", "recording"}
@@ -65,13 +65,13 @@ def processor() -> str:
 
 
 def write_results(
-    rows: Sequence[Row], folder: AnyPath, unasked: Sequence[Unasked] = ()
+    rows: Sequence[Validation], folder: AnyPath, unasked: Sequence[Unasked] = ()
 ) -> list[Path]:
     """Write report.html, validate.json, validate.csv, map.png and map.svg into a folder.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of Validation
     folder : str or path
     unasked : sequence of Unasked
         What was not asked, and why; said in the page and in the JSON.
@@ -129,7 +129,7 @@ def write_contents(folder: Path, contents: dict[str, bytes]) -> list[Path]:
     return [folder / name for name in contents]
 
 
-def _points(rows: Sequence[Row]) -> list[MapPoint]:
+def _points(rows: Sequence[Validation]) -> list[MapPoint]:
     """Place each arch at the middle of its bracket; what never stands, at eta = 2."""
     points: list[MapPoint] = []
     numbers = numbered(rows)

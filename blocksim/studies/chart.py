@@ -37,7 +37,7 @@ Cost = Literal["time", "work"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Case:
+class ChartArch:
     """An arch of the chart.
 
     Parameters
@@ -101,7 +101,7 @@ class Point:
         return REFINEMENTS[self.knob].against
 
 
-def cases(*, quick: bool) -> tuple[Case, ...]:
+def cases(*, quick: bool) -> tuple[ChartArch, ...]:
     """Return arches spread over the map, hard ones too; small ones if quick."""
     chosen = (
         (("semicircle", 90, 0.7, 11), ("sliding shoulder", 125, 0.9, 10))
@@ -115,7 +115,7 @@ def cases(*, quick: bool) -> tuple[Case, ...]:
         )
     )
     return tuple(
-        Case(
+        ChartArch(
             name=f"{name}: {degrees} deg, mu {mu}, n {count}",
             half_angle=math.radians(degrees),
             mu=mu,
@@ -126,7 +126,7 @@ def cases(*, quick: bool) -> tuple[Case, ...]:
 
 
 def measure(
-    chosen: Sequence[Case],
+    chosen: Sequence[ChartArch],
     methods: Iterable[str] | None = None,
     knobs: Iterable[str] = tuple(REFINEMENTS),
     *,
@@ -137,7 +137,7 @@ def measure(
 
     Parameters
     ----------
-    chosen : sequence of Case
+    chosen : sequence of ChartArch
     methods : iterable of str, optional
         By default limit analysis and the engines installed here.
     knobs : iterable of str
@@ -208,7 +208,7 @@ class _Found(NamedTuple):
     work: int = 0
 
 
-def _measured(case: Case, method: str, knob: str, value: float, repeats: int) -> Point:
+def _measured(case: ChartArch, method: str, knob: str, value: float, repeats: int) -> Point:
     """Bracket one arch by one method with one setting, again and again."""
     built = replace(case, voussoirs=int(value)) if knob == "voussoirs" else case
     exact = truth = _exact(built)
@@ -245,7 +245,7 @@ def _measured(case: Case, method: str, knob: str, value: float, repeats: int) ->
     )
 
 
-def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -> _Found:
+def _bracketed(case: ChartArch, start: float, method: str, knob: str, value: float) -> _Found:
     """Bisection for the least thickness of one arch by an engine."""
     finest = METHODS[method].finest
     tol = {"tolerance": value, "voussoirs": finest}.get(knob, TOL)
@@ -264,6 +264,6 @@ def _bracketed(case: Case, start: float, method: str, knob: str, value: float) -
     return _Found(search.low, search.high, search.undecided, work)
 
 
-def _exact(case: Case) -> float | None:
+def _exact(case: ChartArch) -> float | None:
     """Return the least thickness by limit analysis."""
     return limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta

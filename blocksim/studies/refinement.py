@@ -20,8 +20,8 @@ from blocksim.blocks.assembly import displacement
 from blocksim.engines import ENGINES
 from blocksim.engines.base import trusted
 from blocksim.evidence.motion import FRAME, MOVED, QUIET
-from blocksim.evidence.setup import Setup
-from blocksim.evidence.trial import trial
+from blocksim.evidence.observation import observe
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
 STEP = 1 / 60
@@ -133,19 +133,19 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
     """
     if knob in {"step", "sweeps"}:
         given = {"step": STEP, "sweeps": ENGINES[method].usual_sweeps, knob: value}
-        return let_go(Setup.of(arch.problem(mu), method, settings=given))
+        return let_go(Simulation.of(arch.problem(mu), method, settings=given))
     given = {knob: value} if knob == "hold_sweeps" else {}
-    seen = trial(arch.problem(mu), method, moving=False, settings=given)
+    seen = observe(arch.problem(mu), method, moving=False, settings=given)
     work = ENGINES[method].contacts * (arch.voussoirs + 1) * seen.onset.sweeps
     return Look(verdict=seen.verdict, acceleration=seen.onset.acceleration, work=work)
 
 
-def let_go(setup: Setup, moved: float = MOVED, until: float = QUIET) -> Look:
+def let_go(simulation: Simulation, moved: float = MOVED, until: float = QUIET) -> Look:
     """Let an arch go that nothing has held before, and see whether it moves.
 
     Parameters
     ----------
-    setup : Setup
+    simulation : Simulation
     moved : float
         Displacement from which it counts as collapsing [size].
     until : float
@@ -156,7 +156,7 @@ def let_go(setup: Setup, moved: float = MOVED, until: float = QUIET) -> Look:
     Look
         Undecided only where the engine itself tells that its contacts were not solved.
     """
-    world, settings = setup.world(), setup.settings
+    world, settings = simulation.world(), simulation.settings
     built, taken = world.poses(), 0
     stride, count = max(1, round(FRAME / settings.step)), math.ceil(until / settings.step)
     verdict = Verdict.STANDS
@@ -165,11 +165,11 @@ def let_go(setup: Setup, moved: float = MOVED, until: float = QUIET) -> Look:
         world.advance(steps)
         taken += steps
         # What has become nan has moved, too.
-        if not displacement(world.poses() - built, setup.assembly) <= moved:
+        if not displacement(world.poses() - built, simulation.assembly) <= moved:
             verdict = Verdict.COLLAPSES
-    joints = len(setup.assembly.joints)
+    joints = len(simulation.assembly.joints)
     return Look(
         verdict=verdict if trusted(world, settings) else Verdict.UNDECIDED,
         acceleration=math.nan,
-        work=setup.engine.contacts * joints * settings.sweeps * taken,
+        work=simulation.engine.contacts * joints * settings.sweeps * taken,
     )

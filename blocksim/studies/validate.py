@@ -19,8 +19,8 @@ from blocksim.common.checks import require
 from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import get_engine
+from blocksim.evidence.observation import observe
 from blocksim.evidence.recording import Recording
-from blocksim.evidence.trial import trial
 from blocksim.evidence.verdict import Verdict
 
 TOLS = {"direct": 1e-6, "pymunk": 0.001, "pybullet": 0.004, "mujoco": 0.004}
@@ -34,7 +34,7 @@ ASIDE = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row:
+class Validation:
     """One scenario by one engine, against what is known.
 
     Parameters
@@ -154,7 +154,7 @@ def validate(
     *,
     workers: int = 2,
     progress: Progress = silent,
-) -> list[Row]:
+) -> list[Validation]:
     """Bracket every scenario with every engine and compare.
 
     Parameters
@@ -169,7 +169,7 @@ def validate(
 
     Returns
     -------
-    list of Row
+    list of Validation
         In the order of scenarios, then engines, whatever finishes first.
 
     Raises
@@ -190,7 +190,7 @@ def validate(
         if METHODS[engine].is_spatial or not scenario.lean
     ]
     if workers == 1:
-        rows: list[Row] = []
+        rows: list[Validation] = []
         for done, job in enumerate(jobs):
             progress(done / len(jobs), job[0].name)
             rows.append(validate_one(*job))
@@ -202,7 +202,7 @@ def validate(
         return [future.result() for future in futures]
 
 
-def validate_one(scenario: Scenario, engine: str) -> Row:
+def validate_one(scenario: Scenario, engine: str) -> Validation:
     """Ask one scenario's question of one engine and compare."""
     if scenario.expected_verdict is not None and scenario.eta is not None:
         return _judged(scenario, scenario.arch(scenario.eta), engine)
@@ -220,13 +220,13 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
         arch = scenario.arch(under)
-        seen = trial(arch.problem(scenario.mu), engine)
+        seen = observe(arch.problem(scenario.mu), engine)
         in_motion, below = observed_mode(seen.joints_in_motion, arch), seen.verdict
         recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
         over = found.centre * (1 + ASIDE)
-        above = trial(scenario.arch(over).problem(scenario.mu), engine).verdict
+        above = observe(scenario.arch(over).problem(scenario.mu), engine).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
     middle = found.centre or found.eta_low
@@ -251,10 +251,10 @@ def validate_one(scenario: Scenario, engine: str) -> Row:
     )
 
 
-def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
+def _judged(scenario: Scenario, arch: Arch, engine: str) -> Validation:
     """Compare the verdict on an arch as it is with the one its scenario claims."""
     started = time.perf_counter()
-    seen = trial(arch.problem(scenario.mu, scenario.lean), engine)
+    seen = observe(arch.problem(scenario.mu, scenario.lean), engine)
     right = seen.verdict is scenario.expected_verdict
     return replace(
         _asked(scenario, engine),
@@ -268,9 +268,9 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Row:
     )
 
 
-def _asked(scenario: Scenario, engine: str) -> Row:
+def _asked(scenario: Scenario, engine: str) -> Validation:
     """Return the row of a scenario that is still to be answered."""
-    return Row(
+    return Validation(
         scenario=scenario.name,
         engine=engine,
         half_angle=scenario.half_angle,
@@ -284,18 +284,18 @@ def _asked(scenario: Scenario, engine: str) -> Row:
     )
 
 
-def numbered(rows: Sequence[Row]) -> dict[str, int]:
+def numbered(rows: Sequence[Validation]) -> dict[str, int]:
     """Give each scenario its number, whatever the engines."""
     names = dict.fromkeys(row.scenario for row in rows)
     return {name: number for number, name in enumerate(names, start=1)}
 
 
-def disagreements(rows: Sequence[Row]) -> list[str]:
+def disagreements(rows: Sequence[Validation]) -> list[str]:
     """List where engines differ on the same scenario, each with its likely cause.
 
     Parameters
     ----------
-    rows : sequence of Row
+    rows : sequence of Validation
 
     Returns
     -------
@@ -319,7 +319,7 @@ def disagreements(rows: Sequence[Row]) -> list[str]:
     return found
 
 
-def _exclusive(one: Row, other: Row) -> bool:
+def _exclusive(one: Validation, other: Validation) -> bool:
     """Tell whether one bracket lies wholly above the other."""
     return (
         one.eta_low is not None and other.eta_high is not None and one.eta_low > other.eta_high

@@ -14,7 +14,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.banded import Bands
-from blocksim.engines.contact.law import Friction
+from blocksim.engines.contact.coulomb import Friction
 from blocksim.engines.contact.springs import MOST_ROUNDS, STEEPEST, Springs
 
 COLD = 1e8

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.banded import Bands
-from blocksim.engines.contact.law import LEAN, Contacts
+from blocksim.engines.contact.coulomb import LEAN, Contacts
 
 
 class Slides:

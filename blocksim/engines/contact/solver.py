@@ -16,7 +16,7 @@ those of rigid contact within a few rounds, however soft the springs are.
 - Newton's method solves it as a rule, and may run in circles: friction makes the system
   unsymmetric, and no function tells progress from regress.
 - Then a path is followed that begins with all contacts apart and cannot fail to arrive
-  (`path.py`).
+  (`path_following.py`).
 - From nothing, the associated problem, whose friction dilates, is solved first. It is a
   strictly convex quadratic programme, and Newton's method with an exact line search ends it
   from anywhere. Where nothing slides, its solution is the one sought.
@@ -34,8 +34,8 @@ from numpy.typing import ArrayLike, NDArray
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.associated import associated
 from blocksim.engines.contact.banded import Bands
-from blocksim.engines.contact.law import OPEN, STICKS, Contacts, Friction, leaning
-from blocksim.engines.contact.path import Balance, come_together, shrink
+from blocksim.engines.contact.coulomb import OPEN, STICKS, Contacts, Friction, leaning
+from blocksim.engines.contact.path_following import Balance, come_together, shrink
 from blocksim.engines.contact.slides import Slides
 from blocksim.engines.contact.springs import MOST_ROUNDS, Springs
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.engines.contact.law import Friction
+from blocksim.engines.contact.coulomb import Friction
 
 SOFT, STIFF = 1e3, 1e9
 """Least and largest stiffness."""

@@ -17,15 +17,15 @@ from blocksim.cli.console import chart_table
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
 from blocksim.evidence.motion import QUIET
-from blocksim.evidence.setup import Setup
+from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.chart import read_points, write_chart, write_points
-from blocksim.studies.chart import Case, Point, front, gain, measure, on_front
+from blocksim.studies.chart import ChartArch, Point, front, gain, measure, on_front
 from blocksim.studies.refinement import REFINEMENTS, let_go, look
 from blocksim.view.chartfigure import chart_figures
 
-SMALL = Case(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
-SLIDING = Case(name="sliding: 125 deg", half_angle=math.radians(125), mu=0.9, voussoirs=10)
+SMALL = ChartArch(name="small: 90 deg", half_angle=math.pi / 2, mu=0.7, voussoirs=9)
+SLIDING = ChartArch(name="sliding: 125 deg", half_angle=math.radians(125), mu=0.9, voussoirs=10)
 
 
 def point(method: str, error: float, *seconds: float, knob: str = "tolerance") -> Point:
@@ -44,18 +44,18 @@ def point(method: str, error: float, *seconds: float, knob: str = "tolerance") -
     )
 
 
-def least(case: Case, voussoirs: int) -> float:
+def least(case: ChartArch, voussoirs: int) -> float:
     eta = limit.least_thickness(case.half_angle, case.mu, voussoirs).eta
     assert eta is not None
     return eta
 
 
-def arch(case: Case, ratio: float) -> Arch:
+def arch(case: ChartArch, ratio: float) -> Arch:
     eta = ratio * least(case, case.voussoirs)
     return Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
 
 
-def off_theory(case: Case, voussoirs: int) -> float:
+def off_theory(case: ChartArch, voussoirs: int) -> float:
     continuous = theory.least_thickness(case.half_angle, case.mu).eta
     assert continuous is not None
     return abs(least(case, voussoirs) / continuous - 1)
@@ -118,7 +118,9 @@ def test_an_arch_of_n_voussoirs_nears_the_continuous_one_like_one_over_n_squared
 
 @pytest.mark.parametrize("sweeps", [30, 100, 300, 1000, 5000])
 @pytest.mark.parametrize("case", [SMALL, SLIDING], ids=["turning", "sliding"])
-def test_an_onset_test_cut_short_is_open_rather_than_wrong(case: Case, sweeps: int) -> None:
+def test_an_onset_test_cut_short_is_open_rather_than_wrong(
+    case: ChartArch, sweeps: int
+) -> None:
     for ratio, truth in ((0.99, Verdict.COLLAPSES), (1.01, Verdict.STANDS)):
         seen = look(arch(case, ratio), case.mu, "pymunk", "hold_sweeps", sweeps)
         assert seen.verdict in {truth, Verdict.UNDECIDED}
@@ -144,10 +146,10 @@ def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
 @pytest.mark.parametrize("method", ["direct", "pymunk"])
 def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     """What stands is watched to the end."""
-    setup = Setup.of(
+    simulation = Simulation.of(
         arch(SMALL, 1.5).problem(SMALL.mu), method, settings={"step": 1 / 480, "sweeps": 20}
     )
-    seen = let_go(setup)
+    seen = let_go(simulation)
     assert seen.verdict is Verdict.STANDS
     assert seen.work == ENGINES[method].contacts * 10 * 20 * QUIET * 480
     held = look(arch(SMALL, 1.5), SMALL.mu, method, "tolerance", 1e-2)

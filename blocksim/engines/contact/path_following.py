@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.banded import Bands, System
-from blocksim.engines.contact.law import (
+from blocksim.engines.contact.coulomb import (
     FLATTEST,
     OPEN,
     SLIDES_UP,

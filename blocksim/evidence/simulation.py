@@ -96,7 +96,7 @@ class Reduced(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setup:
+class Simulation:
     """A problem, an engine and its settings.
 
     Parameters
@@ -124,7 +124,7 @@ class Setup:
         *,
         settings: Overrides = BY_RULE,
         reduction: Reduced | None = None,
-    ) -> Setup:
+    ) -> Simulation:
         """Take the settings that the engine chooses for the blocks, or those given."""
         found = get_engine(engine)
         given = {
@@ -189,7 +189,7 @@ class Setup:
             said.append(f"sweeps {fewer:.2g} times the rule's are too few to be sure")
         return "; ".join(said)
 
-    def finer(self, factor: int) -> Setup:
+    def finer(self, factor: int) -> Simulation:
         """Return the same with `factor` times the sweeps in each step of a moving run."""
         settings = replace(self.settings, sweeps=self.settings.sweeps * factor)
         return replace(self, settings=settings)

@@ -14,7 +14,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import TellsForces, World
 from blocksim.evidence.motion import Motion, moving_run
 from blocksim.evidence.onset import Onset, onset
-from blocksim.evidence.setup import BY_RULE, Overrides, Reduced, Setup, given_words
+from blocksim.evidence.simulation import BY_RULE, Overrides, Reduced, Simulation, given_words
 from blocksim.evidence.verdict import Verdict
 
 
@@ -24,14 +24,14 @@ class Held:
 
     Parameters
     ----------
-    setup : Setup
+    simulation : Simulation
     world : World
     onset : Onset
     splits : int
         Joints of a reduction that turned out to move.
     """
 
-    setup: Setup
+    simulation: Simulation
     world: World
     onset: Onset
     splits: int = 0
@@ -39,7 +39,7 @@ class Held:
     @property
     def built(self) -> Array:
         """Poses where the blocks were built."""
-        assembly = self.setup.assembly
+        assembly = self.simulation.assembly
         built = np.zeros_like(self.onset.mechanism)
         built[:, :2] = assembly.centres / assembly.size
         return built
@@ -47,11 +47,11 @@ class Held:
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
         """Let the blocks go; see `moving_run`."""
         repeat = self.onset.repeat
-        return moving_run(self.setup, self.world, repeat, until=until, progress=progress)
+        return moving_run(self.simulation, self.world, repeat, until=until, progress=progress)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Trial:
+class Observation:
     """What an engine showed of one problem.
 
     Parameters
@@ -95,7 +95,7 @@ class Trial:
         return self.motion.recording.state_hash if self.motion else None
 
 
-def trial(
+def observe(
     problem: Problem,
     engine: str,
     *,
@@ -103,7 +103,7 @@ def trial(
     settings: Overrides = BY_RULE,
     reduction: Reduced | None = None,
     progress: Progress = silent,
-) -> Trial:
+) -> Observation:
     """Put a problem into an engine: onset test, then, if asked for, the moving run.
 
     Parameters
@@ -121,7 +121,7 @@ def trial(
 
     Returns
     -------
-    Trial
+    Observation
     """
     held = hold(problem, engine, settings=settings, reduction=reduction, progress=progress)
     return conclude(held, moving=moving, progress=progress)
@@ -135,22 +135,27 @@ def hold(
     reduction: Reduced | None = None,
     progress: Progress = silent,
 ) -> Held:
-    """Do the first part of a trial: put the problem into the engine, and the onset test.
+    """Do the first part: put the problem into the engine, and the onset test.
 
     With a reduction that is done again until no joint would move of those taken not to,
     and with all blocks where it cannot stand for them.
     """
     splits = 0
     while True:
-        setup = Setup.of(problem, engine, settings=settings, reduction=reduction)
-        world = setup.world()
-        simulated = setup.simulated
+        simulation = Simulation.of(problem, engine, settings=settings, reduction=reduction)
+        world = simulation.world()
+        simulated = simulation.simulated
         first = onset(
-            world, setup.engine, setup.taken, setup.settings, progress, simulated=simulated
+            world,
+            simulation.engine,
+            simulation.taken,
+            simulation.settings,
+            progress,
+            simulated=simulated,
         )
         if reduction and (first.may_rest or first.verdict is not Verdict.UNDECIDED):
             resultants = cast("TellsForces", world).resultants()
-            moving = reduction.overstrained(resultants, simulated.mu, setup.settings.still)
+            moving = reduction.overstrained(resultants, simulated.mu, simulation.settings.still)
             # Large blocks move where they may rest sooner than those they are made of.
             if first.may_rest or reduction.parts(resultants):
                 reduction, splits = None, 0
@@ -158,29 +163,29 @@ def hold(
             if moving:
                 reduction, splits = reduction.split(moving), splits + len(moving)
                 continue
-        return Held(setup=setup, world=world, onset=first, splits=splits)
+        return Held(simulation=simulation, world=world, onset=first, splits=splits)
 
 
-def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
-    """Do the second part of a trial: the moving run if asked for, and what all of it shows."""
-    setup, first = held.setup, held.onset
+def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observation:
+    """Do the second part: the moving run if asked for, and what all of it shows."""
+    simulation, first = held.simulation, held.onset
     verdict, reason, motion = first.verdict, first.reason, None
     if moving and verdict is not Verdict.UNDECIDED:
         motion = held.release(progress=progress)
         reason = f"onset test: {first.reason}; moving run: {motion.reason}"
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
-    reason += _asides(held, motion) + given_words(setup.given)
-    joints = closed_joints(setup.assembly.joint_angles)
+    reason += _asides(held, motion) + given_words(simulation.given)
+    joints = closed_joints(simulation.assembly.joint_angles)
     in_motion = joints if motion else ()
     rates = None
     if verdict is Verdict.COLLAPSES:
         rates = first.mechanism - held.built
-        planar = setup.problem.is_planar
-        joints = classify(setup.assembly, first.mechanism) if planar else ()
+        planar = simulation.problem.is_planar
+        joints = classify(simulation.assembly, first.mechanism) if planar else ()
         seen = planar and motion
-        in_motion = classify(setup.assembly, motion.mechanism) if motion and seen else ()
-    return Trial(
+        in_motion = classify(simulation.assembly, motion.mechanism) if motion and seen else ()
+    return Observation(
         verdict=verdict,
         reason=reason,
         onset=first,
@@ -188,25 +193,28 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Trial:
         joints=joints,
         joints_in_motion=in_motion,
         rates=rates,
-        blocks=setup.blocks,
+        blocks=simulation.blocks,
         splits=held.splits,
     )
 
 
 def _asides(held: Held, motion: Motion | None) -> str:
-    """Tell what else there is to know of a trial."""
-    setup = held.setup
+    """Tell what else there is to know of an observation."""
+    simulation = held.simulation
     said: list[str] = []
-    if setup.reduction:
-        said.append(reduced_words(setup.blocks, len(setup.assembly.blocks), held.splits))
-    if motion and not setup.problem.is_planar:
+    if simulation.reduction:
         said.append(
-            f"moved {motion.recording.beyond_plane[-1]:.1e} {setup.length} out of its plane"
+            reduced_words(simulation.blocks, len(simulation.assembly.blocks), held.splits)
         )
-    if motion and setup.unsure:
-        said.append(setup.unsure)
-    if setup.problem.mu > setup.engine.most_friction:
-        said.append(f"{setup.engine.name} took {setup.engine.most_friction:g} as friction")
+    if motion and not simulation.problem.is_planar:
+        way = f"{motion.recording.beyond_plane[-1]:.1e} {simulation.length}"
+        said.append(f"moved {way} out of its plane")
+    if motion and simulation.unsure:
+        said.append(simulation.unsure)
+    if simulation.problem.mu > simulation.engine.most_friction:
+        said.append(
+            f"{simulation.engine.name} took {simulation.engine.most_friction:g} as friction"
+        )
     return "".join(f"; {each}" for each in said)
 
 
