@@ -134,7 +134,7 @@ def test_direct_finds_it_again(name: str, joints: str) -> None:
 
 
 def test_what_slips_may_come_to_rest_again() -> None:
-    """A semicircle's upright joints slip first: its middle settles, stops, and is no collapse."""
+    """A semicircle's upright joints slip first: its middle settles, and that is no collapse."""
     table = {"kind": "circular-arch", "friction": 1.2, "voussoirs": 12, "joints": "vertical"}
     arch = structure_of(table)
     least = exact(arch, "thickness")
