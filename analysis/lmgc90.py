@@ -45,7 +45,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
 from blocksim.report.chart import write_points
-from blocksim.studies.chart import LONG, REPEATS, START, Case, Point, cases
+from blocksim.studies.chart import LONG, REPEATS, START, ChartArch, Point, cases
 
 REMEDY = "LMGC90 is missing: pip install compas_lmgc90"
 RADIUS, DEPTH = 10.0, 5.0
@@ -100,7 +100,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
     return Result(errors, seconds)
 
 
-def measured(case: Case, exact: float, step: float, tol: float) -> Point:
+def measured(case: ChartArch, exact: float, step: float, tol: float) -> Point:
     """Bracket one arch at one time step, again and again if that does not take long."""
     processor_s: list[float] = []
     wall_s: list[float] = []
@@ -127,7 +127,7 @@ def measured(case: Case, exact: float, step: float, tol: float) -> Point:
     )
 
 
-def bracketed(case: Case, exact: float, step: float, tol: float) -> tuple[Bisection, float]:
+def bracketed(case: ChartArch, exact: float, step: float, tol: float) -> tuple[Bisection, float]:
     """Bracket one arch, and count contacts solved times the sweeps over them."""
     work = 0.0
 
@@ -149,7 +149,7 @@ def bracketed(case: Case, exact: float, step: float, tol: float) -> tuple[Bisect
     return search, work
 
 
-def arch_of(case: Case, eta: float) -> Arch:
+def arch_of(case: ChartArch, eta: float) -> Arch:
     """Return an arch of the case."""
     return Arch(
         half_angle=case.half_angle,
@@ -160,7 +160,7 @@ def arch_of(case: Case, eta: float) -> Arch:
     )
 
 
-def polygons(case: Case, eta: float) -> list[Array]:
+def polygons(case: ChartArch, eta: float) -> list[Array]:
     """Outlines of the voussoirs [m], and last of the two supports: more of the same ring."""
     assembly = arch_of(case, eta).assembly()
     outlines = [np.array(block.vertices) for block in assembly.blocks]
@@ -236,12 +236,12 @@ def prism(outline: Array) -> dict[str, list[list[float]] | list[list[int]]]:
     return {"vertices": vertices, "faces": [front, back, *sides]}
 
 
-def least(case: Case, *, centroids: bool = True) -> float | None:
+def least(case: ChartArch, *, centroids: bool = True) -> float | None:
     """Exact least thickness of the polygons under their weight; None where none stands.
 
     Parameters
     ----------
-    case : Case
+    case : ChartArch
     centroids : bool
         Weight at the polygons' centroids; otherwise where blocksim's arch has it, by which
         this is held to `limit`.

@@ -101,7 +101,7 @@ def test_deeper_overlap_than_allowed_is_undecided():
 def test_a_recording_of_a_collapse_goes_to_the_ground():
     arch = arch_at(0.8, 90, 0.9, 9)
     recording = simulate(arch, mu=0.9, method="direct", duration=6.0)
-    assert recording.times[-1] == pytest.approx(6.0)
+    assert 3.0 < recording.times[-1] <= 6.0
     lowest = recording.poses[-1, :, 1].min() - ground_level(arch.assembly())
     assert 0.0 < lowest < arch.eta
 

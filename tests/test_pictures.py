@@ -13,7 +13,7 @@ from PIL import Image
 from running import inside
 
 from blocksim.ask.simulate import simulate
-from blocksim.blocks.structure import load_structure
+from blocksim.kinds.files import load_structure
 
 STACK = {
     "title": "Two blocks on a floor",
