@@ -127,7 +127,9 @@ def measured(case: ChartArch, exact: float, step: float, tol: float) -> Point:
     )
 
 
-def bracketed(case: ChartArch, exact: float, step: float, tol: float) -> tuple[Bisection, float]:
+def bracketed(
+    case: ChartArch, exact: float, step: float, tol: float
+) -> tuple[Bisection, float]:
     """Bracket one arch, and count contacts solved times the sweeps over them."""
     work = 0.0
 

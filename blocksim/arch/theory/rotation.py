@@ -13,12 +13,14 @@ nodes; its hinge goes to the crown like a square root, y does not.
 
 from __future__ import annotations
 
+import sys
 from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from scipy.optimize import elementwise
 
 from blocksim.arch.circular import Weight
 from blocksim.arch.theory.equations import BEYOND, ETA_MAX
@@ -30,7 +32,8 @@ from blocksim.common.series import p_series, r_series
 EDGES = (0.0, 0.75, 0.94, 0.985, 0.996, 1.0)
 """Pieces of the interpolation in (alpha/alpha_l)^2: a branch point lies just beyond."""
 NODES = 36
-HALVINGS = 56
+"""Of a piece."""
+TIGHT = 4 * sys.float_info.epsilon
 ROUNDS = 100
 """Newton steps allowed; halving alone would need about as many."""
 SETTLED = 1e-9
@@ -207,13 +210,10 @@ def _rotational(weight: Weight) -> _Rotational:
     places = [(left + right + (right - left) * points) / 2 for left, right in pairwise(EDGES)]
     square = np.concatenate(places) * widest**2
     alpha = np.sqrt(square)
-    low, high = np.zeros_like(alpha), np.minimum(square, 1.0)
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        # The shoulder asks for less as the thrust falls.
-        more = excess(middle, alpha) > 0
-        low, high = np.where(more, middle, low), np.where(more, high, middle)
-    short = (low + high) / 2
+    # The shoulder asks for less as the thrust falls.
+    ends = np.zeros_like(alpha), np.minimum(square, 1.0)
+    found = elementwise.find_root(excess, ends, args=(alpha,), tolerances={"xrtol": TIGHT})
+    short: Array = found.x
     # Near alpha_l the thickness the crown asks for is all but undetermined.
     eta, hinge = inner_hinges(short, alpha, alpha, weight)
     values = np.stack([short / square, eta / square**2, hinge / square], axis=1)
