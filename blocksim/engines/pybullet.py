@@ -306,7 +306,7 @@ class Bodies:
             )
             for body in self._bodies
         ]
-        # Bodies removed one by one would leave to others, by their numbers, what they may touch.
+        # Bodies removed would leave to others, by their numbers, what they may not touch.
         bullet.resetSimulation(physicsClientId=self._client)
         self._begin()
         self._pull()
