@@ -186,7 +186,7 @@ class _Bodies:
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; before they first do, contacts take up the weight again."""
-        if self._model.opt.timestep != self._part:
+        if not self._is_rubble and self._model.opt.timestep != self._part:
             self._choose(self._part, LOOSE)
             self._settle(SETTLING)
             self._zero = self._state.qpos.copy()
