@@ -1,13 +1,14 @@
-"""Cases with known answers: what limit analysis and `direct` say of each.
+"""Cases with known answers: what limit analysis and the engines say of each.
 
 Question: are structures of all kinds answered right, with walls, arches, stacks, corners on
 faces, smooth joints, and loads at points? The cases are those of `tests/structures/cases`, each
 with a value from outside this code: largest load factor, tilt of the table, least friction, or
 whether it stands. `limit` is to meet each value to 1e-6. `direct`, held at rest, is to stand
-0.1 % inside it and to collapse 0.1 % outside it; with `--moving` it is let go, too. Cases above
-`MOST` blocks are asked of `limit` only.
+0.1 % inside it and to collapse 0.1 % outside it; with `--moving` it is let go, too. So is any
+other engine (`--engine`), 1 % to either side (`--aside`); what it refuses is a row, too. Cases
+of more blocks than `MOST` are asked of `limit` only.
 
-    python -m analysis.structure_cases OUT [--quick] [--moving]
+    python -m analysis.structure_cases OUT [--engine NAME] [--aside SHARE] [--quick] [--moving]
 """
 
 from __future__ import annotations
@@ -17,22 +18,29 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, fields, replace
+from functools import partial
 from pathlib import Path
+from typing import Any, cast
 
 from scipy.optimize import bisect
 
 from analysis.command import run
+from analysis.saved_answers import Row, answers
 from blocksim import Verdict
+from blocksim.ask.methods import choose
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
+from blocksim.common.errors import InputError
 from blocksim.evidence.observation import observe
 from blocksim.limit import collapse, equilibrium
 from tests.structure_cases import case, names, scenes
 
-MOST = 120
-"""Blocks of the largest case that `direct` is asked of."""
-ASIDE = 1e-3
-"""How far from the value it is asked: relative, or absolute where the value is 0."""
+MOST, OTHERS = 120, 70
+"""Blocks of the largest case that `direct` is asked of, and other engines."""
+ASIDE, COARSE = 1e-3, 1e-2
+"""How far from the value they are asked: relative, or absolute where the value is 0."""
+REFUSED = "refused"
+"""What stands for the answer to what an engine does not take."""
 FINEST = 1e-9
 """To which least friction is found."""
 OTHERWISE = {"compas_cra_bridge"}
@@ -63,10 +71,10 @@ class Line:
     error : float
         Of limit analysis, relative; absolute where the value is 0.
     inside, outside : str
-        What `direct` says 0.1 % to either side; of `stands` one of them. Empty where it was
+        What the engine says to either side; of `stands` one of them. Empty where it was
         not asked.
     seconds : float
-        Processor time of `direct`.
+        Processor time of the engine.
     """
 
     case: str
@@ -80,20 +88,21 @@ class Line:
 
     @property
     def false(self) -> int:
-        """Answers of `direct` that are wrong."""
+        """Answers of the engine that are wrong."""
         return (self.inside == Verdict.COLLAPSES) + (self.outside == Verdict.STANDS)
 
     @property
     def undecided(self) -> int:
-        """Answers of `direct` that are none."""
+        """Answers of the engine that are none."""
         return [self.inside, self.outside].count(Verdict.UNDECIDED)
 
 
 @dataclass(frozen=True)
 class Result:
-    """All questions, and headline numbers."""
+    """All questions to an engine, and headline numbers."""
 
     lines: tuple[Line, ...]
+    engine: str
 
     @property
     def worst_error(self) -> float:
@@ -102,7 +111,7 @@ class Result:
 
     @property
     def asked(self) -> int:
-        """Answers of `direct`."""
+        """Answers of the engine."""
         return sum(bool(line.inside) + bool(line.outside) for line in self.lines)
 
     @property
@@ -114,6 +123,11 @@ class Result:
     def undecided(self) -> int:
         """Of them, how many are none."""
         return sum(line.undecided for line in self.lines)
+
+    @property
+    def refused(self) -> int:
+        """Of them, how many are of what the engine does not take."""
+        return sum([line.inside, line.outside].count(REFUSED) for line in self.lines)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,26 +250,38 @@ def rubbing(problem: Problem, value: float) -> Question:
     )
 
 
-def answered(name: str, question: Question, *, moving: bool) -> Line:
-    """Ask both methods."""
+def answered(
+    name: str,
+    question: Question,
+    *,
+    moving: bool,
+    engine: str = "direct",
+    aside: float | None = None,
+) -> Line:
+    """Ask limit analysis and an engine; by default as near as is known of it."""
     value, exact = question.expected, question.exact()
     size = abs(value) or 1.0
-    inside = value + ASIDE * size * question.inside
-    outside = value - ASIDE * size * question.inside
+    off = (ASIDE if engine == "direct" else COARSE) if aside is None else aside
+    inside = value + off * size * question.inside
+    outside = value - off * size * question.inside
     begin = time.process_time()
 
-    def direct(at: float) -> str:
+    def say(at: float) -> str:
         problem = question.at(at)
-        if len(problem.assembly.blocks) > MOST:
+        if len(problem.assembly.blocks) > (MOST if engine == "direct" else OTHERS):
             return ""
-        return str(observe(problem, "direct", moving=moving).verdict)
+        try:
+            choose(engine, problem=problem, moving=moving)
+        except InputError:
+            return REFUSED
+        return str(observe(problem, engine, moving=moving).verdict)
 
     if question.name == "stands":
-        said = [direct(0.0), ""] if value else ["", direct(0.0)]
+        said = [say(0.0), ""] if value else ["", say(0.0)]
     elif question.name == "least friction" and value == 0:
-        said = [direct(0.0), ""]
+        said = [say(0.0), ""]
     else:
-        said = [direct(inside), direct(outside)]
+        said = [say(inside), say(outside)]
     return Line(
         case=name,
         question=question.name,
@@ -268,19 +294,46 @@ def answered(name: str, question: Question, *, moving: bool) -> Line:
     )
 
 
-def main(out: Path, *, quick: bool = False, moving: bool = False) -> Result:
+def ask(of: tuple[str, int], *, moving: bool, engine: str, aside: float | None) -> Row:
+    """Ask a question of a case by its number."""
+    name, number = of
+    question = list(questions(name))[number]
+    return asdict(answered(name, question, moving=moving, engine=engine, aside=aside))
+
+
+def main(
+    out: Path,
+    *,
+    quick: bool = False,
+    moving: bool = False,
+    engine: str = "direct",
+    aside: float | None = None,
+    processes: int = 1,
+) -> Result:
     """Ask every case, or in a quick run few; write the table."""
-    lines = [
-        answered(name, question, moving=moving)
-        for name in (QUICK if quick else names())
-        for question in questions(name)
+    asked = [
+        (name, number)
+        # The smallest first: of a run that is stopped most cases are there.
+        for name in (QUICK if quick else sorted(names(), key=_blocks))
+        for number, _ in enumerate(questions(name))
     ]
-    out.mkdir(parents=True, exist_ok=True)
-    with (out / "structure_cases.csv").open("w", newline="", encoding="utf-8") as file:
-        rows = csv.DictWriter(file, [field.name for field in fields(Line)])
-        rows.writeheader()
-        rows.writerows(asdict(line) for line in lines)
-    return Result(tuple(lines))
+    kept = "structure_cases" if engine == "direct" else f"structure_cases_{engine}"
+    rows = answers(
+        out / f"{kept}.jsonl",
+        asked,
+        partial(ask, moving=moving, engine=engine, aside=aside),
+        processes,
+    )
+    with (out / f"{kept}.csv").open("w", newline="", encoding="utf-8") as file:
+        written = csv.DictWriter(file, [field.name for field in fields(Line)])
+        written.writeheader()
+        written.writerows(rows)
+    return Result(tuple(Line(**cast("dict[str, Any]", row)) for row in rows), engine)
+
+
+def _blocks(name: str) -> int:
+    """Count the bodies of a case."""
+    return sum(len(scene["blocks"]) for scene in scenes(name))
 
 
 def table(result: Result) -> str:
@@ -295,8 +348,8 @@ def table(result: Result) -> str:
     cases = len({line.case for line in result.lines})
     said.append(
         f"{cases} cases, {len(result.lines)} questions: limit off by at most "
-        f"{result.worst_error:.1e}; direct asked {result.asked} times, {result.false} false, "
-        f"{result.undecided} undecided"
+        f"{result.worst_error:.1e}; {result.engine} asked {result.asked} times, "
+        f"{result.false} false, {result.undecided} undecided, {result.refused} refused"
     )
     return "\n".join(said)
 

@@ -80,9 +80,20 @@ def test_bracket_holds_the_limit() -> None:
 
 @pytest.mark.parametrize("ratio", [0.99, 1.002])
 def test_few_thick_voussoirs_with_much_friction(ratio: float) -> None:
-    """Known limit: below its least thickness, joints slide too fast for its contacts."""
-    seen = observe(arch_at(ratio, 155, 3.0, 11).problem(3.0), "mujoco", moving=False)
-    assert seen.verdict is (Verdict.UNDECIDED if ratio < 1 else Verdict.STANDS)
+    """Known limit: below its least thickness joints slide too fast for its contacts.
+
+    There the last bit of the thickness decides whether they come to a motion that can be told.
+    What is said is never wrong.
+    """
+    arch = arch_at(ratio, 155, 3.0, 11)
+    wrong = Verdict.STANDS if ratio < 1 else Verdict.COLLAPSES
+    for eta in (arch.eta, math.nextafter(arch.eta, 0), math.nextafter(arch.eta, 1)):
+        seen = observe(replace(arch, eta=eta).problem(3.0), "mujoco", moving=False)
+        assert seen.verdict is not wrong
+    if ratio < 1:
+        # With a little less friction it is told.
+        other = observe(arch_at(ratio, 155, 2.5, 11).problem(2.5), "mujoco", moving=False)
+        assert other.verdict is Verdict.COLLAPSES
 
 
 def test_what_still_settles_is_no_collapse() -> None:

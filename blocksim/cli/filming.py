@@ -27,8 +27,8 @@ from blocksim.evidence.observation import conclude, hold
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
 
-FALL = 6.0
-"""Time recorded of a scenario, enough for a collapse to reach the ground [sqrt(r/g)]."""
+FALL = 12.0
+"""Time recorded of a scenario at most: it ends when the rubble lies still [sqrt(r/g)]."""
 HEIGHT = 720
 HEIGHTS = (180, 2160)
 SLOWEST = 1000.0

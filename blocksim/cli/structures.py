@@ -176,3 +176,15 @@ def say_recorded(out: Path, recording: Recording, unit: str) -> None:
         f"{recording.seconds(STANDARD_GRAVITY)[-1]:.2f} s, "
         f"moved {recording.displacement[-1]:.2g} {unit}, state {recording.state_hash}"
     )
+    kept = recording.quality
+    said: list[str] = []
+    if kept.penetration is not None:
+        said.append(f"blocks overlap by at most {kept.penetration:.1e} {unit}")
+    if kept.gain is not None:
+        said.append(
+            f"energy at most {kept.gain:.2%} of what fell above that at the release"
+            if kept.gain
+            else "energy never above that at the release"
+        )
+    if said:
+        say("  " + ", ".join(said))

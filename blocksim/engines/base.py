@@ -84,11 +84,14 @@ class Quality:
     residual : float or None
         Worst imbalance, penetration rate or complementarity in any step [g].
     penetration : float or None
-        Deepest overlap at the end of a joint, in units of the size.
+        Deepest overlap of two blocks, in units of the size.
+    gain : float or None
+        Most by which the energy was above that at the release, as a share of what fell.
     """
 
     residual: float | None = None
     penetration: float | None = None
+    gain: float | None = None
 
 
 class World(Protocol):

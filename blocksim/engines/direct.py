@@ -22,6 +22,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.version import __version__
 from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
+from blocksim.engines.energy import Balance, energy
 
 STEP = 0.01
 LONG, SLOW = 0.2, 5e-4
@@ -82,6 +83,7 @@ class Blocks:
         self._turning = any(load.point is not None for load in loads)
         self._free = problem.pull() / self._mass
         self._solution: Solution | None = None
+        self._balance = Balance(problem, self._poses)
         self._residual = self._penetration = 0.0
 
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
@@ -105,6 +107,7 @@ class Blocks:
             # A step that cannot be solved is the last: the blocks stay, the residual tells.
             if self._residual <= UNSOLVED:
                 self._move(whole / count)
+        self._balance.look(self._poses, self._velocities, self._velocities)
 
     def _move(self, step: float) -> None:
         self._looked = self._poses + step / 2 * self._velocities
@@ -147,7 +150,9 @@ class Blocks:
 
     def quality(self) -> Quality:
         """Tell how well contact and friction have been kept so far."""
-        return Quality(residual=self._residual, penetration=self._penetration)
+        return Quality(
+            residual=self._residual, penetration=self._penetration, gain=self._balance.gain
+        )
 
     @property
     def velocities(self) -> Array:
@@ -157,12 +162,7 @@ class Blocks:
     @property
     def energy(self) -> float:
         """Kinetic and potential energy, in mean weights times the size."""
-        kinetic = (self._mass * self._velocities**2).sum() / 2
-        pull = self._asked.pull(self._poses)
-        potential = -(pull[:, :2] * self._poses[:, :2]).sum()
-        # A force at a point does what its moment does about a block turned by a right angle.
-        turned = self._asked.pull(self._poses + np.array([0.0, 0.0, math.pi / 2]))
-        return float(kinetic + potential + turned[:, 2].sum())
+        return energy(self._asked, self._poses, self._velocities)
 
     def push(self, velocities: Array) -> None:
         """Set the velocities, shape (blocks, 3)."""

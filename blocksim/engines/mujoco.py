@@ -27,6 +27,7 @@ The plane is MuJoCo's x and y; a block has three degrees of freedom, x, y and ro
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,9 @@ from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Engine, Library, Quality, Settings
 from blocksim.engines.boxes import plate, uneven_depths
+from blocksim.engines.energy import Balance
 from blocksim.engines.faces import sides_of
+from blocksim.engines.solids import Solids
 
 library: Any = Library("mujoco")
 
@@ -72,6 +75,10 @@ LOOSE = 10.0
 HELD_RATIO, RATIO = 1e6, 1e4
 """How much harder friction is than pressure, in the onset test and in motion."""
 TOLERANCE = 1e-14
+RUBBLE_STEP, RUBBLE_PERIOD = 5e-4, 2.0
+"""MuJoCo's step once blocks may meet, and the period of contacts in such steps."""
+RUBBLE_SOFTNESS, RUBBLE_RATIO = 1e-3, 10.0
+"""How soft they are then, and how much harder friction is than pressure."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -99,6 +106,8 @@ class _Bodies:
         self._loaded = bool(problem.dead or (problem.live and problem.load))
         self._part = settings.step / settings.sweeps
         self._parts = settings.sweeps
+        self._step = settings.step
+        self._is_rubble, self._deepest = False, 0.0
         self._scatter, self._steady = 0.0, True
         self._model = _model(problem)
         self._state = library.MjData(self._model)
@@ -106,6 +115,7 @@ class _Bodies:
             [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
         )
         self._zero = np.zeros(self._places.size)
+        self._balance = Balance(problem, self._places)
         self._pull()
         self._softness, self._force = HARDEST, 1 / HARDEST
         self._choose(HOLD_STEP, LOOSE)
@@ -176,14 +186,44 @@ class _Bodies:
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; before they first do, contacts take up the weight again."""
-        if self._model.opt.timestep != self._part:
+        if not self._is_rubble and self._model.opt.timestep != self._part:
             self._choose(self._part, LOOSE)
             self._settle(SETTLING)
             self._zero = self._state.qpos.copy()
             self._choose(self._part, 0.0)
         for _ in range(steps):
+            if self._is_rubble:
+                self._tumble()
+                continue
             self._pull()
             library.mj_step(self._model, self._state, self._parts)
+            self._solids.update(self.poses())
+            if self._solids.loose:
+                self._make_solid()
+
+    @cached_property
+    def _solids(self) -> Solids:
+        return Solids(self._problem.assembly)
+
+    def _make_solid(self) -> None:
+        """Make blocks the bodies they are, with what they stand on and the floor."""
+        self._is_rubble = True
+        moved, velocities = self._state.qpos - self._zero, self._state.qvel.copy()
+        self._model = _rubble(self._problem, self._solids)
+        self._state = library.MjData(self._model)
+        self._state.qpos[:], self._state.qvel[:] = moved, velocities
+        self._zero = np.zeros_like(moved)
+
+    def _tumble(self) -> None:
+        """Take a step of blocks that meet."""
+        step = self._model.opt.timestep
+        self._pull()
+        library.mj_step(self._model, self._state, max(1, round(self._step / step)) - 1)
+        poses, before = self.poses(), self._state.qvel.reshape(-1, 3).copy()
+        library.mj_step(self._model, self._state)
+        self._balance.look(poses, before, self._state.qvel.reshape(-1, 3))
+        gaps = self._state.contact.dist
+        self._deepest = max(self._deepest, -float(gaps.min(initial=0.0)))
 
     def poses(self) -> Array:
         """Return centres of mass and rotations, less how far contacts had given way at rest."""
@@ -191,11 +231,14 @@ class _Bodies:
 
     def quality(self) -> Quality:
         """Tell how far accelerations held at rest were from steady."""
-        return Quality(residual=self._scatter if self._steady else math.inf)
+        residual = self._scatter if self._steady else math.inf
+        if not self._is_rubble:
+            return Quality(residual=residual)
+        return Quality(residual=residual, penetration=self._deepest, gain=self._balance.gain)
 
 
-def _model(problem: Problem) -> Any:
-    """Return a model of bodies that touch where the assembly has joints."""
+def _bodies(problem: Problem) -> tuple[Any, list[Any]]:
+    """Return a model of bodies that move in the plane, without shapes, and the bodies."""
     assembly, gravity = problem.assembly, problem.gravity
     size = assembly.size
     spec = library.MjSpec()
@@ -204,7 +247,6 @@ def _model(problem: Problem) -> Any:
     option.cone = library.mjtCone.mjCONE_ELLIPTIC
     option.solver = library.mjtSolver.mjSOL_NEWTON
     option.tolerance = TOLERANCE
-    option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
     # It would put all blocks back in silence where numbers overflow.
     option.disableflags |= library.mjtDisableBit.mjDSBL_AUTORESET
     bodies: list[Any] = []
@@ -224,7 +266,15 @@ def _model(problem: Problem) -> Any:
         body.add_joint(type=slide, axis=[0.0, 1.0, 0.0])
         body.add_joint(type=hinge, axis=[0.0, 0.0, 1.0])
         bodies.append(body)
-    centres = np.vstack([assembly.centres / size, np.zeros(2)])
+    return spec, bodies
+
+
+def _model(problem: Problem) -> Any:
+    """Return a model of bodies that touch where the assembly has joints."""
+    assembly = problem.assembly
+    spec, bodies = _bodies(problem)
+    spec.option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
+    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
     depth = np.append(uneven_depths(assembly), 2 * assembly.depths.max())
     for k, sides in enumerate(sides_of(assembly)):
         for side in sides:
@@ -247,6 +297,34 @@ def _model(problem: Problem) -> Any:
             condim=3,
             friction=[mu] * 2 + [0.0] * 3,
         )
+    return spec.compile()
+
+
+def _rubble(problem: Problem, solids: Solids) -> Any:
+    """Return a model of the blocks as they are, what they stand on and the floor."""
+    spec, bodies = _bodies(problem)
+    spec.option.timestep = RUBBLE_STEP
+    spec.option.impratio = RUBBLE_RATIO
+    look = {
+        "friction": [min(problem.mu, FRICTION_CAP), 0.0, 0.0],
+        "condim": 3,
+        "solref": [RUBBLE_PERIOD * RUBBLE_STEP, 1.0],
+        "solimp": [*[1 / (1 + RUBBLE_SOFTNESS)] * 2, 1.0, 0.5, 2.0],
+    }
+    owners = [bodies[index] for index, _ in solids.moving]
+    owners += [spec.worldbody] * (len(solids.fixed) - 1)
+    polygons = [polygon for _, polygon in solids.moving] + solids.fixed[:-1]
+    for index, (body, polygon) in enumerate(zip(owners, polygons, strict=True)):
+        points = [[x, y, z] for z in (-0.5, 0.5) for x, y in polygon.tolist()]
+        spec.add_mesh(name=f"mesh {index}", uservert=np.array(points).ravel())
+        body.add_geom(type=library.mjtGeom.mjGEOM_MESH, meshname=f"mesh {index}", **look)
+    level = float(solids.fixed[-1][:, 1].max())
+    half = math.sqrt(0.5)
+    spec.worldbody.add_geom(
+        type=library.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0], pos=[0.0, level, 0.0],
+        # Its normal is z, turned to y.
+        quat=[half, -half, 0.0, 0.0], **look,
+    )  # fmt: skip
     return spec.compile()
 
 

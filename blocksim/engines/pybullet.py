@@ -40,6 +40,7 @@ from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacem
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Library, Quality, Settings
 from blocksim.engines.boxes import Box, Frame, plate, snug, support_of, uneven_depths
+from blocksim.engines.energy import Balance
 from blocksim.engines.solids import Solids, smaller
 
 bullet: Any = Library("pybullet", quiet=True)
@@ -128,6 +129,19 @@ class Bodies:
         weakref.finalize(self, bullet.disconnect, self._client)
         reach = float(assembly.reach.max()) / assembly.size + float(assembly.depths.max()) / 2
         self._breaking = min(MOST_BREAKING, BREAKING * assembly.shortest / reach)
+        self._begin()
+        self._loaded = bool(problem.dead or (problem.live and problem.load))
+        self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
+        self._sides: dict[tuple[int, int], list[int]] = defaultdict(list)
+        self._is_rubble = False
+        self._bodies = self._build()
+        bullet.stepSimulation(physicsClientId=self._client)
+        self._deepest = self._overlap()
+        self._pull()
+        self._balance = Balance(problem, self.poses())
+
+    def _begin(self) -> None:
+        """Set what holds for all steps."""
         self._set(
             numSubSteps=0,
             contactSlop=OVERLAP,
@@ -137,18 +151,11 @@ class Bodies:
             deterministicOverlappingPairs=1,
             enableFileCaching=0,
         )
-        self._loaded = bool(problem.dead or (problem.live and problem.load))
-        self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
-        self._sides: dict[tuple[int, int], list[int]] = defaultdict(list)
-        self._is_rubble = False
-        self._bodies = self._build()
-        bullet.stepSimulation(physicsClientId=self._client)
-        contacts = bullet.getContactPoints(physicsClientId=self._client)
-        self._deepest = max((-contact[8] for contact in contacts), default=0.0)
-        bullet.setGravity(
-            *frame.vector(*problem.gravity.tolist()),
-            physicsClientId=self._client,
-        )
+
+    def _pull(self) -> None:
+        """Let gravity act."""
+        gravity = self._frame.vector(*self._problem.gravity.tolist())
+        bullet.setGravity(*gravity, physicsClientId=self._client)
 
     def _set(self, **parameters: float) -> None:
         # All spaces share one breaking threshold: each sets its own before it steps.
@@ -299,8 +306,10 @@ class Bodies:
             )
             for body in self._bodies
         ]
-        for body in {body for pair in self._sides for body in pair}:
-            bullet.removeBody(body, physicsClientId=self._client)
+        # Bodies removed would leave to others, by their numbers, what they may not touch.
+        bullet.resetSimulation(physicsClientId=self._client)
+        self._begin()
+        self._pull()
         self._sides.clear()
         assembly, friction = self._assembly, math.sqrt(min(self._problem.mu, MOST_FRICTION))
         for index, ((place, turn), (shift, spin)) in enumerate(states):
@@ -317,12 +326,11 @@ class Bodies:
             middle = polygon.mean(axis=0)
             shape = self._prism(polygon - middle, 2 * deep)
             self._add(shape, self._frame.place(middle), friction)
-        low, high = self._solids.fixed[-1].min(axis=0), self._solids.fixed[-1].max(axis=0)
-        half = [*((high - low) / 2).tolist(), float(high[0] - low[0]) / 2]
+        level = float(self._solids.fixed[-1][:, 1].max())
         floor = bullet.createCollisionShape(
-            bullet.GEOM_BOX, halfExtents=half, physicsClientId=self._client
+            bullet.GEOM_PLANE, planeNormal=[0.0, 1.0, 0.0], physicsClientId=self._client
         )
-        self._add(floor, self._frame.place((low + high) / 2), friction)
+        self._add(floor, self._frame.place(np.array([0.0, level])), friction)
 
     def _prism(self, outline: Array, depth: float) -> int:
         """Return the hull of a block, set back by the margin that Bullet adds to it."""
@@ -346,8 +354,17 @@ class Bodies:
             # Impulses of an impact, taken for those of rest, would throw blocks.
             warmStartingFactor=0,
         )
-        for _ in range(parts):
+        for _ in range(parts - 1):
             self._step()
+        poses, before = self.poses(), self._velocities()
+        self._step()
+        self._balance.look(poses, before, self._velocities())
+        self._deepest = max(self._deepest, self._overlap())
+
+    def _overlap(self) -> float:
+        """Return the deepest overlap of any two bodies."""
+        contacts = bullet.getContactPoints(physicsClientId=self._client)
+        return max((-contact[8] for contact in contacts), default=0.0)
 
     def _step(self) -> None:
         """Take a step under gravity and loads, which Bullet forgets after each."""
@@ -411,8 +428,9 @@ class Bodies:
         return joints[int(np.hypot(*off).min(axis=1).argmin())]
 
     def quality(self) -> Quality:
-        """Tell how deep blocks as built overlap; Bullet does not tell more."""
-        return Quality(penetration=self._deepest)
+        """Tell how deep blocks have overlapped, as built and once they meet others."""
+        gain = self._balance.gain if self._is_rubble else None
+        return Quality(penetration=self._deepest, gain=gain)
 
     def _velocities(self) -> Array:
         read = [

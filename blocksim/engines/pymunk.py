@@ -29,6 +29,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Engine, Library, Quality, Settings
+from blocksim.engines.energy import Balance
 from blocksim.engines.faces import Side, sides_of
 from blocksim.engines.solids import Solids, smaller, width
 
@@ -54,6 +55,8 @@ RUBBLE_SWEEPS, MOST_PARTS = 100, 100
 """Least sweeps, and most parts of a step, once blocks may meet."""
 ROUND = 0.005
 """Radius of the corners of blocks that meet, in units of their least width."""
+IMPACT = 10.0
+"""Acceleration from which a block has met something [g]."""
 HOLD_SWEEPS, LEAST_HOLD = 4000, 50_000
 """Most sweeps of the onset test for each pair of blocks, and at least."""
 SLENDER, SLENDEREST = 80, 2.5e-4
@@ -98,6 +101,8 @@ class _Space:
         self._polygons: dict[pymunk.Shape, int] = {}
         self._penetration = 0.0
         self._space, self._bodies = self._build()
+        self._balance = Balance(problem, self.poses())
+        self._last, self._rate = settings.step, np.zeros((len(self._bodies), 3))
 
     def _build(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
         """Put the blocks into a new space, without impulses."""
@@ -165,12 +170,12 @@ class _Space:
 
     def _part(self) -> None:
         """Give up joints that have come apart: their blocks are solid to each other."""
-        ended = set(self._solids.update(self.poses()).tolist())
-        if self._solids.loose and not self._polygons:
-            self._make_solid()
-        if not ended:
+        self._solids.update(self.poses())
+        holds = self._solids.holds
+        over = [shape for shape, (joint, *_) in self._shapes.items() if not holds[joint]]
+        if not over:
             return
-        over = [shape for shape, (joint, *_) in self._shapes.items() if joint in ended]
+        ended = {self._shapes[shape][0] for shape in over}
         self._space.remove(*over)
         for shape in over:
             del self._shapes[shape]
@@ -185,11 +190,11 @@ class _Space:
         # Positions are integrated first and at rest, so they never change here.
         self._space.iterations = sweeps
         self._step(self._settings.step)
-        rates = [(*body.velocity, body.angular_velocity) for body in self._bodies]
+        rates = self._velocities() / self._settings.step
         for body in self._bodies:
             body.velocity = (0.0, 0.0)
             body.angular_velocity = 0.0
-        return np.array(rates) / self._settings.step
+        return rates
 
     def begin(self, forces: Array) -> None:
         """Write the impulses of given forces into the contacts."""
@@ -206,20 +211,42 @@ class _Space:
     def advance(self, steps: int) -> None:
         """Let the blocks move, in parts of a step once they may meet."""
         for _ in range(steps):
-            self._part()
-            if not self._solids.loose:
-                self._space.iterations = self._settings.sweeps
-                self._step(self._settings.step)
+            if self._polygons:
+                self._part()
+                self._tumble()
                 continue
-            moved = np.array([(*b.velocity, b.angular_velocity) for b in self._bodies])
-            speed = float(displacement(moved, self._assembly)) + self._settings.step
-            parts = math.ceil(speed * self._settings.step / self._solids.largest)
-            parts = min(parts, MOST_PARTS)
-            self._space.iterations = max(RUBBLE_SWEEPS, self._settings.sweeps // parts)
-            for _ in range(parts):
-                self._forget()
-                self._step(self._settings.step / parts)
-            self._penetration = max(self._penetration, self._deepest())
+            self._space.iterations = self._settings.sweeps
+            self._solids.update(self.poses())
+            before = self._velocities() if self._solids.loose else None
+            self._step(self._settings.step)
+            if before is not None:
+                self._rate = (self._velocities() - before) / self._settings.step
+                self._make_solid()
+
+    def _tumble(self) -> None:
+        """Take a step of blocks that may meet, in parts."""
+        step, velocities = self._settings.step, self._velocities()
+        speed = float(displacement(velocities, self._assembly)) + step
+        parts = min(math.ceil(speed * step / self._solids.largest), MOST_PARTS)
+        part = step / parts
+        # Velocities are those half a step ahead: what has been gained by then is less now.
+        sudden = np.abs(self._rate).max(axis=1, keepdims=True) > IMPACT
+        velocities += np.where(sudden, 0.0, self._rate) * (part - self._last) / 2
+        for body, (x, y, turn) in zip(self._bodies, velocities.tolist(), strict=True):
+            body.velocity, body.angular_velocity = (x, y), turn
+        self._space.iterations = max(RUBBLE_SWEEPS, self._settings.sweeps // parts)
+        before = velocities
+        for _ in range(parts):
+            self._forget()
+            before = self._velocities()
+            self._step(part)
+        after = self._velocities()
+        self._balance.look(self.poses(), before, after)
+        self._last, self._rate = part, (after - before) / part
+        self._penetration = max(self._penetration, self._deepest())
+
+    def _velocities(self) -> Array:
+        return np.array([(*body.velocity, body.angular_velocity) for body in self._bodies])
 
     def _step(self, step: float) -> None:
         """Take a step under gravity and loads, which pymunk forgets after each."""
@@ -301,7 +328,9 @@ class _Space:
 
     def quality(self) -> Quality:
         """Tell how deep blocks that meet have overlapped; Chipmunk does not tell more."""
-        return Quality(penetration=self._penetration if self._polygons else None)
+        if not self._polygons:
+            return Quality()
+        return Quality(penetration=self._penetration, gain=self._balance.gain)
 
 
 ENGINE = Engine(

@@ -48,8 +48,9 @@ FRAME = 0.05
 """Time between frames."""
 SPARSE, UNMOVED = 4, 1e-5
 """Frames in one while nothing has moved by that; it may not have passed `EARLY` after them."""
-AT_REST = 20
-"""Frames without motion after which what has collapsed lies still."""
+AT_REST, UNSEEN = 40, 1e-3
+"""Frames in which what has collapsed moves by no more than that, which nobody sees: it lies
+still. Piles of impulse engines go on trembling by a tenth of it."""
 EARLY = 3e-4
 """Displacement at which the motion still is the collapse mechanism."""
 
@@ -165,7 +166,10 @@ def _lies_still(assembly: Assembly, poses: list[Array], moved: list[float]) -> b
     """Tell whether what has collapsed has come to rest."""
     if moved[-1] <= MOVED or len(poses) <= AT_REST:
         return False
-    return float(displacement(poses[-1] - poses[-1 - AT_REST], assembly)) < UNMOVED
+    return (
+        float(displacement(np.array(poses[-1 - AT_REST :]) - poses[-1], assembly).max())
+        < UNSEEN
+    )
 
 
 def _distrust(quality: Quality, settings: Settings, length: str) -> str:

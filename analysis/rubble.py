@@ -1,0 +1,293 @@
+"""Collapses to the ground: blocks stay solid, and nothing gives them energy.
+
+Question: what does an engine make of a collapse once blocks meet others, what they stand on and
+the floor? Twenty structures are drawn at random: arches below their least thickness, walls and
+columns on a table tilted beyond their limit, stacks that reach too far. Each is let go until
+the rubble lies still or `LONGEST` has passed. Measured from the recording's poses by a test of
+its own (separating axes of the true prisms, in space): the deepest overlap of any two bodies,
+in units of the least width of the block, and how far a corner is below the floor. From the
+engine: by how much the energy was above that at the release, as a share of what fell.
+
+    python -m analysis.rubble OUT [--engine direct|pymunk|pybullet|mujoco] [--count N]
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
+
+from analysis.command import run
+from analysis.saved_answers import Row, answers
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit import least_thickness
+from blocksim.ask.simulate import simulate
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.problem import Load, Problem
+from blocksim.engines import ENGINES
+from blocksim.engines.solids import Solids, width
+from blocksim.evidence.recording import Recording
+from blocksim.kinds.files import structure_of
+from blocksim.limit import collapse
+from blocksim.view.style import FONT
+
+SEED = 16
+COUNT = 20
+LONGEST = 15.0
+"""Time after which a run ends though something moves [sqrt(size/g)]."""
+ALLOWED, GAIN = 0.01, 1e-3
+"""What is demanded: overlap over the block's width, and energy gained over what fell."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A collapse by its number."""
+
+    number: int
+    kind: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """Headline numbers of an engine."""
+
+    engine: str
+    collapses: int
+    rested: int
+    overlap: float
+    own_overlap: float
+    gain: float
+    sunk: float
+    rise: float
+    solid: int
+    tame: int
+    cpu_s: float
+
+
+def cases(count: int) -> list[Case]:
+    """Name the structures, of each kind in turn."""
+    kinds = ("arch", "wall", "arch", "column", "stack")
+    return [Case(number, kinds[number % len(kinds)]) for number in range(count)]
+
+
+def drawn(case: Case) -> Problem:
+    """Draw a structure that falls."""
+    random = np.random.default_rng([SEED, case.number])
+    if case.kind == "arch":
+        least = None
+        while least is None:
+            half, mu = math.radians(random.uniform(60, 140)), random.uniform(0.6, 1.2)
+            count = int(random.integers(5, 22))
+            least = least_thickness(half, mu, count).eta
+        share = random.uniform(0.8, 0.97)
+        return Arch(half_angle=half, eta=share * least, voussoirs=count).problem(mu)
+    mu = random.uniform(0.55, 0.8)
+    if case.kind == "wall":
+        courses, long = int(random.integers(6, 10)), random.uniform(0.3, 0.5)
+        table = {
+            "courses": courses,
+            "length": 2 * long,
+            "block_length": long,
+            "block_height": random.uniform(0.7, 1.0) * long,
+        }
+    elif case.kind == "column":
+        table = {
+            "drums": int(random.integers(4, 9)),
+            "drum_height": random.uniform(0.5, 0.8),
+            "width": 1.0,
+            "top_width": random.uniform(0.6, 1.0),
+        }
+    else:
+        rows = int(random.integers(4, 10))
+        farthest = sum(1 / (2 * row) for row in range(1, rows + 1))
+        table = {"rows": rows, "overhang": random.uniform(1.02, 1.2) * farthest}
+    problem = structure_of({"kind": case.kind, "friction": mu, **table})
+    if case.kind == "stack":
+        return problem
+    sense = random.choice([-1.0, 1.0])
+    blocks = tuple(range(len(problem.assembly.blocks)))
+    across = Load(force=(sense, 0.0), blocks=blocks, per_weight=True)
+    found = collapse(replace(problem, live=(across,))).load_factor
+    return problem.tilted(sense * 1.1 * math.atan(found or 0.0))
+
+
+def ask(case: Case, engine: str) -> Row:
+    """Let one fall, and measure."""
+    problem = drawn(case)
+    started = time.process_time()
+    recording = simulate(problem, method=engine, duration=LONGEST)
+    cpu_s = time.process_time() - started
+    return {
+        "engine": engine,
+        "kind": case.kind,
+        "number": case.number,
+        "blocks": len(problem.assembly.blocks),
+        "ended": float(recording.times[-1]),
+        "rested": bool(recording.times[-1] < LONGEST - 0.1),
+        **measured(recording),
+        "own_overlap": recording.quality.penetration,
+        "gain": recording.quality.gain,
+        "cpu_s": round(cpu_s, 2),
+    }
+
+
+def measured(recording: Recording) -> dict[str, float]:
+    """Measure overlap, depth below the floor and rise, from poses alone."""
+    assembly, size = recording.assembly, recording.assembly.size
+    solids = Solids(assembly)
+    owner = [index for index, _ in solids.moving] + [SUPPORT] * len(solids.fixed)
+    flat = [polygon for _, polygon in solids.moving] + solids.fixed
+    deep = float(assembly.depths.max())
+    depths = [*(float(assembly.depths[index]) for index, _ in solids.moving)]
+    depths += [10 * deep] * (len(solids.fixed) - 1) + [100.0]
+    prisms = [Prism.of(each, depth) for each, depth in zip(flat, depths, strict=True)]
+    widths = [min(width(each), depth) for each, depth in zip(flat, depths, strict=True)]
+    level = float(solids.fixed[-1][:, 1].max())
+    overlap = sunk = 0.0
+    for pose in recording.poses:
+        placed = [
+            prism if body == SUPPORT else prism.at(pose[body])
+            for prism, body in zip(prisms, owner, strict=True)
+        ]
+        for one, other in itertools.combinations(range(len(placed)), 2):
+            if owner[one] == owner[other]:
+                continue
+            least = widths[one] if owner[other] == SUPPORT else min(widths[one], widths[other])
+            found = overlap_of(placed[one], placed[other], overlap * least)
+            overlap = max(overlap, found / least)
+        low = min(float(prism.corners[:, 1].min()) for prism in placed[: len(solids.moving)])
+        sunk = max(sunk, level - low)
+    up = -recording.problem.gravity[:2]
+    moved = recording.poses[:, :, :2] - recording.poses[0, :, :2]
+    return {"overlap": overlap, "sunk": sunk, "rise": float((moved @ up).max()), "size": size}
+
+
+@dataclass(frozen=True, eq=False)
+class Prism:
+    """Corners, normals of faces and directions of edges, in space."""
+
+    corners: Array
+    normals: Array
+    edges: Array
+
+    @classmethod
+    def of(cls, polygon: Array, depth: float) -> Prism:
+        """Make one of a polygon."""
+        count = len(polygon)
+        half = np.full((count, 1), depth / 2)
+        corners = np.vstack([np.hstack([polygon, half]), np.hstack([polygon, -half])])
+        edge = np.roll(polygon, -1, axis=0) - polygon
+        edge = edge[np.hypot(*edge.T) > 0]
+        edge = np.column_stack([edge / np.hypot(*edge.T)[:, None], np.zeros(len(edge))])
+        normals = np.column_stack([edge[:, 1], -edge[:, 0], edge[:, 2]])
+        beyond = np.array([[0.0, 0.0, 1.0]])
+        return cls(corners, np.vstack([normals, beyond]), np.vstack([edge, beyond]))
+
+    def at(self, pose: Array) -> Prism:
+        """Carry it to the pose of its block."""
+        space = np.zeros(6)
+        space[: len(pose)] = pose
+        turned = Rotation.from_rotvec(space[[4, 5, 2]])
+        place = space[[0, 1, PLANAR]]
+        corners = turned.apply(self.corners) + place
+        return Prism(corners, turned.apply(self.normals), turned.apply(self.edges))
+
+
+def overlap_of(one: Prism, other: Prism, least: float) -> float:
+    """Return by how much two prisms overlap at least along any axis; 0 if apart."""
+    first, second = one.corners, other.corners
+    inside = np.minimum(first.max(axis=0), second.max(axis=0))
+    inside -= np.maximum(first.min(axis=0), second.min(axis=0))
+    if inside.min() <= least:
+        return 0.0
+    cross = np.cross(one.edges[:, None], other.edges[None]).reshape(-1, 3)
+    long = np.linalg.norm(cross, axis=1)
+    cross = cross[long > 1e-6] / long[long > 1e-6, None]
+    axes = np.vstack([one.normals, other.normals, cross])
+    along, beyond = first @ axes.T, second @ axes.T
+    depth = np.minimum(
+        along.max(axis=0) - beyond.min(axis=0), beyond.max(axis=0) - along.min(axis=0)
+    )
+    return max(0.0, float(depth.min()))
+
+
+def main(
+    out: Path,
+    *,
+    quick: bool = False,
+    engine: str = "direct",
+    count: int = COUNT,
+    processes: int = 1,
+) -> Result:
+    """Let all fall, write rows and the figure of every engine with rows here."""
+    asked = cases(2 if quick else count)
+    rows = answers(
+        out / f"rubble_{engine}.jsonl", asked, partial(ask, engine=engine), processes
+    )
+    with (out / f"rubble_{engine}.csv").open("w", newline="", encoding="utf-8") as file:
+        written = csv.DictWriter(file, list(rows[0]))
+        written.writeheader()
+        written.writerows(rows)
+    _figure(out)
+
+    def worst(name: str) -> float:
+        return max(float(row[name] or 0) for row in rows)
+
+    return Result(
+        engine=engine,
+        collapses=len(rows),
+        rested=sum(bool(row["rested"]) for row in rows),
+        overlap=worst("overlap"),
+        own_overlap=worst("own_overlap"),
+        gain=worst("gain"),
+        sunk=worst("sunk"),
+        rise=worst("rise"),
+        solid=sum(float(row["overlap"] or 0) < ALLOWED for row in rows),
+        tame=sum(float(row["gain"] or 0) < GAIN for row in rows),
+        cpu_s=worst("cpu_s"),
+    )
+
+
+def _read(out: Path) -> Iterator[tuple[str, list[dict[str, str]]]]:
+    for engine in ENGINES:
+        path = out / f"rubble_{engine}.csv"
+        if path.exists():
+            with path.open(newline="", encoding="utf-8") as file:
+                yield engine, list(csv.DictReader(file))
+
+
+def _figure(out: Path) -> None:
+    """Draw overlap and energy of every collapse, a colour and a marker for each engine."""
+    with mpl.rc_context(FONT):
+        figure = Figure(figsize=(9, 3.6), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        for name, rows in _read(out):
+            look = {"color": ENGINES[name].colour, "marker": ENGINES[name].marker}
+            for axes, column in ((left, "overlap"), (right, "gain")):
+                found = [100 * max(float(row[column] or 0), 1e-8) for row in rows]
+                numbers = [int(row["number"]) + 1 for row in rows]
+                axes.semilogy(numbers, found, ls="none", ms=5, label=name, **look)
+        for axes, bound, title in (
+            (left, ALLOWED, "deepest overlap, of a block's width [%]"),
+            (right, GAIN, "energy gained, of what fell [%]"),
+        ):
+            axes.axhline(100 * bound, color="0.5", lw=0.8)
+            axes.set_title(title)
+            axes.set_xlabel("collapse")
+        handles, labels = left.get_legend_handles_labels()
+        figure.legend(handles, labels, frameon=False, ncols=4, loc="outside lower center")
+        figure.savefig(out / "rubble.png", dpi=150)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,79 @@
+"""Energy of blocks in motion, and how far it rises above that at the release."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array
+from blocksim.blocks.problem import Problem
+
+
+def energy(problem: Problem, poses: Array, velocities: Array) -> float:
+    """Return kinetic and potential energy, in mean weights times the size.
+
+    Parameters
+    ----------
+    problem : Problem
+    poses, velocities : (blocks, 3 or 6) float
+        Of a world; its columns.
+    """
+    return _kinetic(problem, poses, velocities) + _potential(problem, poses)
+
+
+def _kinetic(problem: Problem, poses: Array, velocities: Array) -> float:
+    if poses.shape[1] == PLANAR:
+        return float((problem.assembly.masses * velocities**2).sum() / 2)
+    masses = problem.assembly.spatial_masses
+    # Moments of inertia are about axes that turn with the blocks.
+    turned = Rotation.from_rotvec(poses[:, [4, 5, 2]]).inv()
+    spin = turned.apply(velocities[:, [4, 5, 2]])
+    moved = velocities.copy()
+    moved[:, [4, 5, 2]] = spin
+    return float((masses * moved**2).sum() / 2)
+
+
+def _potential(problem: Problem, poses: Array) -> float:
+    pull = problem.pull(poses)
+    potential = -float((pull[:, :2] * poses[:, :2]).sum())
+    if poses.shape[1] == SPATIAL:
+        potential -= float((pull[:, PLANAR] * poses[:, PLANAR]).sum())
+    # A force at a point does what its moment does about a block turned by a right angle.
+    quarter = np.zeros(poses.shape[1])
+    quarter[2] = math.pi / 2
+    return potential + float(problem.pull(poses + quarter)[:, 2].sum())
+
+
+class Balance:
+    """How far the energy has risen above that at the release.
+
+    Parameters
+    ----------
+    problem : Problem
+    poses : (blocks, 3 or 6) float
+        At the release.
+    """
+
+    def __init__(self, problem: Problem, poses: Array) -> None:
+        self._problem = problem
+        self._first = self._lowest = energy(problem, poses, np.zeros_like(poses))
+        self._gain = 0.0
+
+    def look(self, poses: Array, before: Array, after: Array) -> None:
+        """Take note of blocks at a place, with their velocities on the way to it and from it.
+
+        Engines of impulses move by velocities that are those halfway between two places.
+        At a place it is their mean, with which a block that falls keeps its energy.
+        """
+        moving = (before + after) / 2
+        self._gain = max(self._gain, energy(self._problem, poses, moving) - self._first)
+        still = energy(self._problem, poses, np.zeros_like(poses))
+        self._lowest = min(self._lowest, still)
+
+    @property
+    def gain(self) -> float:
+        """Most the energy has been above that at the release, as a share of what has fallen."""
+        fallen = self._first - self._lowest
+        return self._gain / fallen if fallen > 0 else 0.0
