@@ -104,12 +104,12 @@ def equilibrium(problem: Problem) -> Equilibrium:
     cones = _Cones(problem)
     # What all parts have in common comes last.
     common = csc_array(cones.balance @ cones.bounded[:, None])
-    found = _most(cones, common, -problem.pull().ravel(), (-TENSION, SPARE))
+    found = _most(cones, common, -cones.loads(problem.pull()), (-TENSION, SPARE))
     if found.x is None or not found.success:
         return Equilibrium(margin=-math.inf, forces=None, mechanism=None)
     margin = float(found.x[-1])
     if margin < -ROUND_OFF:
-        mechanism = _scaled(-np.asarray(found.eqlin.marginals), problem)
+        mechanism = _scaled(cones.rates(found))
         return Equilibrium(margin=margin, forces=None, mechanism=mechanism)
     parts = cones.polished(found.x[:-1] + margin * cones.bounded, problem.pull())
     return Equilibrium(margin=margin, forces=cones.forces(parts), mechanism=None)
@@ -132,7 +132,8 @@ def collapse(problem: Problem) -> Collapse:
     cones = _Cones(problem)
     live = sum((problem.of_load(load) for load in problem.live), np.zeros(cones.shape))
     dead = problem.with_load(0.0).pull()
-    found = _most(cones, csc_array(live.reshape(-1, 1)), -dead.ravel(), (None, None))
+    column = csc_array(cones.loads(live)[:, None])
+    found = _most(cones, column, -cones.loads(dead), (None, None))
     if found.status == UNBOUNDED:
         return Collapse(load_factor=math.inf, forces=None, mechanism=None)
     if found.x is None or not found.success:
@@ -140,7 +141,7 @@ def collapse(problem: Problem) -> Collapse:
     return Collapse(
         load_factor=float(found.x[-1]),
         forces=cones.forces(found.x[:-1]),
-        mechanism=_scaled(-np.asarray(found.eqlin.marginals), problem),
+        mechanism=_scaled(cones.rates(found)),
     )
 
 
@@ -173,9 +174,8 @@ UNBOUNDED = 3
 """Status by which `linprog` says that nothing limits the factor."""
 
 
-def _scaled(rates: Array, problem: Problem) -> Array:
+def _scaled(rates: Array) -> Array:
     """Rates of the blocks whose largest is 1."""
-    rates = rates.reshape(len(problem.assembly.blocks), PLANAR)
     largest = float(np.abs(rates).max())
     return rates / largest if largest > 0 else rates
 
@@ -191,6 +191,9 @@ class _Cones:
         assembly, joints = problem.assembly, problem.assembly.joint_arrays
         self._joints = len(assembly.joints)
         self.shape = (len(assembly.blocks), PLANAR)
+        # What nothing can turn (half a keystone on its plane) bears any moment.
+        self._ease = np.ones(self.shape)
+        self._ease[:, 2] = 1 / np.maximum(1.0, assembly.masses[:, 2])
         mu = np.repeat(problem.friction, 2)
         ends = np.arange(2 * self._joints)
         finite, rough = ends[np.isfinite(mu)], ends[(mu > 0) & np.isfinite(mu)]
@@ -220,9 +223,7 @@ class _Cones:
             arm = point - centres[mine]
             turn = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
             part = sign * np.column_stack([direction, turn])
-            # What nothing can turn (half a keystone on its plane) bears any moment.
-            part[:, 2] /= np.append(np.maximum(1.0, assembly.masses[:, 2]), 1.0)[mine]
-            part[mine == SUPPORT] = 0.0
+            part *= np.vstack([self._ease, np.zeros(PLANAR)])[mine]
             rows.append(PLANAR * np.maximum(mine, 0)[:, None] + np.arange(PLANAR))
             values.append(part)
         columns = np.repeat(np.arange(self.count), PLANAR)
@@ -242,9 +243,17 @@ class _Cones:
         """Parts press; what is tangential only may have any sign."""
         return [(0.0, None) if each else (None, None) for each in self.bounded]
 
+    def loads(self, pull: Array) -> Array:
+        """Return loads on the blocks as the balance has them, in one row."""
+        return (pull * self._ease).ravel()
+
+    def rates(self, found: Any) -> Array:
+        """Return the rates of the blocks that an answer has as its dual, (blocks, 3)."""
+        return -np.asarray(found.eqlin.marginals).reshape(self.shape) * self._ease
+
     def polished(self, parts: Array, pull: Array) -> Array:
         """Take away the imbalance the solver leaves, by the least change of what presses."""
-        left = -pull.ravel() - self.balance @ parts
+        left = -self.loads(pull) - self.balance @ parts
         held = np.flatnonzero((parts > 1.0) | (self.bounded == 0))
         if np.abs(left).max() < ROUND_OFF or not len(held):
             return parts
@@ -252,7 +261,7 @@ class _Cones:
         change = solve(self.balance[:, held], left, atol=1e-14, btol=1e-14)[0]
         better = parts.copy()
         better[held] += change
-        worst = np.abs(-pull.ravel() - self.balance @ better).max()
+        worst = np.abs(-self.loads(pull) - self.balance @ better).max()
         return better if worst < np.abs(left).max() else parts
 
     def forces(self, parts: Array) -> Array:
