@@ -4,3 +4,4 @@ from blocksim.limit.programme import Collapse as Collapse
 from blocksim.limit.programme import Equilibrium as Equilibrium
 from blocksim.limit.programme import collapse as collapse
 from blocksim.limit.programme import equilibrium as equilibrium
+from blocksim.limit.programme import settling as settling

@@ -145,6 +145,39 @@ def collapse(problem: Problem) -> Collapse:
     )
 
 
+def settling(problem: Problem, supports: Array) -> Array | None:
+    """Find how blocks at rest follow supports that begin to move.
+
+    Of the motions that no joint forbids it is the one that loses most potential energy; its
+    dual are the forces of equilibrium that do least work on the supports, as the least thrust
+    of an arch on spreading supports (Heyman 1966).
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane, at rest.
+    supports : (supports, 3) float
+        Velocities x, y of each support where it meets the origin of coordinates, and its
+        rate of rotation; lengths in units of the size.
+
+    Returns
+    -------
+    (blocks, 3) float or None
+        Velocities x, y and rotation of the blocks; None where there is no equilibrium.
+    """
+    cones = _Cones(problem)
+    solve: Any = linprog
+    found = solve(
+        cones.at_supports(supports),
+        A_eq=cones.balance,
+        b_eq=-cones.loads(problem.pull()),
+        bounds=cones.bounds,
+        method="highs",
+        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+    )
+    return cones.rates(found) if found.x is not None and found.success else None
+
+
 def _most(cones: _Cones, column: Any, right: Array, bounds: tuple[float | None, ...]) -> Any:
     """Make the factor on a column as large as the balance of forces allows."""
     # Of many joints the interior point is three to ten times faster, and as exact: its
@@ -213,7 +246,14 @@ class _Cones:
             self._normal[:, None] * joints.normal[self._joint]
             + self._tangent[:, None] * joints.tangent[self._joint]
         )
-        point = joints.ends.reshape(-1, 2)[self._end]
+        self._direction = direction
+        self._point = point = joints.ends.reshape(-1, 2)[self._end]
+        # Where each part meets a support: which, and in which sense it acts on it.
+        which = [-1 if each.support is None else each.support for each in assembly.joints]
+        self._support = np.array(which, dtype=np.int64)[self._joint]
+        on_after = (joints.after == SUPPORT)[self._joint]
+        on_before = (joints.before == SUPPORT)[self._joint]
+        self._sense = on_after.astype(np.float64) - on_before
         # The support comes last, as index -1 says, and is left out in the end.
         centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
         rows: list[NDArray[np.int64]] = []
@@ -246,6 +286,13 @@ class _Cones:
     def loads(self, pull: Array) -> Array:
         """Return loads on the blocks as the balance has them, in one row."""
         return (pull * self._ease).ravel()
+
+    def at_supports(self, velocities: Array) -> Array:
+        """Return at which rate each part works on supports that move, (parts,)."""
+        still = np.vstack([velocities, np.zeros(PLANAR)])[self._support]
+        x, y = self._point.T
+        way = np.column_stack([still[:, 0] - still[:, 2] * y, still[:, 1] + still[:, 2] * x])
+        return self._sense * (way * self._direction).sum(axis=1)
 
     def rates(self, found: Any) -> Array:
         """Return the rates of the blocks that an answer has as its dual, (blocks, 3)."""
