@@ -178,6 +178,40 @@ def settling(problem: Problem, supports: Array) -> Array | None:
     return cones.rates(found) if found.x is not None and found.success else None
 
 
+def falling(problem: Problem) -> Array | None:
+    """Find the motion that no joint forbids in which the loads do most work.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane, at rest.
+
+    Returns
+    -------
+    (blocks, 3) float or None
+        Velocities x, y (in units of the size) and rotation, each at most 1; None where the
+        loads do no work in any.
+    """
+    cones = _Cones(problem)
+    pull = cones.loads(problem.pull())
+    # Rates at contacts: what presses may part, what only rubs stays.
+    parts, rows = cones.bounded > 0, cones.balance.T.tocsr()
+    solve: Any = linprog
+    found = solve(
+        -pull,
+        A_ub=-rows[parts],
+        b_ub=np.zeros(int(parts.sum())),
+        A_eq=rows[~parts] if (~parts).any() else None,
+        b_eq=np.zeros(int((~parts).sum())) if (~parts).any() else None,
+        bounds=(-1.0, 1.0),
+        method="highs",
+        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+    )
+    if not found.success or -found.fun < ROUND_OFF:
+        return None
+    return np.asarray(found.x).reshape(cones.shape) * cones.ease
+
+
 def _most(cones: _Cones, column: Any, right: Array, bounds: tuple[float | None, ...]) -> Any:
     """Make the factor on a column as large as the balance of forces allows."""
     # Of many joints the interior point is three to ten times faster, and as exact: its
@@ -225,8 +259,8 @@ class _Cones:
         self._joints = len(assembly.joints)
         self.shape = (len(assembly.blocks), PLANAR)
         # What nothing can turn (half a keystone on its plane) bears any moment.
-        self._ease = np.ones(self.shape)
-        self._ease[:, 2] = 1 / np.maximum(1.0, assembly.masses[:, 2])
+        self.ease = np.ones(self.shape)
+        self.ease[:, 2] = 1 / np.maximum(1.0, assembly.masses[:, 2])
         mu = np.repeat(problem.friction, 2)
         ends = np.arange(2 * self._joints)
         finite, rough = ends[np.isfinite(mu)], ends[(mu > 0) & np.isfinite(mu)]
@@ -263,7 +297,7 @@ class _Cones:
             arm = point - centres[mine]
             turn = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
             part = sign * np.column_stack([direction, turn])
-            part *= np.vstack([self._ease, np.zeros(PLANAR)])[mine]
+            part *= np.vstack([self.ease, np.zeros(PLANAR)])[mine]
             rows.append(PLANAR * np.maximum(mine, 0)[:, None] + np.arange(PLANAR))
             values.append(part)
         columns = np.repeat(np.arange(self.count), PLANAR)
@@ -285,7 +319,7 @@ class _Cones:
 
     def loads(self, pull: Array) -> Array:
         """Return loads on the blocks as the balance has them, in one row."""
-        return (pull * self._ease).ravel()
+        return (pull * self.ease).ravel()
 
     def at_supports(self, velocities: Array) -> Array:
         """Return at which rate each part works on supports that move, (parts,)."""
@@ -296,7 +330,7 @@ class _Cones:
 
     def rates(self, found: Any) -> Array:
         """Return the rates of the blocks that an answer has as its dual, (blocks, 3)."""
-        return -np.asarray(found.eqlin.marginals).reshape(self.shape) * self._ease
+        return -np.asarray(found.eqlin.marginals).reshape(self.shape) * self.ease
 
     def polished(self, parts: Array, pull: Array) -> Array:
         """Take away the imbalance the solver leaves, by the least change of what presses."""
