@@ -144,11 +144,11 @@ def bracket(
     require(ranged, "within", f"{low:g} {high:g}", allowed)
     probe = family.at(low + GUESS * (high - low))
     chosen = choose(method, tol, problem=probe, settings=settings)
+    if family.spreading is not None and chosen.name not in {"limit", "direct"}:
+        raise InputError("method", chosen.name, "limit or direct: others move no supports")
     exact = family.exact() if probe.is_planar else None
     said = family.remark() if probe.is_planar else ""
     if family.spreading is not None:
-        if chosen.name not in {"limit", "direct"}:
-            raise InputError("method", chosen.name, "limit or direct: others move no supports")
         if chosen.is_static:
             found = _followed(family, family.spreading, exact)
         else:

@@ -221,6 +221,8 @@ _WORDS = {
     "moves": "a hinge closes and another opens",
     "snaps": "it falls and is caught",
     "collapse": "it falls",
+    "falls-slides": "it gives way, and a joint slides, which is not followed",
+    "falls-parts": "it gives way, and a joint parts, which is not followed",
     "slides": "a joint begins to slide, which is not followed",
     "parts": "a joint parts, which is not followed",
 }

@@ -36,7 +36,7 @@ SHUT = 1e-11
 """Overlap of a contact that is round-off [size]."""
 PUSH = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
 """How far beyond an event it is looked at, the first that tells [size]."""
-WAY = 2e-3
+WAY = 5e-3
 """Way of the fastest corner in one step of a fall [size]."""
 FALLEN = 0.2
 """Way in a fall after which nothing is expected to hold the blocks [size]."""
@@ -86,7 +86,8 @@ class Event:
     ----------
     what : str
         `hinges` form first, `moves`: one closes and another opens, `snaps`: the same by a fall
-        that is caught, `collapse`, `slides`, `parts`.
+        that is caught, `collapse`, `falls-slides` or `falls-parts`: a fall in which a joint
+        slides or parts, which is not followed to its end; `slides`, `parts`.
     before, after : Frame
         The same position, the hinges before and after it.
     """
@@ -111,8 +112,8 @@ class Path:
         From where they were built to the last position of rest.
     events : tuple of Event
     ends : str
-        `collapse`, `range` (the supports moved as far as asked), or `slides`, `parts`: what is
-        not followed.
+        `collapse`, `range` (the supports moved as far as asked), or `slides`, `parts`: what
+        joints would do at rest, which is not followed.
     """
 
     frames: tuple[Frame, ...]
@@ -163,8 +164,9 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
             if caught is None:
                 frames.append(before)
                 after = blocks.fallen or before
-                events.append(Event(what=lost or "collapse", before=before, after=after))
-                return Path(frames=tuple(frames), events=tuple(events), ends=lost or "collapse")
+                what = "collapse" if lost is None else f"falls-{lost}"
+                events.append(Event(what=what, before=before, after=after))
+                return Path(frames=tuple(frames), events=tuple(events), ends="collapse")
             at = caught
         frame, lost = blocks.follows(at)
         events.append(Event(what=lost or what, before=before, after=frame))
