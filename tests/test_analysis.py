@@ -54,6 +54,26 @@ def test_random_assemblies_fall_at_the_load_of_the_linear_programme(tmp_path: Pa
     assert (tmp_path / "random_assemblies.png").stat().st_size > 0
 
 
+def test_random_arches_of_every_kind_fall_where_limit_analysis_says(tmp_path: Path) -> None:
+    module = study("random_kinds")
+    result = module.main(tmp_path, quick=True)
+    assert (result.arches, result.right, result.false) == (14, 28, 0)
+    assert result.undecided == {}
+    assert min(result.over["thickness"], result.over["load"]) >= 5
+    with (tmp_path / "random_kinds.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {json.loads(row["arch"])["kind"] for row in rows} == set(module.ARCH_KINDS)
+    # The two questions stand on opposite sides, and a false or an open answer would be counted.
+    load, thick = next(
+        (a, b) for a in rows for b in rows if (a["over"], b["over"]) == ("load", "thickness")
+    )
+    assert (
+        (load["low"], load["high"]) == (thick["high"], thick["low"]) == ("stands", "collapses")
+    )
+    told = module.summary([{**load, "high": "stands"}, {**thick, "high": "undecided"}])
+    assert (told.right, told.false, len(told.undecided)) == (2, 1, 1)
+
+
 def test_wrong_forces_and_mechanisms_of_random_assemblies_would_be_seen() -> None:
     module = study("random_assemblies")
     problem = module.drawn(1).problem()

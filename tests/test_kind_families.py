@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from kind_cases import CATENARY, LEAST, PIERS
-from running import blocksim
+from running import inside as blocksim
 from structure_cases import case
 
 from blocksim import load_recording
@@ -19,6 +19,7 @@ from blocksim.ask.families import families_of, family_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds import KINDS
 from blocksim.kinds.files import structure_of, with_parameter
 
 MU = {"semicircle_40_mu315": 0.315, "semicircle_40_mu35": 0.35}
@@ -148,12 +149,12 @@ def test_what_slips_may_come_to_rest_again() -> None:
 
 def test_names_of_parameters_are_known() -> None:
     wall = structure_of({"kind": "wall", "friction": 0.7})
-    assert families_of(wall) == ("load", "tilt", "lean", "mu")
-    with pytest.raises(InputError, match="must be one of load, tilt, lean, mu"):
+    assert families_of(wall) == ("load", "tilt", "lean", "mu", "spread")
+    with pytest.raises(InputError, match="must be one of load, tilt, lean, mu, spread"):
         family_of(wall, "thickness")
     portal = structure_of({"kind": "portal", "friction": 0.7})
     with pytest.raises(
-        InputError, match=r"lean, mu, arch\.thickness, arch\.radius, pier_width"
+        InputError, match=r"lean, mu, spread, arch\.thickness, arch\.radius, pier_width"
     ):
         family_of(portal, "thickness")
 
@@ -196,3 +197,56 @@ def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
         f"blocksim: {path}: thickness = 9: must be above 0 and at most "
     )
     assert done.stderr.count("\n") == 1
+
+
+def test_a_kind_by_its_name() -> None:
+    """The same as the file that says so; parameters of a file can be changed."""
+    done = blocksim(
+        "bracket", "pointed-arch", "--mu", "inf", "--with", "voussoirs=60",
+        "--with", "radius=1.25", "--json",
+    )  # fmt: skip
+    want = case("pointed_e0_25")["expected"]["value"]
+    assert json.loads(done.stdout)["limit"] == pytest.approx(want, rel=1e-7)
+    thin = ("portal", "--mu", "0.7", "--with", "pier_width=1", "--with", "arch.thickness=0.1")
+    assert blocksim("check", *thin).returncode == 1
+    assert blocksim("check", *thin[:-1], "arch.thickness=0.12").returncode == 0
+    pushed = ("column", "--mu", "0.9", "--with", 'live=[{"body": [1, 0]}]', "--json")
+    factor = json.loads(blocksim("check", *pushed).stdout)["load_factor"]
+    assert factor == pytest.approx(1 / 3.6, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["pointed-arch"], "--mu is missing: must be given"),
+        (["pointed-arch", "--mu", "1", "--with", "radius"], "--with = 'radius': must be name="),
+        (
+            ["pointed-arch", "--mu", "1", "--with", "thickness=9"],
+            "--with = 'thickness=9': must be above 0 and at most 0.589409 m",
+        ),
+        (
+            ["column", "--mu", "1", "--with", "heigth=9"],
+            "--with = 'heigth=9': must be left out: a column has drums, ",
+        ),
+        (["column", "--mu", "1", "--alpha", "9"], "--alpha = 9.0: must be left out: "),
+        (["semicircle", "--with", "drums=9"], "--with = 'drums=9': must be left out: it is "),
+    ],
+)
+def test_wrong_options_of_kinds_are_named(given: list[str], said: str) -> None:
+    done = blocksim("check", *given)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"blocksim: {said}")
+    assert done.stderr.count("\n") == 1
+
+
+def test_kinds_are_listed() -> None:
+    """With what they are; and of one its parameters, their defaults and ranges."""
+    listed = blocksim("kinds").stdout
+    assert all(name in listed for name in KINDS)
+    rows = blocksim("kinds", "portal").stdout.splitlines()
+    width = next(row for row in rows if row.startswith("pier_width"))
+    assert "0.6" in width
+    assert "above 0 and at most 1e+06 m" in width
+    assert width.count("pier_width") == 2, "it may be bracketed over"
+    courses = next(row for row in rows if row.startswith("pier_courses"))
+    assert courses.count("pier_courses") == 1

@@ -179,6 +179,25 @@ def test_a_plank_on_a_wall(degrees: float, length: float, thick: float) -> None:
     assert not equilibrium(problem.with_friction(least * (1 - 1e-6))).exists
 
 
+def test_a_force_high_on_a_block_far_larger_than_the_others() -> None:
+    """It tips about its far corner, whatever else there is: 40 N times 5 m over 4 m."""
+    table = {
+        "friction": 10.0,
+        "size": 3.0,
+        "blocks": [
+            {**box("floor", -50, -1, 50, 0), "fixed": True},
+            box("large", 0, 0, 10, 4),
+            *(box(f"small {at}", 20 + at, 0, 20.5 + at, 0.1) for at in range(20)),
+        ],
+        "live": [{"block": "large", "force": [1, 0], "point": [5, 4]}],
+    }
+    found = collapse(structure_of(table))
+    assert found.load_factor == pytest.approx(50, rel=1e-9)
+    x, y, turn = found.mechanism[0]  # type: ignore[index]
+    # About the corner at 10, 0, which lies 5 m to the right of its centre and 2 m below it.
+    assert (x, y) == (pytest.approx(-2 / 3 * turn), pytest.approx(-5 / 3 * turn))
+
+
 def test_nothing_limits_a_block_pressed_down() -> None:
     table = {"friction": 0.5, "blocks": [FLOOR, box("1", 0, 0, 1, 1)]}
     problem = structure_of(table | {"live": [{"body": [0, -1]}]})

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from blocksim.ask.families import Family
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.ask.search import Answer, Bisection
+from blocksim.ask.spread import Spreading
 from blocksim.common.checks import is_number, require
+from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.observation import Held, Observation, conclude, hold
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
@@ -21,6 +23,8 @@ SURE = 1e-8
 """How far to both sides of its value limit analysis is asked again, relative."""
 FARTHEST = 1e3
 """How far from its first value a search goes, as a ratio."""
+FINEST_SPREAD = 1e-4
+"""Narrowest bracket over the motion of supports by `direct`, relative."""
 GUESS = 0.1
 """Share of the range at which a search begins where limit analysis gives no value."""
 
@@ -140,9 +144,16 @@ def bracket(
     require(ranged, "within", f"{low:g} {high:g}", allowed)
     probe = family.at(low + GUESS * (high - low))
     chosen = choose(method, tol, problem=probe, settings=settings)
+    if family.spreading is not None and chosen.name not in {"limit", "direct"}:
+        raise InputError("method", chosen.name, "limit or direct: others move no supports")
     exact = family.exact() if probe.is_planar else None
     said = family.remark() if probe.is_planar else ""
-    if chosen.is_static:
+    if family.spreading is not None:
+        if chosen.is_static:
+            found = _followed(family, family.spreading, exact)
+        else:
+            found = _slowly(family.spreading, tol, high, progress)
+    elif chosen.is_static:
         found = _by_limit(family, exact)
     else:
         known = exact and math.isfinite(exact) and low <= exact <= high
@@ -171,6 +182,32 @@ def bracket(
         undecided=found.undecided,
         reason=found.reason + said + given_words(settings) + chosen_words(method, chosen),
         wall_s=time.perf_counter() - started,
+    )
+
+
+def _followed(family: Family, spreading: Spreading, exact: float | None) -> Search:
+    """Follow the blocks until they fall, or as far as they can be followed."""
+    if exact is not None and math.isfinite(exact) and exact > 0:
+        return _by_limit(family, exact)
+    if spreading.path.ends == "collapse":
+        return Search(falls=0.0, runs=1, reason="no forces of equilibrium exist as built")
+    return Search(
+        stands=spreading.path.value,
+        runs=1,
+        reason=f"followed on the displaced blocks up to {spreading.path.value:.6g} m",
+    )
+
+
+def _slowly(spreading: Spreading, tol: float, highest: float, progress: Progress) -> Search:
+    """Move the supports slowly in `direct`, and stop them."""
+    seen = spreading.slowly(max(tol, FINEST_SPREAD), highest, progress)
+    way = "" if seen.solved else "; a step was not solved"
+    return Search(
+        falls=seen.high,
+        stands=seen.low,
+        confirmed=seen.solved,
+        runs=seen.runs,
+        reason=f"supports moved slowly, stopped {seen.runs} times: stays or falls{way}",
     )
 
 

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 from scipy.optimize import brentq
 
+from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Load, Problem
 from blocksim.common.errors import InputError
 from blocksim.kinds.files import kind_behind, with_parameter
@@ -49,6 +50,8 @@ class Family:
         range, inf where it stands at all values, 0 where it does down to the range's end.
     remark : callable
         What else limit analysis saw on the way, to be added to a reason.
+    spreading : Spreading or None
+        Where the parameter is the motion of supports.
     """
 
     name: str
@@ -59,6 +62,7 @@ class Family:
     stands: Stands
     exact: Callable[[], float | None]
     remark: Callable[[], str] = str
+    spreading: Spreading | None = None
 
 
 def family_of(problem: Problem, over: str) -> Family:
@@ -158,11 +162,27 @@ def _over_mu(problem: Problem) -> Family:
     )
 
 
+def _over_spread(problem: Problem) -> Family:
+    spreading = Spreading(problem)
+    return Family(
+        name="spread",
+        unit="m",
+        at=spreading.at,
+        low=0.0,
+        high=spreading.farthest,
+        stands="low",
+        exact=lambda: spreading.exact,
+        remark=lambda: spreading.words,
+        spreading=spreading,
+    )
+
+
 FAMILIES: dict[str, Callable[[Problem], Family]] = {
     "load": _over_load,
     "tilt": _over_tilt,
     "lean": _over_lean,
     "mu": _over_mu,
+    "spread": _over_spread,
 }
 
 

@@ -77,12 +77,18 @@ class LoadEntry:
 
 @dataclass(frozen=True, kw_only=True)
 class MoveEntry:
-    """Entry of `move`: how a fixed block moves, in m times the parameter."""
+    """Entry of `move`: how a fixed block moves as the parameter [m] grows.
+
+    `direction` is its way over the parameter, `turn_deg` its rotation [deg/m],
+    counter-clockwise about a point, by default the middle of its corners.
+    """
 
     __pydantic_config__: ClassVar = _FORBID
 
     block: Id
-    direction: Point
+    direction: Point | None = None
+    turn_deg: Number = 0.0
+    about: Point | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -55,14 +55,21 @@ class Move:
     support : int
     direction : (2,) float
         Way of the support over the parameter, which is in metres.
+    turn : float
+        Rotation over the parameter [rad/m], counter-clockwise.
+    about : (2,) float
+        Point of the support about which it turns [m].
     """
 
     support: int
     direction: Array
+    turn: float = 0.0
+    about: Array = field(default_factory=lambda: np.zeros(2))
 
     def __post_init__(self) -> None:
-        """Make the array read-only."""
+        """Make the arrays read-only."""
         object.__setattr__(self, "direction", frozen(self.direction, (2,)))
+        object.__setattr__(self, "about", frozen(self.about, (2,)))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -183,7 +183,20 @@ def problem_of(
     for at, move in enumerate(written.move):
         place = body_of(move.block, f"move[{at}].block")
         require(fixed[place], f"move[{at}].block", move.block, "a fixed block")
-        moves.append(Move(support=int(bed[place]), direction=np.array(move.direction)))
+        if move.direction is None and move.turn_deg == 0:
+            raise InputError(f"move[{at}].direction", MISSING, "given")
+        corners = np.concatenate(bodies[place].polygons)
+        about = corners.mean(axis=0) if move.about is None else np.array(move.about)
+        once = all(each.support != bed[place] for each in moves)
+        require(once, f"move[{at}].block", move.block, "named once in move")
+        moves.append(
+            Move(
+                support=int(bed[place]),
+                direction=np.array(move.direction or (0.0, 0.0)),
+                turn=math.radians(move.turn_deg),
+                about=about,
+            )
+        )
     mu = _friction(written.friction)
     own = {joint.friction for joint in assembly.joints}
     if len(own) == 1 and own != {None}:
@@ -298,7 +311,12 @@ def structure_record(problem: Problem) -> dict[str, Any]:
         ],
         "live": [each for load in problem.live for each in _load_record(load, names)],
         "move": [
-            {"block": beds[move.support], "direction": move.direction.tolist()}
+            {
+                "block": beds[move.support],
+                "direction": move.direction.tolist(),
+                "turn_deg": math.degrees(move.turn),
+                "about": move.about.tolist(),
+            }
             for move in problem.moves
         ],
     }

@@ -49,6 +49,7 @@ from blocksim.cli.options import (
     Tilt,
     Voussoirs,
     WeightOption,
+    With,
     Within,
     arch_of,
     named_options,
@@ -87,6 +88,7 @@ LONGEST_RECORDING = 600.0
 @app.command()
 def check(
     scene: Scene = None,
+    parameters: With = None,
     alpha: Alpha = None,
     eta: Eta = None,
     ratio: Ratio = None,
@@ -105,7 +107,7 @@ def check(
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
     given = Given(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean,
+        depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
     loading = Loading(load=load, tilt=tilt)
     if scene is not None and is_structure(scene):
@@ -136,6 +138,7 @@ def check(
 @app.command()
 def bracket(
     scene: Scene = None,
+    parameters: With = None,
     alpha: Alpha = None,
     mu: Mu = None,
     voussoirs: Voussoirs = None,
@@ -157,7 +160,7 @@ def bracket(
     """Find the value of a parameter from which on it falls: how thin an arch can be."""
     given = Given(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean,
+        depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
     loading = Loading(load=load, tilt=tilt)
     if is_structure(scene) or over not in {None, THICKNESS}:
@@ -197,6 +200,7 @@ def simulate(
         Path | None, typer.Option(help="Recording to write, .npz; required.")
     ] = None,
     scene: Scene = None,
+    parameters: With = None,
     alpha: Alpha = None,
     eta: Eta = None,
     ratio: Ratio = None,
@@ -218,7 +222,7 @@ def simulate(
     """Let it go and record its motion."""
     given = Given(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean,
+        depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
     loading = Loading(load=load, tilt=tilt)
     if scene is not None and is_structure(scene):
@@ -246,8 +250,10 @@ def render(
         typer.Option(help="File to write: .mp4, .gif, .png, .svg or .pdf; required."),
     ] = None,
     scene: Annotated[
-        str | None, typer.Argument(help="Scenario, or a recording: an .npz file.")
+        str | None,
+        typer.Argument(help="Scenario, structure, or a recording: an .npz file."),
     ] = None,
+    parameters: With = None,
     alpha: Alpha = None,
     eta: Eta = None,
     ratio: Ratio = None,
@@ -275,7 +281,7 @@ def render(
     """
     given = Given(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean,
+        depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
     loading = Loading(load=load, tilt=tilt)
     if scene is None:

@@ -104,7 +104,8 @@ def recordings(
     if scene is not None and scene.endswith(".npz"):
         said = {**asdict(given), **asdict(loading), "method": method}
         for name, value in said.items():
-            require(value is None, f"--{name}", value, "left out: the recording says it")
+            option = "with" if name == "parameters" else name
+            require(value is None, f"--{option}", value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
     if scene is not None and is_structure(scene):
         problem = structure(scene, given, loading)

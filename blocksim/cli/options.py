@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -24,7 +25,8 @@ from blocksim.evidence.verdict import Verdict
 Scene = Annotated[
     str | None,
     typer.Argument(
-        help="Scenario of an arch, a .toml file or a shipped name; or a file of blocks, .json."
+        help="Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
+        ".json or .toml, or the name of a kind (blocksim kinds)."
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
@@ -75,6 +77,14 @@ Set = Annotated[
         help=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
     ),
 ]
+With = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--with",
+        metavar="NAME=VALUE",
+        help="Parameter of a kind of structure (blocksim kinds NAME lists them); repeatable.",
+    ),
+]
 Reduce = Annotated[
     bool,
     typer.Option("--reduce", help="Simulate half the arch, in no more blocks than it takes."),
@@ -109,7 +119,10 @@ ASIDE = 0.99
 
 @dataclass(frozen=True, kw_only=True)
 class Given:
-    """The options that describe an arch, as given; None where they are not."""
+    """The options that say what is built, as given; None where they are not.
+
+    All but `parameters`, of a kind, and `mu` and `lean` are of symmetric circular arches.
+    """
 
     alpha: float | None = None
     eta: float | None = None
@@ -119,11 +132,12 @@ class Given:
     weight: str | None = None
     depth: float | None = None
     lean: float | None = None
+    parameters: list[str] | None = None
 
     @property
     def of_arches(self) -> dict[str, object]:
         """Those that say how an arch is built."""
-        others = {"mu", "lean"}
+        others = {"mu", "lean", "parameters"}
         return {name: each for name, each in asdict(self).items() if name not in others}
 
 
@@ -154,6 +168,8 @@ def question(
         thickness = {"eta": eta} if thick else {}
         require_given(**needed, alpha=given.alpha, mu=given.mu, **thickness)
     require_given(**needed)
+    no_kind = "left out: it is for kinds of structures"
+    require(given.parameters is None, "--with", " ".join(given.parameters or ()), no_kind)
     alpha, lean, depth = given.alpha, given.lean, given.depth
     if alpha is not None:
         ok = is_number(alpha, 0, math.nextafter(180, 0))
@@ -208,6 +224,20 @@ def thickness_words(asked: Scenario, ratio: float | None) -> str:
     if asked.eta is not None or ratio is not None:
         return ""
     return f"; no thickness was given, so it is {ASIDE:g} of the least as built"
+
+
+def parameters_of(given: list[str] | None) -> dict[str, object]:
+    """Read what `--with` gives: numbers, words, or JSON."""
+    found: dict[str, object] = {}
+    for each in given or ():
+        name, equals, value = each.partition("=")
+        ok = bool(name and equals and value) and name != "kind"
+        require(ok, "--with", each, "name=value, with a parameter of the kind")
+        try:
+            found[name] = json.loads(value)
+        except ValueError:
+            found[name] = value
+    return found
 
 
 def settings_of(given: list[str] | None) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Structures on the command line: files of blocks, asked the same questions as arches."""
+"""Structures on the command line: files, or kinds by name, asked the same as arches."""
 
 from __future__ import annotations
 
@@ -15,12 +15,20 @@ from blocksim.ask.families import families_of, family_of
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.console import answer_with, progress, save_picture, say
-from blocksim.cli.options import EXIT_CODES, Given, named_options, settings_of
+from blocksim.cli.options import (
+    EXIT_CODES,
+    Given,
+    named_options,
+    parameters_of,
+    require_given,
+    settings_of,
+)
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_place
 from blocksim.evidence.recording import Recording
-from blocksim.kinds.files import load_structure
+from blocksim.kinds import KINDS
+from blocksim.kinds.files import changed, load_structure, structure_of
 from blocksim.report.structures import (
     bracket_lines,
     bracket_record,
@@ -48,7 +56,9 @@ class Loading:
 
 
 def is_structure(scene: str | None) -> bool:
-    """Tell a file of blocks from a scenario of an arch: by its name, or by what is in it."""
+    """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
+    if scene in KINDS:
+        return True
     if scene is None or not scene.endswith((".json", ".toml")):
         return False
     if scene.endswith(".json"):
@@ -64,7 +74,7 @@ def is_structure(scene: str | None) -> bool:
 
 
 def structure(scene: str, given: Given, loading: Loading) -> Problem:
-    """Read a structure and put on it what the options say.
+    """Read or make a structure and put on it what the options say.
 
     Raises
     ------
@@ -72,8 +82,22 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
         If the file cannot be used, or an option is one of arches only.
     """
     for name, value in given.of_arches.items():
-        require(value is None, f"--{name}", value, "left out: the file says what is built")
-    return loaded(load_structure(scene), given, loading)
+        allowed = "left out: the file or --with says what is built"
+        require(value is None, f"--{name}", value, allowed)
+    changes = parameters_of(given.parameters)
+    try:
+        if scene in KINDS:
+            require_given(mu=given.mu)
+            # Friction is put on with the loads.
+            built = structure_of(changed({"kind": scene, "friction": 0.0}, changes))
+        else:
+            built = load_structure(scene, changes)
+    except InputError as error:
+        name = error.field.partition("[")[0]
+        if name not in changes:
+            raise
+        raise InputError("--with", f"{error.field}={error.value}", error.allowed) from None
+    return loaded(built, given, loading)
 
 
 def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:

@@ -32,6 +32,8 @@ from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import make_folder
 from blocksim.engines import ENGINES
+from blocksim.kinds import KINDS
+from blocksim.kinds.base import parameters_of
 from blocksim.studies.chart import cases, measure
 from blocksim.studies.validate import USUAL, scenarios, unasked
 from blocksim.studies.validate import validate as run_validation
@@ -158,6 +160,31 @@ def list_scenarios() -> None:
         eta = "-" if each.eta is None else f"{each.eta:g}"
         numbers = f"{math.degrees(each.half_angle):g}", f"{each.mu:.4g}", str(each.voussoirs)
         table.add_row(name, *numbers, eta, each.title, each.source)
+    show(table)
+
+
+@app.command(name="kinds")
+def list_kinds(
+    name: Annotated[
+        str | None, typer.Argument(help="One of them, whose parameters are to be listed.")
+    ] = None,
+) -> None:
+    """List the kinds of structures, or the parameters of one."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    if name is None:
+        for heading in ("kind", "what it is", "parameters"):
+            table.add_column(heading)
+        for kind in KINDS.values():
+            table.add_row(kind.name, kind.about, ", ".join(parameters_of(kind)))
+        show(table)
+        return
+    require(name in KINDS, "kind", name, f"one of {', '.join(KINDS)}")
+    for heading in ("parameter", "if left out", "may be", "what it is", "--over"):
+        table.add_column(heading)
+    usual = KINDS[name]()
+    for each, known in parameters_of(KINDS[name]).items():
+        over = ", ".join(over for over in usual.bracketed if over.partition(".")[0] == each)
+        table.add_row(each, *known.words(getattr(usual, each)), known.about, over)
     show(table)
 
 

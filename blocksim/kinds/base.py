@@ -83,6 +83,15 @@ class Parameter:
             ok = ok and (not self.whole or value == int(cast(float, value)))
             require(ok, name, value, allowed)
 
+    def words(self, value: object) -> tuple[str, str]:
+        """Say a value and which ones there may be, for tables."""
+        if self.table:
+            return cast(Kind, value).name, "a table with a kind of arch"
+        if self.tables:
+            return "none", "a list of tables"
+        said = f"{value:g}" if isinstance(value, float) else str(value)
+        return said.lower(), self.allowed(self.low, self.high, self.above)
+
     def allowed(self, low: float, high: float, above: bool) -> str:
         """Say which values it may have."""
         if self.choices:
@@ -290,7 +299,9 @@ def _table_of(
         if known.table:
             require(isinstance(value, Mapping), where, value, "a table with a kind of arch")
             arches = [each for each in kinds if each.is_arch]
-            given[key] = kind_of(cast("Mapping[str, Any]", value), arches, f"{where}.")
+            usual = {"kind": getattr(chosen, key).name}
+            table = {**usual, **cast("Mapping[str, Any]", value)}
+            given[key] = kind_of(table, arches, f"{where}.")
         elif known.tables:
             require(isinstance(value, list | tuple), where, value, "a list of tables")
             row = cast("type[Kind]", chosen).row_types[key]

@@ -11,6 +11,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, cast
 
 import numpy as np
@@ -31,13 +32,17 @@ LARGEST_FILE = 50_000_000
 """Bytes; a larger file is not read."""
 
 
-def load_structure(path: Path | str) -> Problem:
+def load_structure(
+    path: Path | str, changes: Mapping[str, object] = MappingProxyType({})
+) -> Problem:
     """Read a structure file.
 
     Parameters
     ----------
     path : Path or str
         Ends in .json or .toml.
+    changes : mapping of str to object
+        Parameters of its kind instead of those it says; `arch.thickness`: of its arch.
 
     Raises
     ------
@@ -56,13 +61,33 @@ def load_structure(path: Path | str) -> Problem:
             if written == "JSON"
             else tomllib.loads(text)
         )
-        return structure_of(data)
+        return structure_of(changed(data, changes) if changes else data)
     except InputError as error:
         raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
     except (ValueError, RecursionError) as error:
         # Not JSON or TOML, no UTF-8, numbers beyond all bounds, or nested too deeply.
         said = " ".join(str(error).split())
         raise InputError("file", said, f"valid {written}", where=str(path)) from None
+
+
+def changed(data: object, changes: Mapping[str, object]) -> dict[str, Any]:
+    """Return the table of a kind with other parameters.
+
+    Raises
+    ------
+    InputError
+        If it is of no kind.
+    """
+    kind = data.get("kind") if isinstance(data, dict) else None  # pyright: ignore
+    name, value = next(iter(changes.items()))
+    require(kind is not None, name, value, "left out: the file has blocks, not a kind")
+    table = {**cast("dict[str, Any]", data)}
+    for name, value in changes.items():
+        here, _, rest = name.partition(".")
+        inside = table.get(here)
+        nested = bool(rest) and isinstance(inside, Mapping | None)
+        table[here] = {**(inside or {}), rest: value} if nested else value
+    return table
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -104,12 +104,12 @@ def equilibrium(problem: Problem) -> Equilibrium:
     cones = _Cones(problem)
     # What all parts have in common comes last.
     common = csc_array(cones.balance @ cones.bounded[:, None])
-    found = _most(cones, common, -problem.pull().ravel(), (-TENSION, SPARE))
+    found = _most(cones, common, -cones.loads(problem.pull()), (-TENSION, SPARE))
     if found.x is None or not found.success:
         return Equilibrium(margin=-math.inf, forces=None, mechanism=None)
     margin = float(found.x[-1])
     if margin < -ROUND_OFF:
-        mechanism = _scaled(-np.asarray(found.eqlin.marginals), problem)
+        mechanism = _scaled(cones.rates(found))
         return Equilibrium(margin=margin, forces=None, mechanism=mechanism)
     parts = cones.polished(found.x[:-1] + margin * cones.bounded, problem.pull())
     return Equilibrium(margin=margin, forces=cones.forces(parts), mechanism=None)
@@ -132,7 +132,8 @@ def collapse(problem: Problem) -> Collapse:
     cones = _Cones(problem)
     live = sum((problem.of_load(load) for load in problem.live), np.zeros(cones.shape))
     dead = problem.with_load(0.0).pull()
-    found = _most(cones, csc_array(live.reshape(-1, 1)), -dead.ravel(), (None, None))
+    column = csc_array(cones.loads(live)[:, None])
+    found = _most(cones, column, -cones.loads(dead), (None, None))
     if found.status == UNBOUNDED:
         return Collapse(load_factor=math.inf, forces=None, mechanism=None)
     if found.x is None or not found.success:
@@ -140,8 +141,75 @@ def collapse(problem: Problem) -> Collapse:
     return Collapse(
         load_factor=float(found.x[-1]),
         forces=cones.forces(found.x[:-1]),
-        mechanism=_scaled(-np.asarray(found.eqlin.marginals), problem),
+        mechanism=_scaled(cones.rates(found)),
     )
+
+
+def settling(problem: Problem, supports: Array) -> Array | None:
+    """Find how blocks at rest follow supports that begin to move.
+
+    Of the motions that no joint forbids it is the one that loses most potential energy; its
+    dual are the forces of equilibrium that do least work on the supports, as the least thrust
+    of an arch on spreading supports (Heyman 1966).
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane, at rest.
+    supports : (supports, 3) float
+        Velocities x, y of each support where it meets the origin of coordinates, and its
+        rate of rotation; lengths in units of the size.
+
+    Returns
+    -------
+    (blocks, 3) float or None
+        Velocities x, y and rotation of the blocks; None where there is no equilibrium.
+    """
+    cones = _Cones(problem)
+    solve: Any = linprog
+    found = solve(
+        cones.at_supports(supports),
+        A_eq=cones.balance,
+        b_eq=-cones.loads(problem.pull()),
+        bounds=cones.bounds,
+        method="highs",
+        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+    )
+    return cones.rates(found) if found.x is not None and found.success else None
+
+
+def falling(problem: Problem) -> Array | None:
+    """Find the motion that no joint forbids in which the loads do most work.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane, at rest.
+
+    Returns
+    -------
+    (blocks, 3) float or None
+        Velocities x, y (in units of the size) and rotation, each at most 1; None where the
+        loads do no work in any.
+    """
+    cones = _Cones(problem)
+    pull = cones.loads(problem.pull())
+    # Rates at contacts: what presses may part, what only rubs stays.
+    parts, rows = cones.bounded > 0, cones.balance.T.tocsr()
+    solve: Any = linprog
+    found = solve(
+        -pull,
+        A_ub=-rows[parts],
+        b_ub=np.zeros(int(parts.sum())),
+        A_eq=rows[~parts] if (~parts).any() else None,
+        b_eq=np.zeros(int((~parts).sum())) if (~parts).any() else None,
+        bounds=(-1.0, 1.0),
+        method="highs",
+        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+    )
+    if not found.success or -found.fun < ROUND_OFF:
+        return None
+    return np.asarray(found.x).reshape(cones.shape) * cones.ease
 
 
 def _most(cones: _Cones, column: Any, right: Array, bounds: tuple[float | None, ...]) -> Any:
@@ -173,9 +241,8 @@ UNBOUNDED = 3
 """Status by which `linprog` says that nothing limits the factor."""
 
 
-def _scaled(rates: Array, problem: Problem) -> Array:
+def _scaled(rates: Array) -> Array:
     """Rates of the blocks whose largest is 1."""
-    rates = rates.reshape(len(problem.assembly.blocks), PLANAR)
     largest = float(np.abs(rates).max())
     return rates / largest if largest > 0 else rates
 
@@ -191,6 +258,9 @@ class _Cones:
         assembly, joints = problem.assembly, problem.assembly.joint_arrays
         self._joints = len(assembly.joints)
         self.shape = (len(assembly.blocks), PLANAR)
+        # What nothing can turn (half a keystone on its plane) bears any moment.
+        self.ease = np.ones(self.shape)
+        self.ease[:, 2] = 1 / np.maximum(1.0, assembly.masses[:, 2])
         mu = np.repeat(problem.friction, 2)
         ends = np.arange(2 * self._joints)
         finite, rough = ends[np.isfinite(mu)], ends[(mu > 0) & np.isfinite(mu)]
@@ -210,7 +280,14 @@ class _Cones:
             self._normal[:, None] * joints.normal[self._joint]
             + self._tangent[:, None] * joints.tangent[self._joint]
         )
-        point = joints.ends.reshape(-1, 2)[self._end]
+        self._direction = direction
+        self._point = point = joints.ends.reshape(-1, 2)[self._end]
+        # Where each part meets a support: which, and in which sense it acts on it.
+        which = [-1 if each.support is None else each.support for each in assembly.joints]
+        self._support = np.array(which, dtype=np.int64)[self._joint]
+        on_after = (joints.after == SUPPORT)[self._joint]
+        on_before = (joints.before == SUPPORT)[self._joint]
+        self._sense = on_after.astype(np.float64) - on_before
         # The support comes last, as index -1 says, and is left out in the end.
         centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
         rows: list[NDArray[np.int64]] = []
@@ -220,9 +297,7 @@ class _Cones:
             arm = point - centres[mine]
             turn = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
             part = sign * np.column_stack([direction, turn])
-            # What nothing can turn (half a keystone on its plane) bears any moment.
-            part[:, 2] /= np.append(np.maximum(1.0, assembly.masses[:, 2]), 1.0)[mine]
-            part[mine == SUPPORT] = 0.0
+            part *= np.vstack([self.ease, np.zeros(PLANAR)])[mine]
             rows.append(PLANAR * np.maximum(mine, 0)[:, None] + np.arange(PLANAR))
             values.append(part)
         columns = np.repeat(np.arange(self.count), PLANAR)
@@ -242,9 +317,24 @@ class _Cones:
         """Parts press; what is tangential only may have any sign."""
         return [(0.0, None) if each else (None, None) for each in self.bounded]
 
+    def loads(self, pull: Array) -> Array:
+        """Return loads on the blocks as the balance has them, in one row."""
+        return (pull * self.ease).ravel()
+
+    def at_supports(self, velocities: Array) -> Array:
+        """Return at which rate each part works on supports that move, (parts,)."""
+        still = np.vstack([velocities, np.zeros(PLANAR)])[self._support]
+        x, y = self._point.T
+        way = np.column_stack([still[:, 0] - still[:, 2] * y, still[:, 1] + still[:, 2] * x])
+        return self._sense * (way * self._direction).sum(axis=1)
+
+    def rates(self, found: Any) -> Array:
+        """Return the rates of the blocks that an answer has as its dual, (blocks, 3)."""
+        return -np.asarray(found.eqlin.marginals).reshape(self.shape) * self.ease
+
     def polished(self, parts: Array, pull: Array) -> Array:
         """Take away the imbalance the solver leaves, by the least change of what presses."""
-        left = -pull.ravel() - self.balance @ parts
+        left = -self.loads(pull) - self.balance @ parts
         held = np.flatnonzero((parts > 1.0) | (self.bounded == 0))
         if np.abs(left).max() < ROUND_OFF or not len(held):
             return parts
@@ -252,7 +342,7 @@ class _Cones:
         change = solve(self.balance[:, held], left, atol=1e-14, btol=1e-14)[0]
         better = parts.copy()
         better[held] += change
-        worst = np.abs(-pull.ravel() - self.balance @ better).max()
+        worst = np.abs(-self.loads(pull) - self.balance @ better).max()
         return better if worst < np.abs(left).max() else parts
 
     def forces(self, parts: Array) -> Array:

@@ -1,0 +1,228 @@
+"""Supports that move slowly: how far until blocks fall, by limit analysis and by `direct`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Move, Problem
+from blocksim.common.errors import InputError
+from blocksim.common.progress import Progress, silent
+from blocksim.engines.direct import UNSOLVED, rule
+from blocksim.engines.moving import OnMovingSupports
+from blocksim.limit.spreading import Event, Path, follow, lying
+
+FARTHEST = 1.0
+"""How far supports move at most [size]."""
+SPEED, STEP = 1e-3, 0.05
+"""Of the supports [size/sqrt(size/g)], and step of time [sqrt(size/g)], at first."""
+FAST = 30.0
+"""Speed of blocks, over that of their supports, from which on they fall."""
+STARTS = 1e-5
+"""Acceleration from which on blocks move on supports that have stopped [g]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Slow:
+    """What `direct` saw on supports that move slowly.
+
+    Parameters
+    ----------
+    low : float or None
+        Farthest the supports were when the blocks stayed if they stopped [m]; None where they
+        did not even at the start.
+    high : float or None
+        Nearest at which the blocks fell although they stopped; None where they never fell.
+    solved : bool
+        Whether every step was.
+    runs : int
+        How often the supports were stopped.
+    values : (frames,) float
+    poses : (frames, blocks + supports that move, 3) float
+        Of the first run, until they fall.
+    """
+
+    low: float | None
+    high: float | None
+    solved: bool
+    runs: int
+    values: Array
+    poses: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Spreading:
+    """A problem whose supports move, by `moves` or else two of them apart, each by half.
+
+    Raises
+    ------
+    InputError
+        If nothing says how they move.
+    """
+
+    asked: Problem
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The problem with its supports' motion."""
+        asked, supports = self.asked, self.asked.assembly.supports
+        if asked.moves:
+            return asked
+        joints = asked.assembly.springings
+        if len(supports) != len(SIDES) or {joint.support for joint in joints} != {0, 1}:
+            allowed = "another parameter, or `move` in the file: what moves has to be said"
+            raise InputError("--over", "spread", allowed)
+        middles = [np.concatenate(each.polygons).mean(axis=0) for each in supports]
+        left = 0 if middles[0][0] < middles[1][0] else 1
+        moves = tuple(
+            Move(support=at, direction=np.array([side / 2, 0.0]), about=middles[at])
+            for at, side in zip((left, 1 - left), SIDES, strict=True)
+        )
+        return replace(asked, moves=moves)
+
+    @property
+    def farthest(self) -> float:
+        """How far supports move at most [m]."""
+        return FARTHEST * self.problem.assembly.size
+
+    @cached_property
+    def path(self) -> Path:
+        """What limit analysis says of the way."""
+        return follow(self.problem, self.farthest)
+
+    def at(self, value: float) -> Problem:
+        """Return the problem as it lies where the supports have moved so far."""
+        return lying(self.problem, self.path, value)
+
+    @property
+    def exact(self) -> float | None:
+        """How far the supports can move [m]; None where that was not followed."""
+        ends = {"collapse": self.path.value, "range": math.inf}
+        return ends.get(self.path.ends)
+
+    @property
+    def words(self) -> str:
+        """Say what happens on the way."""
+        names = self._names
+        return "".join(f"; {_event(event, names)}" for event in self.path.events)
+
+    @property
+    def _names(self) -> list[str]:
+        assembly = self.problem.assembly
+
+        def name(joint: int, side: int) -> str:
+            each = assembly.joints[joint]
+            index = (each.before, each.after)[side]
+            if index != SUPPORT:
+                return assembly.blocks[index].name or str(index)
+            return assembly.supports[each.support or 0].name or "support"
+
+        return [f"{name(at, 0)}-{name(at, 1)}" for at in range(len(assembly.joints))]
+
+    def slowly(self, tol: float, highest: float, progress: Progress = silent) -> Slow:
+        """Move the supports slowly in `direct`, and stop them at times.
+
+        Blocks fall at once when their supports move beyond what they bear, but how fast
+        is a matter of the supports' speed. So the position is sought, by halving, from
+        which on blocks do not stay where they are when the supports stop.
+
+        Parameters
+        ----------
+        tol : float
+            Relative distance between the two positions.
+        highest : float
+            How far the supports move at most [m].
+        progress : Progress, optional
+        """
+        problem = self.problem
+        settings = replace(rule(problem.assembly), step=STEP)
+
+        def stays(frame: _At) -> bool:
+            stopped = OnMovingSupports(problem, settings, 0.0)
+            stopped.place(*frame)
+            return stopped.starts() < STARTS
+
+        speed, runs, solved = SPEED, 0, True
+        world = OnMovingSupports(problem, settings, speed)
+        first = frames = _run(world, highest, FAST * speed, progress)
+        while True:
+            solved = solved and (world.quality().residual or 0.0) <= UNSOLVED
+            last, more = _last(frames, stays)
+            runs += more
+            low = None if last < 0 else frames[last][0]
+            high = None if last + 1 == len(frames) else frames[last + 1][0]
+            if low is None or high is None or high - low <= tol * high:
+                break
+            speed *= 0.9 * tol * high / (high - low)
+            world = OnMovingSupports(problem, settings, speed)
+            world.place(*frames[last])
+            frames = _run(world, highest, FAST * speed, progress)
+        values, poses = zip(*first, strict=True)
+        return Slow(
+            low=low,
+            high=high,
+            solved=solved,
+            runs=runs,
+            values=np.array(values),
+            poses=np.array(poses),
+        )
+
+
+_At = tuple[float, Array]
+"""How far the supports are [m], and poses of blocks and supports."""
+
+
+def _run(
+    world: OnMovingSupports, highest: float, fastest: float, progress: Progress
+) -> list[_At]:
+    """Move the supports until the blocks fall, or as far as they go."""
+    frames = [(world.value, world.poses())]
+    while world.value < highest and world.fastest < fastest:
+        world.advance_once()
+        frames.append((world.value, world.poses()))
+        progress(world.value / highest, f"supports at {world.value:.4g} m")
+    return frames
+
+
+def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int]:
+    """Find the last frame at which blocks stay, -1 for none; and how many were tried."""
+    if stays(frames[-1]):
+        return len(frames) - 1, 1
+    if not stays(frames[0]):
+        return -1, 2
+    low, high, runs = 0, len(frames) - 1, 2
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if stays(frames[middle]) else (low, middle)
+        runs += 1
+    return low, runs
+
+
+SIDES = (-1.0, 1.0)
+
+
+def _event(event: Event, names: list[str]) -> str:
+    said = ", ".join(
+        f"{name} {state.value}"
+        for name, state in zip(names, event.after.states, strict=True)
+        if state is not JointState.CLOSED
+    )
+    return f"at {event.value:.6g} m {_WORDS[event.what]}: {said}"
+
+
+_WORDS = {
+    "hinges": "hinges form",
+    "moves": "a hinge closes and another opens",
+    "snaps": "it falls and is caught",
+    "collapse": "it falls",
+    "falls-slides": "it gives way, and a joint slides, which is not followed",
+    "falls-parts": "it gives way, and a joint parts, which is not followed",
+    "slides": "a joint begins to slide, which is not followed",
+    "parts": "a joint parts, which is not followed",
+}

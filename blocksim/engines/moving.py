@@ -1,0 +1,144 @@
+"""Supports that move slowly, in `direct`: heavy blocks whose velocity is given."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Block, Joint, Support
+from blocksim.blocks.problem import Problem
+from blocksim.engines.base import Settings
+from blocksim.engines.direct import Blocks
+
+HEAVY = 1e8
+"""Mass and inertia of a support that moves [mean blocks]: what presses on it is nothing."""
+DEEP = 3.0
+"""How far below the structure ground lies where all supports move [size]."""
+
+
+class OnMovingSupports(Blocks):
+    """Blocks on supports that move as a problem's `moves` say.
+
+    Parameters
+    ----------
+    problem : Problem
+        With `moves`.
+    settings : Settings
+    speed : float
+        Of the parameter of the supports' motion [size/sqrt(size/g)].
+    """
+
+    def __init__(self, problem: Problem, settings: Settings, speed: float) -> None:
+        self._count = len(problem.assembly.blocks)
+        self._size = problem.assembly.size
+        super().__init__(_with_supports_as_blocks(problem), settings)
+        masses = self._mass.copy()
+        masses[self._count :] = HEAVY
+        self._mass = masses
+        self._problem = self._new_problem()
+        self._moves = problem.moves
+        self.value = 0.0
+        self._speed = speed
+        self._pull()
+
+    def _pull(self) -> None:
+        super()._pull()
+        # Their weight is borne by what moves them.
+        self._free = self._free.copy()
+        self._free[self._count :] = 0.0
+
+    def _move(self, step: float) -> None:
+        self._velocities[self._count :] = self._speed * self._ways()
+        super()._move(step)
+        self.value += step * self._speed * self._size
+
+    def _ways(self) -> Array:
+        """Velocities of the centres of the supports, over that of the parameter."""
+        found = np.zeros((len(self._moves), PLANAR))
+        for at, move in enumerate(self._moves):
+            turn = move.turn * self._size
+            pivot = (move.about + move.direction * self.value) / self._size
+            x, y = self._poses[self._count + at, :2] - pivot
+            found[at] = move.direction[0] - turn * y, move.direction[1] + turn * x, turn
+        return found
+
+    def place(self, value: float, poses: Array) -> None:
+        """Put blocks and supports where they were in another world, at rest."""
+        self.value, self._poses = value, poses.copy()
+        self._velocities = np.zeros_like(poses)
+
+    def advance_once(self) -> None:
+        """Move by one step."""
+        self._move(self._step)
+
+    @property
+    def fastest(self) -> float:
+        """Largest velocity of a block [size/sqrt(size/g)], or its rotation."""
+        return float(np.abs(self._velocities[: self._count]).max())
+
+    def starts(self) -> float:
+        """Stop the supports, and say with what acceleration the blocks start from rest [g]."""
+        self._speed = 0.0
+        self._velocities = np.zeros_like(self._velocities)
+        self._move(self._step)
+        return self.fastest / self._step
+
+
+def _hull(points: Array) -> Array:
+    """Return the corners around points, counter-clockwise."""
+    found: Any = ConvexHull(points)
+    return points[found.vertices]
+
+
+def _with_supports_as_blocks(problem: Problem) -> Problem:
+    """Return the problem with supports that move as its last blocks, ground far below."""
+    assembly = problem.assembly
+    mass = float(np.mean([block.mass for block in assembly.blocks]))
+    count = len(assembly.blocks)
+    place = {move.support: count + at for at, move in enumerate(problem.moves)}
+    made = tuple(
+        Block(
+            vertices=_hull(np.concatenate(support.polygons)),
+            centre=np.concatenate(support.polygons).mean(axis=0),
+            mass=mass,
+            inertia=mass * assembly.size**2,
+            depth=assembly.blocks[0].depth,
+            name=support.name,
+            parts=support.polygons if len(support.polygons) > 1 else (),
+        )
+        for support in (assembly.supports[each] for each in place)
+    )
+    stay = [at for at in range(len(assembly.supports)) if at not in place]
+    left = {at: index for index, at in enumerate(stay)}
+
+    def carried(joint: Joint) -> Joint:
+        on = joint.support
+        if on is None or on in left:
+            return replace(joint, support=on if on is None else left[on])
+        before = place[on] if joint.before == SUPPORT else joint.before
+        after = place[on] if joint.after == SUPPORT else joint.after
+        return replace(joint, before=before, after=after, support=None)
+
+    supports = tuple(assembly.supports[at] for at in stay)
+    if not supports:
+        corners = np.concatenate([block.vertices for block in (*assembly.blocks, *made)])
+        (left_end, low), (right_end, _) = corners.min(axis=0), corners.max(axis=0)
+        size = assembly.size
+        top = low - DEEP * size
+        ground = np.array(
+            [(left_end, top), (left_end, top - size), (right_end, top - size), (right_end, top)]
+        )
+        supports = (Support((ground,)),)
+    return replace(
+        problem,
+        assembly=replace(
+            assembly,
+            blocks=(*assembly.blocks, *made),
+            joints=tuple(carried(joint) for joint in assembly.joints),
+            supports=supports,
+        ),
+        moves=(),
+    )
