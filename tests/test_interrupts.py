@@ -1,4 +1,4 @@
-"""Ctrl-C and the request to end: at any moment no traceback, and the exit code of a shell.
+"""Ctrl-C and the request to end: at any moment one line, and the exit code of a shell.
 
 A terminal sends Ctrl-C to every process of the command, so these tests do, too.
 """
@@ -18,6 +18,7 @@ from running import PROGRAM, alive, children, until
 from sweeps import SIMULATED, written
 
 ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "101", "--method", "pymunk")
+LINE = b"blocksim: interrupted\n"
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
 
@@ -39,7 +40,7 @@ def interrupted(
         workers = children(driver.pid)
         os.killpg(driver.pid, sent)
         said, error = driver.communicate()
-        assert (said, error, driver.returncode) == (b"", b"", CODES[sent])
+        assert (said, error, driver.returncode) == (b"", LINE, CODES[sent])
     until(lambda: not any(alive(pid) for pid in workers))
 
 
@@ -79,7 +80,7 @@ def test_an_interrupt_that_a_library_swallows_still_counts() -> None:
         ]
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", LINE)
 
 
 def test_a_library_leaves_signals_alone() -> None:

@@ -43,7 +43,7 @@ def test_an_interrupted_validation_leaves_nothing(
         workers = children(driver.pid)
         driver.send_signal(sent)
         assert driver.stderr is not None
-        assert driver.stderr.read() == b""
+        assert driver.stderr.read() == b"blocksim: interrupted\n"
         assert driver.wait() == code
     until(lambda: not any(alive(pid) for pid in workers))
     assert list(out.iterdir()) == []

@@ -105,14 +105,14 @@ def test_killed_drivers_leave_no_process_and_lose_no_row(
     assert rows_of(out) == uninterrupted
 
 
-def test_a_terminated_sweep_ends_without_a_word(tmp_path: Path) -> None:
+def test_a_terminated_sweep_ends_with_one_line(tmp_path: Path) -> None:
     asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
     with started(*asked, "--workers", "1") as driver:
         until(lambda: len(list(out.glob("rows-*"))) > 0, driver)
         workers = children(driver.pid)
         driver.terminate()
         assert driver.stderr is not None
-        assert driver.stderr.read() == b""
+        assert driver.stderr.read() == b"blocksim: interrupted\n"
         assert driver.wait() == 143
     until(lambda: not any(alive(pid) for pid in workers))
     assert 0 < len(rows_of(out)) < 80

@@ -29,7 +29,10 @@ def main() -> None:
     with suppress(KeyboardInterrupt), interrupts.Told():
         code = _code()
     # An interrupt counts whatever became of it on its way: libraries turn it into others.
-    sys.exit(interrupts.code() or code)
+    if interrupts.code():
+        interrupts.say()
+        code = interrupts.code()
+    sys.exit(code)
 
 
 def _code() -> int:

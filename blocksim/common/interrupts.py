@@ -1,4 +1,4 @@
-"""Ctrl-C and the request to end, at any moment: no traceback, the exit code of a shell.
+"""Ctrl-C and the request to end, at any moment: one line, and the exit code of a shell.
 
 Python itself says them as tracebacks, and imports take a second in which they are likely. So
 the program's first import is this module, which imports next to nothing.
@@ -30,6 +30,8 @@ class _State:
     """Not now: it is told when this ends."""
     code = 0
     """Exit code of the signal that came."""
+    program = 0
+    """Process that says so: none of its workers does."""
     since = 0.0
 
 
@@ -46,6 +48,8 @@ def install() -> None:
     """Take both signals; before there is any work they end the process at once."""
     # The import of signals takes a while, too.
     sys.excepthook = _say_unless_interrupted
+    if not any("multiprocessing" in word for word in sys.orig_argv):
+        _State.program = os.getpid()
     import signal
 
     for number in CODES:
@@ -79,13 +83,27 @@ def code() -> int:
     return _State.code
 
 
+def say() -> None:
+    """Say in one line that the program was interrupted."""
+    if os.getpid() == _State.program:
+        try:  # noqa: SIM105 - contextlib is an import more
+            os.write(2, b"blocksim: interrupted\n")
+        except OSError:
+            pass
+
+
+def _end(known: int) -> None:
+    say()
+    os._exit(known)
+
+
 def _handle(number: int, _: object) -> None:
     known = CODES[number]
     if not _State.working:
-        os._exit(known)
+        _end(known)
     if _State.code:
         if time.monotonic() - _State.since > TWICE:
-            os._exit(known)
+            _end(known)
         return
     _State.code, _State.since = known, time.monotonic()
     if not _State.waiting:
@@ -96,5 +114,5 @@ def _say_unless_interrupted(
     kind: type[BaseException], error: BaseException, trace: TracebackType | None
 ) -> None:
     if issubclass(kind, KeyboardInterrupt):
-        os._exit(_State.code or CODES[SIGINT])
+        _end(_State.code or CODES[SIGINT])
     sys.__excepthook__(kind, error, trace)
