@@ -57,6 +57,8 @@ ROUND = 0.005
 """Radius of the corners of blocks that meet, in units of their least width."""
 IMPACT = 10.0
 """Acceleration from which a block has met something [g]."""
+MOST_UNSEEN, LEAST_WAY = 16, 1e-12
+"""Most steps between two looks where blocks are, and the least way in one [size]."""
 HOLD_SWEEPS, LEAST_HOLD = 4000, 50_000
 """Most sweeps of the onset test for each pair of blocks, and at least."""
 SLENDER, SLENDEREST = 80, 2.5e-4
@@ -103,6 +105,7 @@ class _Space:
         self._space, self._bodies = self._build()
         self._balance = Balance(problem, self.poses())
         self._last, self._rate = settings.step, np.zeros((len(self._bodies), 3))
+        self._unseen, self._ahead = 1, 0
 
     def _build(self) -> tuple[pymunk.Space, list[pymunk.Body]]:
         """Put the blocks into a new space, without impulses."""
@@ -216,12 +219,23 @@ class _Space:
                 self._tumble()
                 continue
             self._space.iterations = self._settings.sweeps
-            self._solids.update(self.poses())
+            self._watch()
             before = self._velocities() if self._solids.loose else None
             self._step(self._settings.step)
             if before is not None:
                 self._rate = (self._velocities() - before) / self._settings.step
                 self._make_solid()
+
+    def _watch(self) -> None:
+        """Look where blocks are, as soon as they may have moved far enough to meet others."""
+        self._ahead -= 1
+        if self._ahead > 0:
+            return
+        solids, before = self._solids, self._solids.left
+        solids.update(self.poses())
+        fast = max((before - solids.left) / self._unseen, LEAST_WAY)
+        self._unseen = min(max(1, int(solids.left / (2 * fast))), MOST_UNSEEN)
+        self._ahead = self._unseen
 
     def _tumble(self) -> None:
         """Take a step of blocks that may meet, in parts."""

@@ -43,6 +43,8 @@ class Solids:
         Polygons of what stays, where they are, scaled; they are numbered on from the others.
     loose : bool
         Whether blocks may meet that share no joint.
+    left : float
+        How much farther blocks have to move for that [size].
     holds : (joints,) bool
         Which joints still are joints.
     """
@@ -65,6 +67,7 @@ class Solids:
         self.loose = False
         self.holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._free = neighbours.free
+        self.left = max(TIGHT, self._free)
         self._joints: dict[tuple[int, int], list[int]] = defaultdict(list)
         self.sides: dict[int, set[int]] = defaultdict(set)
         for joint, one, other in zip(
@@ -86,7 +89,8 @@ class Solids:
         moved[:, :2] -= self._start
         moved[:, [2, *range(4, moved.shape[1])]] *= self._reach[:, None]
         way = float(np.abs(moved).max())
-        self.loose = self.loose or (way > TIGHT and way > self._free)
+        self.left = max(TIGHT, self._free) - way
+        self.loose = self.loose or self.left < 0
         if not self.loose:
             return np.zeros(0, dtype=np.int64)
         _, holds = self._geometry.touch(planar)
