@@ -144,7 +144,7 @@ def test_supports_that_settle() -> None:
 
 
 def test_hinges_of_a_segment_migrate() -> None:
-    """They jump from the springings to the next joints, where the arch is caught, then it falls."""
+    """They jump from the springings to the next joints: the arch is caught, and later falls."""
     table = semicircle(0.2, left_deg=60, right_deg=60)
     path = Spreading(structure_of(table)).path
     assert [event.what for event in path.events] == ["hinges", "snaps", "collapse"]
