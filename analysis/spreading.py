@@ -37,6 +37,8 @@ from tests.structure_cases import case
 
 TOL = 0.005
 """Relative width of the brackets by `direct`."""
+SMALL = 1e-6
+"""Way of the supports below which a jump is one of round-off [m]."""
 KNOWN = {0.12: "spread_90_12_20", 0.15: "spread_90_15_20", 0.2: "spread_90_20_20"}
 CURVE = np.linspace(0.11, 0.21, 21)
 """Thicknesses of semicircles followed by continuation alone."""
@@ -74,8 +76,9 @@ class Row:
         How far its supports can move, from outside this code [r].
     limit : float
         By continuation; inf where it does not fall.
-    events : int
-        Between the first hinges and the end.
+    gives : float
+        By continuation: where blocks first move by themselves, by more than round-off; less
+        than `limit` where they are caught, their hinges having jumped.
     low, high : float or None
         By `direct`: the farthest at which it stayed, and the nearest at which it fell.
     seconds_limit, seconds_direct : float
@@ -85,7 +88,7 @@ class Row:
     arch: str
     known: float | None
     limit: float
-    events: int
+    gives: float
     low: float | None
     high: float | None
     seconds_limit: float
@@ -93,10 +96,10 @@ class Row:
 
     @property
     def error(self) -> float:
-        """Of the middle of the bracket against continuation, relative."""
+        """Of the middle of the bracket against where blocks first move, relative."""
         if self.low is None or self.high is None:
             return math.inf
-        return abs((self.low + self.high) / 2 / self.limit - 1)
+        return abs((self.low + self.high) / 2 / self.gives - 1)
 
 
 @dataclass(frozen=True)
@@ -133,7 +136,12 @@ def asked(name: str, spreading: Spreading, known: float | None) -> Row:
         arch=name,
         known=known,
         limit=path.value if path.ends == "collapse" else math.inf,
-        events=len(path.events) - 2,
+        gives=next(
+            each.value
+            for each in path.events
+            if each.what in {"snaps", "collapse", "falls-slides", "falls-parts"}
+            and each.value > SMALL
+        ),
         low=seen.low,
         high=seen.high,
         seconds_limit=round(middle - begin, 2),
@@ -223,9 +231,10 @@ def _curve(axes: Axes, result: Result) -> None:
 
 def table(result: Result) -> str:
     """Return the rows as a table."""
-    said = [f"{'arch':22} {'known':>12} {'continuation':>14} {'low':>10} {'high':>10} {'s':>6}"]
+    head = f"{'arch':22} {'known':>12} {'continuation':>14} {'gives way':>10}"
+    said = [f"{head} {'low':>10} {'high':>10} {'s':>6}"]
     said += [
-        f"{row.arch:22} {row.known or math.nan:12.9f} {row.limit:14.9f} "
+        f"{row.arch:22} {row.known or math.nan:12.9f} {row.limit:14.9f} {row.gives:10.7f} "
         f"{row.low or math.nan:10.7f} {row.high or math.nan:10.7f} {row.seconds_direct:6.1f}"
         for row in result.rows
     ]
