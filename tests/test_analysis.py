@@ -12,12 +12,16 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+import matplotlib.colors
+import matplotlib.image
+import numpy as np
 import pytest
 
 from blocksim import Arch
 from blocksim.arch import limit, theory
 from blocksim.report.chart import read_points
 from blocksim.studies.chart import cases
+from blocksim.view.style import MECHANISM
 
 STUDIES = Path(__file__).parent.parent / "analysis"
 
@@ -72,6 +76,26 @@ def test_random_arches_of_every_kind_fall_where_limit_analysis_says(tmp_path: Pa
     )
     told = module.summary([{**load, "high": "stands"}, {**thick, "high": "undecided"}])
     assert (told.right, told.false, len(told.undecided)) == (2, 1, 1)
+
+
+def test_arches_on_spreading_supports(tmp_path: Path) -> None:
+    module = study("spreading")
+    result = module.main(tmp_path, quick=True)
+    assert result.worst_known < 1e-6
+    assert result.worst_direct < 0.01
+    assert [row.arch for row in result.rows] == ["t/r 0.12", "friction 0.5"]
+    assert all(
+        row.low < row.limit * 1.005 and row.high > row.limit * 0.995 for row in result.rows
+    )
+    values = [value for _, value in result.curve]
+    assert values == sorted(values)
+    assert len(values) == 3
+    with (tmp_path / "spreading.csv").open(newline="") as file:
+        assert [row["known"] for row in csv.DictReader(file)][1] == ""
+    pixels = matplotlib.image.imread(tmp_path / "spreading.png")[..., :3]
+    hinges = np.abs(pixels - matplotlib.colors.to_rgb(MECHANISM)).max(axis=-1) < 0.02
+    assert not hinges[: len(pixels) // 3, : pixels.shape[1] // 3].any(), "none as built"
+    assert hinges[: len(pixels) // 3, pixels.shape[1] // 3 :].any()
 
 
 def test_wrong_forces_and_mechanisms_of_random_assemblies_would_be_seen() -> None:

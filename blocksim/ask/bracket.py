@@ -207,7 +207,9 @@ def _slowly(spreading: Spreading, tol: float, highest: float, progress: Progress
         stands=seen.low,
         confirmed=seen.solved,
         runs=seen.runs,
-        reason=f"supports moved slowly, stopped {seen.runs} times: stays or falls{way}",
+        reason=f"supports moved slowly and stopped {seen.runs} times: up to one value blocks "
+        "stay, from the other on they move by themselves (whether something catches them "
+        f"again was not asked){way}",
     )
 
 

@@ -148,11 +148,11 @@ class Spreading:
             stopped.place(*frame)
             return stopped.starts() < STARTS
 
-        speed, runs, solved = SPEED, 0, True
+        speed, runs, whole = SPEED, 0, True
         world = OnMovingSupports(problem, settings, speed)
         first = frames = _run(world, highest, FAST * speed, progress)
         while True:
-            solved = solved and (world.quality().residual or 0.0) <= UNSOLVED
+            whole = whole and solved(world)
             last, more = _last(frames, stays)
             runs += more
             low = None if last < 0 else frames[last][0]
@@ -167,7 +167,7 @@ class Spreading:
         return Slow(
             low=low,
             high=high,
-            solved=solved,
+            solved=whole,
             runs=runs,
             values=np.array(values),
             poses=np.array(poses),
@@ -185,9 +185,16 @@ def _run(
     frames = [(world.value, world.poses())]
     while world.value < highest and world.fastest < fastest:
         world.advance_once()
+        if not solved(world):
+            break
         frames.append((world.value, world.poses()))
         progress(world.value / highest, f"supports at {world.value:.4g} m")
     return frames
+
+
+def solved(world: OnMovingSupports) -> bool:
+    """Tell whether every step of a world was solved."""
+    return (world.quality().residual or 0.0) <= UNSOLVED
 
 
 def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int]:

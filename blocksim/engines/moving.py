@@ -16,7 +16,7 @@ from blocksim.engines.direct import Blocks
 HEAVY = 1e8
 """Mass and inertia of a support that moves [mean blocks]: what presses on it is nothing."""
 DEEP = 3.0
-"""How far below the structure ground lies where all supports move [size]."""
+"""How far below the structure ground lies where supports move [size]."""
 
 
 class OnMovingSupports(Blocks):
@@ -122,23 +122,19 @@ def _with_supports_as_blocks(problem: Problem) -> Problem:
         after = place[on] if joint.after == SUPPORT else joint.after
         return replace(joint, before=before, after=after, support=None)
 
-    supports = tuple(assembly.supports[at] for at in stay)
-    if not supports:
-        corners = np.concatenate([block.vertices for block in (*assembly.blocks, *made)])
-        (left_end, low), (right_end, _) = corners.min(axis=0), corners.max(axis=0)
-        size = assembly.size
-        top = low - DEEP * size
-        ground = np.array(
-            [(left_end, top), (left_end, top - size), (right_end, top - size), (right_end, top)]
-        )
-        supports = (Support((ground,)),)
+    # Level ground is below all that moves, or a support that settles would rest on it.
+    corners = np.concatenate([block.vertices for block in (*assembly.blocks, *made)])
+    (west, low), (east, _) = corners.min(axis=0), corners.max(axis=0)
+    top = low - DEEP * assembly.size
+    deep = top - assembly.size
+    ground = Support((np.array([(west, top), (west, deep), (east, deep), (east, top)]),))
     return replace(
         problem,
         assembly=replace(
             assembly,
             blocks=(*assembly.blocks, *made),
             joints=tuple(carried(joint) for joint in assembly.joints),
-            supports=supports,
+            supports=(*(assembly.supports[at] for at in stay), ground),
         ),
         moves=(),
     )
