@@ -86,8 +86,6 @@ TUMBLE_SWEEPS = 100
 KNOW_FACES = 4096
 """Bullet's flag by which hulls meet by their faces, with all points of contact at once and
 without the margin that else rounds their corners; pybullet gives it no name."""
-WIDE = 2.0
-"""Depth of what blocks stand on, in units of the deepest block's."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -331,7 +329,8 @@ class Bodies:
                 self._bodies[index] = body
             for polygon in self._solids.fixed[:-1]:
                 middle = polygon.mean(axis=0)
-                deep = WIDE * float(assembly.depths.max())
+                # As deep as it is drawn.
+                deep = float(assembly.depths.max())
                 shape = self._prism(folder, [polygon - middle], deep)
                 self._add(shape, self._frame.place(middle), friction)
         level = float(self._solids.fixed[-1][:, 1].max())
