@@ -18,8 +18,11 @@ measured):
   that. With the damper of the pressure a slipping contact is lifted off, and chatters. Held
   from rest, friction is given next to no damper (`LOOSE`); in motion, that of the pressure.
 - Friction is much harder than pressure (`HELD_RATIO`), or resting joints creep.
-- Only joints are contacts: pairs of boxes named beforehand, for which alone friction has
-  settings of its own. One face of each joint reaches beyond the other, as in `boxes`.
+- While joints are joints only they are contacts: pairs of boxes named beforehand, for which
+  alone friction has settings of its own. One face of each joint reaches beyond the other, as in
+  `boxes`.
+- Once blocks may meet others (`solids`) they are put into a model of their own, as the bodies
+  they are, with what they stand on and a floor.
 
 The plane is MuJoCo's x and y; a block has three degrees of freedom, x, y and rotation.
 """

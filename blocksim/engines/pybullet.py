@@ -14,6 +14,9 @@ How a near-critical arch has to be put into it (each point measured, see
 - Friction impulses are forgotten after every step, so that each step is solved from
   nothing. The sweeps this takes hardly depend on the step: long steps, each solved until
   a sweep changes next to nothing.
+- Once blocks may meet others (`solids`) all are built anew, as hulls that know their faces,
+  with what they stand on and a floor. A space that is reset forgets who may not touch whom;
+  bodies removed one by one leave that to those that take their numbers.
 - Inertias are the true ones. Large ones out of the plane, meant to lock the arch in it,
   keep the solver from converging. Bullet takes notice of an inertia only when a step ends:
   one without gravity comes first.
