@@ -55,6 +55,8 @@ RUBBLE_SWEEPS, MOST_PARTS = 100, 100
 """Least sweeps, and most parts of a step, once blocks may meet."""
 ROUND = 0.005
 """Radius of the corners of blocks that meet, in units of their least width."""
+LOOK = 10
+"""Steps after which it is asked whether blocks may meet; they are far from it by then."""
 IMPACT = 10.0
 """Acceleration from which a block has met something [g]."""
 HOLD_SWEEPS, LEAST_HOLD = 4000, 50_000
@@ -210,13 +212,14 @@ class _Space:
 
     def advance(self, steps: int) -> None:
         """Let the blocks move, in parts of a step once they may meet."""
-        for _ in range(steps):
+        for index in range(steps):
             if self._polygons:
                 self._part()
                 self._tumble()
                 continue
             self._space.iterations = self._settings.sweeps
-            self._solids.update(self.poses())
+            if index % LOOK == 0:
+                self._solids.update(self.poses())
             before = self._velocities() if self._solids.loose else None
             self._step(self._settings.step)
             if before is not None:
