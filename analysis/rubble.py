@@ -149,7 +149,7 @@ def measured(recording: Recording) -> dict[str, float]:
     flat = [polygon for _, polygon in solids.moving] + solids.fixed
     deep = float(assembly.depths.max())
     depths = [*(float(assembly.depths[index]) for index, _ in solids.moving)]
-    depths += [10 * deep] * (len(solids.fixed) - 1) + [100.0]
+    depths += [deep] * (len(solids.fixed) - 1) + [100.0]
     prisms = [Prism.of(each, depth) for each, depth in zip(flat, depths, strict=True)]
     widths = [min(width(each), depth) for each, depth in zip(flat, depths, strict=True)]
     level = float(solids.fixed[-1][:, 1].max())

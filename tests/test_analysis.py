@@ -16,6 +16,7 @@ import matplotlib.colors
 import matplotlib.image
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from blocksim import Arch
 from blocksim.arch import limit, theory
@@ -365,3 +366,40 @@ def test_structures_with_known_answers_are_answered_right(tmp_path: Path) -> Non
         rows = list(csv.DictReader(file))
     assert [row["case"] for row in rows] == [line.case for line in result.lines]
     assert "0 false, 0 undecided" in study_of.table(result)
+
+
+def test_other_engines_are_asked_about_structures_with_known_answers(tmp_path: Path) -> None:
+    study_of = study("structure_cases")
+    result = study_of.main(tmp_path, quick=True, engine="pymunk")
+    assert (result.asked, result.false, result.undecided, result.refused) == (19, 0, 0, 0)
+    assert "pymunk asked 19 times" in study_of.table(result)
+    # A wrong value would be seen, on either side.
+    question = next(study_of.questions("trilithon"))
+    line = study_of.answered(
+        "trilithon", replace(question, expected=0.26), moving=False, engine="pymunk"
+    )
+    assert line.false == 1
+
+
+def test_rubble_is_solid_and_gains_no_energy(tmp_path: Path) -> None:
+    """One arch and one wall; `test_rubble` has every engine."""
+    module = study("rubble")
+    result = module.main(tmp_path, quick=True, engine="direct")
+    assert result.collapses == result.solid == result.tame == 2
+    assert result.overlap < module.ALLOWED
+    with (tmp_path / "rubble_direct.csv").open(newline="") as file:
+        assert [row["kind"] for row in csv.DictReader(file)] == ["arch", "wall"]
+
+
+def test_overlap_of_rubble_would_be_seen() -> None:
+    """Two cubes, one pushed into the other by a tenth, turned in space together."""
+    module = study("rubble")
+    square = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+    cube = module.Prism.of(square, 1.0)
+    for push, deep in ((0.9, 0.1), (1.1, 0.0)):
+        one, other = np.zeros(6), np.zeros(6)
+        one[[4, 5, 2]] = other[[4, 5, 2]] = 0.3, -0.5, 0.7
+        turned = Rotation.from_rotvec([0.3, -0.5, 0.7]).apply([push, 0.1, 0.2])
+        other[[0, 1, 3]] = turned
+        found = module.overlap_of(cube.at(one), cube.at(other), 0.0)
+        assert found == pytest.approx(deep, abs=1e-12)

@@ -18,8 +18,11 @@ measured):
   that. With the damper of the pressure a slipping contact is lifted off, and chatters. Held
   from rest, friction is given next to no damper (`LOOSE`); in motion, that of the pressure.
 - Friction is much harder than pressure (`HELD_RATIO`), or resting joints creep.
-- Only joints are contacts: pairs of boxes named beforehand, for which alone friction has
-  settings of its own. One face of each joint reaches beyond the other, as in `boxes`.
+- While joints are joints only they are contacts: pairs of boxes named beforehand, for which
+  alone friction has settings of its own. One face of each joint reaches beyond the other, as in
+  `boxes`.
+- Once blocks may meet others (`solids`) they are put into a model of their own, as the bodies
+  they are, with what they stand on and a floor.
 
 The plane is MuJoCo's x and y; a block has three degrees of freedom, x, y and rotation.
 """
@@ -77,6 +80,9 @@ HELD_RATIO, RATIO = 1e6, 1e4
 TOLERANCE = 1e-14
 RUBBLE_STEP, RUBBLE_PERIOD = 5e-4, 2.0
 """MuJoCo's step once blocks may meet, and the period of contacts in such steps."""
+GENTLE, FIRMER = 20.0, 0.8
+"""That period at first, which lets joints that have sunk into each other rise without a push,
+and by how much it shrinks in each step."""
 RUBBLE_SOFTNESS, RUBBLE_RATIO = 1e-3, 10.0
 """How soft they are then, and how much harder friction is than pressure."""
 
@@ -107,7 +113,7 @@ class _Bodies:
         self._part = settings.step / settings.sweeps
         self._parts = settings.sweeps
         self._step = settings.step
-        self._is_rubble, self._deepest = False, 0.0
+        self._is_rubble, self._deepest, self._period = False, 0.0, GENTLE
         self._scatter, self._steady = 0.0, True
         self._model = _model(problem)
         self._state = library.MjData(self._model)
@@ -217,6 +223,8 @@ class _Bodies:
     def _tumble(self) -> None:
         """Take a step of blocks that meet."""
         step = self._model.opt.timestep
+        self._model.geom_solref[:, 0] = self._period * step
+        self._period = max(RUBBLE_PERIOD, FIRMER * self._period)
         self._pull()
         library.mj_step(self._model, self._state, max(1, round(self._step / step)) - 1)
         poses, before = self.poses(), self._state.qvel.reshape(-1, 3).copy()

@@ -14,6 +14,9 @@ How a near-critical arch has to be put into it (each point measured, see
 - Friction impulses are forgotten after every step, so that each step is solved from
   nothing. The sweeps this takes hardly depend on the step: long steps, each solved until
   a sweep changes next to nothing.
+- Once blocks may meet others (`solids`) all are built anew, as hulls that know their faces,
+  with what they stand on and a floor. A space that is reset forgets who may not touch whom;
+  bodies removed one by one leave that to those that take their numbers.
 - Inertias are the true ones. Large ones out of the plane, meant to lock the arch in it,
   keep the solver from converging. Bullet takes notice of an inertia only when a step ends:
   one without gravity comes first.
@@ -32,6 +35,8 @@ import weakref
 from collections import defaultdict
 from functools import cached_property
 from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -41,7 +46,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Library, Quality, Settings
 from blocksim.engines.boxes import Box, Frame, plate, snug, support_of, uneven_depths
 from blocksim.engines.energy import Balance
-from blocksim.engines.solids import Solids, smaller
+from blocksim.engines.solids import Solids, prisms
 
 bullet: Any = Library("pybullet", quiet=True)
 UNTURNED = Frame()
@@ -81,8 +86,9 @@ FINEST = 20
 LONGEST_TUMBLE, MOST_PARTS = 0.005, 400
 """Longest part of a step, and most of them, once blocks may meet."""
 TUMBLE_SWEEPS = 100
-MARGIN = 0.001
-"""What Bullet adds to hulls."""
+KNOW_FACES = 4096
+"""Bullet's flag by which hulls meet by their faces, with all points of contact at once and
+without the margin that else rounds their corners; pybullet gives it no name."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -312,33 +318,39 @@ class Bodies:
         self._pull()
         self._sides.clear()
         assembly, friction = self._assembly, math.sqrt(min(self._problem.mu, MOST_FRICTION))
-        for index, ((place, turn), (shift, spin)) in enumerate(states):
-            block, depth = assembly.blocks[index], float(assembly.depths[index])
-            outline = (block.vertices - block.centre) / assembly.size
-            body = self._add(self._prism(outline, depth), list(place), friction, index)
-            bullet.resetBasePositionAndOrientation(
-                body, place, turn, physicsClientId=self._client
-            )
-            bullet.resetBaseVelocity(body, shift, spin, physicsClientId=self._client)
-            self._bodies[index] = body
-        deep = float(assembly.depths.max())
-        for polygon in self._solids.fixed[:-1]:
-            middle = polygon.mean(axis=0)
-            shape = self._prism(polygon - middle, 2 * deep)
-            self._add(shape, self._frame.place(middle), friction)
+        polygons: dict[int, list[Array]] = defaultdict(list)
+        for index, polygon in self._solids.moving:
+            polygons[index].append(polygon)
+        with TemporaryDirectory() as folder:
+            for index, ((place, turn), (shift, spin)) in enumerate(states):
+                shape = self._prism(folder, polygons[index], float(assembly.depths[index]))
+                body = self._add(shape, list(place), friction, index)
+                bullet.resetBasePositionAndOrientation(
+                    body, place, turn, physicsClientId=self._client
+                )
+                bullet.resetBaseVelocity(body, shift, spin, physicsClientId=self._client)
+                self._bodies[index] = body
+            for polygon in self._solids.fixed[:-1]:
+                middle = polygon.mean(axis=0)
+                # As deep as it is drawn.
+                deep = float(assembly.depths.max())
+                shape = self._prism(folder, [polygon - middle], deep)
+                self._add(shape, self._frame.place(middle), friction)
         level = float(self._solids.fixed[-1][:, 1].max())
         floor = bullet.createCollisionShape(
             bullet.GEOM_PLANE, planeNormal=[0.0, 1.0, 0.0], physicsClientId=self._client
         )
         self._add(floor, self._frame.place(np.array([0.0, level])), friction)
 
-    def _prism(self, outline: Array, depth: float) -> int:
-        """Return the hull of a block, set back by the margin that Bullet adds to it."""
-        corners = smaller(outline, MARGIN)
-        half = depth / 2 - MARGIN
-        points = [[x, y, z] for z in (-half, half) for x, y in corners.tolist()]
+    def _prism(self, folder: str, polygons: list[Array], depth: float) -> int:
+        """Return the shape of a block: of hulls only those from files know their faces."""
+        path = Path(folder) / "block.obj"
+        path.write_text(prisms(polygons, depth), encoding="ascii")
         shape: int = bullet.createCollisionShape(
-            bullet.GEOM_MESH, vertices=points, physicsClientId=self._client
+            bullet.GEOM_MESH,
+            fileName=str(path),
+            flags=KNOW_FACES,
+            physicsClientId=self._client,
         )
         return shape
 

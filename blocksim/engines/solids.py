@@ -106,6 +106,26 @@ class Solids:
         return not any(self.holds[joint] for joint in self._joints.get((first, second), ()))
 
 
+def prisms(polygons: list[Array], depth: float) -> str:
+    """Return polygons of some depth, halved by the plane, as the text of an .obj file."""
+    lines: list[str] = []
+    before = 0
+    for number, polygon in enumerate(polygons):
+        count = len(polygon)
+        lines.append(f"o {number}")
+        for z in (-depth / 2, depth / 2):
+            lines += [f"v {x!r} {y!r} {z!r}" for x, y in polygon.tolist()]
+        back = range(before + count, before, -1)
+        front = range(before + count + 1, before + 2 * count + 1)
+        faces = [list(back), list(front)]
+        for first, second in zip(range(count), [*range(1, count), 0], strict=True):
+            low, high = before + 1 + first, before + 1 + second
+            faces.append([low, high, high + count, low + count])
+        lines += ["f " + " ".join(map(str, face)) for face in faces]
+        before += 2 * count
+    return "\n".join(lines) + "\n"
+
+
 def width(polygon: Array) -> float:
     """Return the least width of a convex polygon."""
     inward = _inward(polygon)

@@ -2,8 +2,8 @@
 
 Lengths are in units of the assembly's size, which is an arch's radius r, times in units of
 sqrt(size/g). Blocks are shown on their supports where these are known, else on the piers of
-`blocksim.engines.ground`, and above its floor, which only `direct` lets them fall on: a film
-ends when a block sinks into the floor, a support, or a pier it does not rest on.
+`blocksim.engines.ground`, and above its floor. A film ends with the recording, or when a block
+sinks into the floor, a support, or a pier it does not rest on, as in old recordings.
 """
 
 from __future__ import annotations

@@ -1,0 +1,119 @@
+"""Blocks that have come apart are solid in every engine, and nothing gives them energy."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from analysis import rubble
+from blocksim.arch.circular import Arch
+from blocksim.ask.simulate import simulate
+from blocksim.blocks.assembly import displacement
+from blocksim.engines import ENGINES
+from blocksim.engines.energy import Balance, energy
+from blocksim.engines.ground import ground_level
+from blocksim.engines.solids import prisms
+from blocksim.evidence.recording import Recording
+
+CASES = {case.number: case for case in rubble.cases(rubble.COUNT)}
+ARCH, STACK = CASES[12], CASES[14]
+
+
+def lies_still(recording: Recording) -> bool:
+    late = recording.poses[recording.times > recording.times[-1] - 1.9]
+    return float(displacement(late - late[-1], recording.assembly).max()) < 1e-3
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("case", [ARCH, STACK], ids=["arch", "stack"])
+def test_a_collapse_ends_on_the_ground(engine: str, case: rubble.Case) -> None:
+    if ENGINES[engine].missing:
+        pytest.skip(engine)
+    problem = rubble.drawn(case)
+    recording = simulate(problem, method=engine, duration=rubble.LONGEST)
+    found = rubble.measured(recording)
+    assert found["overlap"] < rubble.ALLOWED
+    assert found["sunk"] < 2e-3
+    quality = recording.quality
+    assert quality.gain is not None
+    assert quality.gain < rubble.GAIN
+    assert quality.penetration is not None
+    assert quality.penetration < 3e-3
+    # Something lies on the floor, and all is at rest.
+    assembly = problem.assembly
+    lowest = recording.poses[-1, :, 1].min() - ground_level(assembly) / assembly.size
+    assert 0 < lowest < 0.3
+    assert recording.times[-1] < rubble.LONGEST
+    assert lies_still(recording)
+
+
+def test_what_leaves_the_plane_falls_onto_the_ground() -> None:
+    """An arch in gravity that leans out of its plane overturns, and lies on its side."""
+    pytest.importorskip("pybullet")
+    arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.3)
+    problem = arch.problem(0.8).leaning(math.radians(20))
+    recording = simulate(problem, method="pybullet", duration=12.0)
+    found = rubble.measured(recording)
+    assert found["overlap"] < rubble.ALLOWED
+    assert found["sunk"] < 2e-3
+    assert recording.quality.gain < rubble.GAIN
+    # The crown has left the plane by more than its depth, and is on the floor.
+    crown = recording.poses[:, 2]
+    assert crown[-1, 3] > 0.3
+    assert crown[-1, 1] - ground_level(problem.assembly) < 0.3
+
+
+def test_free_fall_keeps_its_energy_and_a_push_is_seen() -> None:
+    problem = rubble.drawn(STACK)
+    count = len(problem.assembly.blocks)
+    first = np.column_stack([problem.assembly.centres / problem.assembly.size, np.zeros(count)])
+    balance = Balance(problem, first)
+    step, poses, velocity = 0.01, first.copy(), np.zeros_like(first)
+    pull = np.zeros_like(first)
+    pull[:, :2] = problem.gravity[:2]
+    # As engines of impulses do: the velocity of a step is that of its middle.
+    velocity += pull * step / 2
+    for _ in range(50):
+        poses = poses + step * velocity
+        after = velocity + step * pull
+        balance.look(poses, velocity, after)
+        velocity = after
+    assert balance.gain < 1e-12
+    start = energy(problem, first, np.zeros_like(first))
+    fallen = start - energy(problem, poses, np.zeros_like(first))
+    pushed = velocity * 1.1
+    balance.look(poses, pushed, pushed)
+    gained = energy(problem, poses, pushed) - start
+    assert balance.gain == pytest.approx(gained / fallen, rel=1e-9)
+    assert balance.gain > 0.1
+
+
+def test_energy_in_space_is_that_of_the_turned_axes() -> None:
+    """A block that spins about its own upright axis has the energy of that axis."""
+    arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.5)
+    problem = arch.problem(0.8)
+    poses = np.zeros((5, 6))
+    # Turned by a right angle about x, its own z axis is along -y of the space.
+    poses[0, 4] = math.pi / 2
+    spin = np.zeros((5, 6))
+    spin[0, 5] = 2.0
+    kinetic = energy(problem, poses, spin) - energy(problem, poses, np.zeros((5, 6)))
+    assert kinetic == pytest.approx(problem.assembly.masses[0, 2] * 2.0**2 / 2)
+
+
+def test_a_prism_is_written_with_faces_outwards() -> None:
+    """By the divergence theorem its volume is that of the polygons times the depth."""
+    square = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)])
+    triangle = np.array([(2.0, 0.0), (3.0, 0.0), (2.0, 1.0)])
+    lines = prisms([square, triangle], 3.0).splitlines()
+    corners = np.array([line.split()[1:] for line in lines if line[0] == "v"], dtype=float)
+    faces = [[int(k) - 1 for k in line.split()[1:]] for line in lines if line[0] == "f"]
+    volume = 0.0
+    for face in faces:
+        for second, third in pairwise(face[1:]):
+            volume += float(np.linalg.det(corners[[face[0], second, third]])) / 6
+    assert volume == pytest.approx((2.0 + 0.5) * 3.0)
+    assert sum(line.startswith("o ") for line in lines) == 2
