@@ -44,7 +44,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Library, Quality, Settings
-from blocksim.engines.boxes import Box, Frame, plate, snug, support_of, uneven_depths
+from blocksim.engines.boxes import Box, Frame, plate, snug, support_of
 from blocksim.engines.energy import Balance
 from blocksim.engines.solids import Solids, prisms
 
@@ -175,22 +175,21 @@ class Bodies:
         """Create a body for each block, and one for each joint with the support."""
         assembly, problem = self._assembly, self._problem
         plates, centres = snug(assembly), assembly.centres / assembly.size
-        deep = uneven_depths(assembly)
         friction = math.sqrt(min(problem.mu, MOST_FRICTION))
         bodies: dict[int, int] = {}
         for index, place in enumerate(self._places):
             boxes = [
-                plate(side, float(deep[index]), centres[index], OVERLAP, thickness)
-                for side, thickness in plates[index]
+                plate(side, deep, centres[index], OVERLAP, thickness)
+                for side, thickness, deep in plates[index]
             ]
             bodies[index] = self._body(boxes, place, friction, index)
         for index, joint in enumerate(assembly.joints):
             pair = [joint.before, joint.after]
             if SUPPORT in pair:
-                name, depth = support_of(index), 2 * float(deep[joint.bears])
-                ((side, thickness),) = plates[name]
+                name = support_of(index)
+                ((side, thickness, deep),) = plates[name]
                 middle = side.ends.mean(axis=0)
-                box = plate(side, depth, middle, OVERLAP, thickness)
+                box = plate(side, deep, middle, OVERLAP, thickness)
                 place, mu = self._frame.place(middle), self._friction_of_support(index)
                 bodies[name] = self._body([box], place, mu)
                 pair[pair.index(SUPPORT)] = name
