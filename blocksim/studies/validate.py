@@ -229,7 +229,7 @@ def validate_one(scenario: Scenario, engine: str) -> Validation:
         above = observe(scenario.arch(over).problem(scenario.mu), engine).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
-    middle = found.centre or found.eta_low
+    middle = found.centre or (None if found.undecided else found.eta_low)
     if middle is not None and found.eta_limit:
         error = middle / found.eta_limit - 1
     miss = "; ".join(_misses(found, error, below, above))
@@ -338,7 +338,10 @@ def _misses(
         if found.eta_high is not None:
             misses.append("stands, where nothing does")
     elif error is None:
-        misses.append("no bracket")
+        fell = (
+            "" if found.eta_low is None else f": the thickest that fell is {found.eta_low:.6g}"
+        )
+        misses.append(f"no bracket{fell}")
     elif abs(error) > ERROR_BOUND:
         misses.append(f"error {error:+.2%}")
     if found.mode is not found.mode_limit:
