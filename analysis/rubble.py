@@ -145,14 +145,14 @@ def measured(recording: Recording) -> dict[str, float]:
     """Measure overlap, depth below the floor and rise, from poses alone."""
     assembly, size = recording.assembly, recording.assembly.size
     solids = Solids(assembly)
-    owner = [index for index, _ in solids.moving] + [SUPPORT] * len(solids.fixed)
-    flat = [polygon for _, polygon in solids.moving] + solids.fixed
+    owner = [index for index, _ in solids.moving] + [SUPPORT] * (len(solids.fixed) + 1)
+    flat = [*(polygon for _, polygon in solids.moving), *solids.fixed, solids.floor]
     deep = float(assembly.depths.max())
     depths = [*(float(assembly.depths[index]) for index, _ in solids.moving)]
-    depths += [deep] * (len(solids.fixed) - 1) + [100.0]
+    depths += [deep] * len(solids.fixed) + [100.0]
     prisms = [Prism.of(each, depth) for each, depth in zip(flat, depths, strict=True)]
     widths = [min(width(each), depth) for each, depth in zip(flat, depths, strict=True)]
-    level = float(solids.fixed[-1][:, 1].max())
+    level = solids.level
     overlap = sunk = 0.0
     for pose in recording.poses:
         placed = [

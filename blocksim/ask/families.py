@@ -124,7 +124,7 @@ def _exact_tilt(problem: Problem) -> float | None:
 
     To tilt gravity is to add a force across it, of the tangent's size, and to scale both.
     """
-    if problem.dead or (problem.live and problem.load):
+    if problem.is_loaded:
         return _root(lambda value: problem.tilted(math.radians(value)), 0.0, 90.0, "low")
     x, y, _ = problem.gravity
     across = Load(

@@ -130,6 +130,11 @@ class Problem:
         return frozen(np.where(np.isnan(own), self.mu, own), (-1,))
 
     @property
+    def is_loaded(self) -> bool:
+        """Whether anything acts besides gravity."""
+        return bool(self.dead or (self.live and self.load))
+
+    @property
     def is_planar(self) -> bool:
         """Whether nothing pulls out of the plane."""
         return bool(self.gravity[2] == 0)
@@ -186,10 +191,16 @@ class Problem:
         pull[:, :2] = weight[:, None] * self.gravity[:2]
         if columns == SPATIAL:
             pull[:, PLANAR] = weight * self.gravity[2]
+        pull[:, :PLANAR] += self.loads(poses)
+        return pull
+
+    def loads(self, poses: Array | None = None) -> Array:
+        """Sum dead and live loads on each block: `pull` without gravity, shape (blocks, 3)."""
+        found = np.zeros((len(self.assembly.blocks), PLANAR))
         for factor, loads in ((1.0, self.dead), (self.load, self.live)):
             for load in loads:
-                pull[:, :PLANAR] += factor * self.of_load(load, poses)
-        return pull
+                found += factor * self.of_load(load, poses)
+        return found
 
     def of_load(self, load: Load, poses: Array | None = None) -> Array:
         """Return forces and moments of one load, shape (blocks, 3), units as of `pull`."""

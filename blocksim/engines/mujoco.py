@@ -109,7 +109,7 @@ class _Bodies:
     def __init__(self, problem: Problem, settings: Settings) -> None:
         assembly = problem.assembly
         self._problem = problem
-        self._loaded = bool(problem.dead or (problem.live and problem.load))
+        self._loaded = problem.is_loaded
         self._part = settings.step / settings.sweeps
         self._parts = settings.sweeps
         self._step = settings.step
@@ -150,9 +150,8 @@ class _Bodies:
         """Let loads act; MuJoCo keeps them until told others."""
         if self._loaded:
             poses = self._places + self._state.qpos.reshape(-1, 3)
-            pull = self._problem.pull(poses)
-            pull[:, :2] -= self._problem.assembly.masses[:, :2] * self._problem.gravity[:2]
-            self._state.qfrc_applied[:] = pull.ravel()
+            loads = self._problem.loads(poses)
+            self._state.qfrc_applied[:] = loads.ravel()
 
     def _settle(self, sweeps: int) -> None:
         """Let the contacts take up the weight, stopping the blocks again and again."""
@@ -320,16 +319,15 @@ def _rubble(problem: Problem, solids: Solids) -> Any:
         "solimp": [*[1 / (1 + RUBBLE_SOFTNESS)] * 2, 1.0, 0.5, 2.0],
     }
     owners = [bodies[index] for index, _ in solids.moving]
-    owners += [spec.worldbody] * (len(solids.fixed) - 1)
-    polygons = [polygon for _, polygon in solids.moving] + solids.fixed[:-1]
+    owners += [spec.worldbody] * len(solids.fixed)
+    polygons = [polygon for _, polygon in solids.moving] + solids.fixed
     for index, (body, polygon) in enumerate(zip(owners, polygons, strict=True)):
         points = [[x, y, z] for z in (-0.5, 0.5) for x, y in polygon.tolist()]
         spec.add_mesh(name=f"mesh {index}", uservert=np.array(points).ravel())
         body.add_geom(type=library.mjtGeom.mjGEOM_MESH, meshname=f"mesh {index}", **look)
-    level = float(solids.fixed[-1][:, 1].max())
     half = math.sqrt(0.5)
     spec.worldbody.add_geom(
-        type=library.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0], pos=[0.0, level, 0.0],
+        type=library.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0], pos=[0.0, solids.level, 0.0],
         # Its normal is z, turned to y.
         quat=[half, -half, 0.0, 0.0], **look,
     )  # fmt: skip

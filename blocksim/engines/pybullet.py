@@ -136,7 +136,7 @@ class Bodies:
         reach = float(assembly.reach.max()) / assembly.size + float(assembly.depths.max()) / 2
         self._breaking = min(MOST_BREAKING, BREAKING * assembly.shortest / reach)
         self._begin()
-        self._loaded = bool(problem.dead or (problem.live and problem.load))
+        self._loaded = problem.is_loaded
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
         self._sides: dict[tuple[int, int], list[int]] = defaultdict(list)
         self._is_rubble = False
@@ -329,17 +329,16 @@ class Bodies:
                 )
                 bullet.resetBaseVelocity(body, shift, spin, physicsClientId=self._client)
                 self._bodies[index] = body
-            for polygon in self._solids.fixed[:-1]:
+            # As deep as it is drawn.
+            deep = float(assembly.depths.max())
+            for polygon in self._solids.fixed:
                 middle = polygon.mean(axis=0)
-                # As deep as it is drawn.
-                deep = float(assembly.depths.max())
                 shape = self._prism(folder, [polygon - middle], deep)
                 self._add(shape, self._frame.place(middle), friction)
-        level = float(self._solids.fixed[-1][:, 1].max())
         floor = bullet.createCollisionShape(
             bullet.GEOM_PLANE, planeNormal=[0.0, 1.0, 0.0], physicsClientId=self._client
         )
-        self._add(floor, self._frame.place(np.array([0.0, level])), friction)
+        self._add(floor, self._frame.place(np.array([0.0, self._solids.level])), friction)
 
     def _prism(self, folder: str, polygons: list[Array], depth: float) -> int:
         """Return the shape of a block: of hulls only those from files know their faces."""
@@ -380,9 +379,8 @@ class Bodies:
     def _step(self) -> None:
         """Take a step under gravity and loads, which Bullet forgets after each."""
         if self._loaded:
-            pull = self._problem.pull(self.poses()[:, :PLANAR])
-            pull[:, :2] -= self._assembly.masses[:, :2] * self._problem.gravity[:2]
-            for body, (x, y, moment) in zip(self._bodies, pull.tolist(), strict=True):
+            loads = self._problem.loads(self.poses()[:, :PLANAR])
+            for body, (x, y, moment) in zip(self._bodies, loads.tolist(), strict=True):
                 place, _ = bullet.getBasePositionAndOrientation(
                     body, physicsClientId=self._client
                 )

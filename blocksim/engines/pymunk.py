@@ -98,7 +98,7 @@ class _Space:
         assembly = problem.assembly
         self._problem, self._assembly, self._settings = problem, assembly, settings
         self._inset = min(INSET, INSET_SHARE * assembly.shortest)
-        self._loaded = bool(problem.dead or (problem.live and problem.load))
+        self._loaded = problem.is_loaded
         self._shapes: dict[pymunk.Shape, tuple[int, float, pymunk.Body]] = {}
         self._polygons: dict[pymunk.Shape, int] = {}
         self._penetration = 0.0
@@ -160,8 +160,9 @@ class _Space:
         """Add the polygons of blocks, what they stand on and the floor."""
         friction = math.sqrt(min(self._problem.mu, FRICTION_CAP))
         bodies = [self._bodies[index] for index, _ in self._solids.moving]
-        bodies += [self._space.static_body] * len(self._solids.fixed)
-        corners = [polygon for _, polygon in self._solids.moving] + self._solids.fixed
+        fixed = [*self._solids.fixed, self._solids.floor]
+        bodies += [self._space.static_body] * len(fixed)
+        corners = [polygon for _, polygon in self._solids.moving] + fixed
         for index, (body, polygon) in enumerate(zip(bodies, corners, strict=True)):
             radius = ROUND * width(polygon)
             # Corners that coincide are collided wrongly: rounded ones do not.
@@ -249,11 +250,12 @@ class _Space:
         for body, (x, y, turn) in zip(self._bodies, velocities.tolist(), strict=True):
             body.velocity, body.angular_velocity = (x, y), turn
         self._space.iterations = max(RUBBLE_SWEEPS, self._settings.sweeps // parts)
-        before = velocities
-        for _ in range(parts):
+        for _ in range(parts - 1):
             self._forget()
-            before = self._velocities()
             self._step(part)
+        before = self._velocities()
+        self._forget()
+        self._step(part)
         after = self._velocities()
         self._balance.look(self.poses(), before, after)
         self._last, self._rate = part, (after - before) / part
@@ -265,9 +267,8 @@ class _Space:
     def _step(self, step: float) -> None:
         """Take a step under gravity and loads, which pymunk forgets after each."""
         if self._loaded:
-            pull = self._problem.pull(self.poses())
-            pull[:, :2] -= self._assembly.masses[:, :2] * self._problem.gravity[:2]
-            for body, (x, y, moment) in zip(self._bodies, pull.tolist(), strict=True):
+            loads = self._problem.loads(self.poses())
+            for body, (x, y, moment) in zip(self._bodies, loads.tolist(), strict=True):
                 body.force, body.torque = (x, y), moment
         self._space.step(step)
 

@@ -40,7 +40,11 @@ class Solids:
     moving : list of (int, (k, 2) float)
         Polygons of blocks: the block, and corners from its centre of mass, scaled.
     fixed : list of (k, 2) float
-        Polygons of what stays, where they are, scaled; they are numbered on from the others.
+        Polygons of what blocks stand on, scaled; they are numbered on from the others.
+    floor : (4, 2) float
+        That of the floor, numbered last.
+    level : float
+        Height of the floor.
     loose : bool
         Whether blocks may meet that share no joint.
     left : float
@@ -59,11 +63,11 @@ class Solids:
             for index, block in enumerate(assembly.blocks)
             for polygon in block.polygons
         ]
-        level = ground_level(assembly) / size
+        self.level = level = ground_level(assembly) / size
         wide = FLOOR + float(np.abs(self._start).max())
         floor = np.array([(-wide, level - FLOOR), (wide, level - FLOOR), (wide, level)])
-        floor = np.vstack([floor, [(-wide, level)]])
-        self.fixed = [*(each / size for each in standing(assembly)), floor]
+        self.floor = np.vstack([floor, [(-wide, level)]])
+        self.fixed = [each / size for each in standing(assembly)]
         self.loose = False
         self.holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._free = neighbours.free
