@@ -15,6 +15,7 @@ from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.observation import Held, Observation, conclude, hold
+from blocksim.evidence.shaken import shake
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
@@ -146,8 +147,10 @@ def bracket(
     chosen = choose(method, tol, problem=probe, settings=settings)
     if family.spreading is not None and chosen.name not in {"limit", "direct"}:
         raise InputError("method", chosen.name, "limit or direct: others move no supports")
-    exact = family.exact() if probe.is_planar else None
-    said = family.remark() if probe.is_planar else ""
+    # What limit analysis says is of ground at rest.
+    static = probe.is_planar and probe.shaking is None
+    exact = family.exact() if static else None
+    said = family.remark() if static else ""
     if family.spreading is not None:
         if chosen.is_static:
             found = _followed(family, family.spreading, exact)
@@ -155,6 +158,9 @@ def bracket(
             found = _slowly(family.spreading, tol, high, progress)
     elif chosen.is_static:
         found = _by_limit(family, exact)
+    elif probe.shaking is not None:
+        start = family.start or low + GUESS * (high - low)
+        found = _shaken(family, chosen.name, start, (low, high), tol, settings, progress)
     else:
         known = exact and math.isfinite(exact) and low <= exact <= high
         start = exact if exact and known else low + GUESS * (high - low)
@@ -210,6 +216,41 @@ def _slowly(spreading: Spreading, tol: float, highest: float, progress: Progress
         reason=f"supports moved slowly and stopped {seen.runs} times: up to one value blocks "
         "stay, from the other on they move by themselves (whether something catches them "
         f"again was not asked){way}",
+    )
+
+
+def _shaken(
+    family: Family,
+    engine: str,
+    start: float,
+    within: tuple[float, float],
+    tol: float,
+    settings: Overrides,
+    progress: Progress,
+) -> Search:
+    """Search for the change by shaking the blocks, each time until they lie still."""
+    more_is_safer = family.stands == "high"
+
+    def turned(value: float) -> float:
+        return value if more_is_safer else 1 / value
+
+    def judge(strength: float) -> Answer:
+        seen = shake(family.at(turned(strength)), engine, settings=settings)
+        # Nothing leads from how it falls to where it stands: the bracket is halved.
+        return Answer(seen.verdict, 0.0)
+
+    least, most = max(within[0], start / FARTHEST), min(within[1], start * FARTHEST)
+    floor, ceiling = (least, most) if more_is_safer else (1 / most, 1 / least)
+    search = Bisection(judge, progress, floor=floor, ceiling=ceiling, name=family.name)
+    search.expand(turned(start))
+    search.bisect(tol)
+    return Search(
+        falls=None if search.low is None else turned(search.low),
+        stands=None if search.high is None else turned(search.high),
+        runs=search.runs,
+        undecided=search.undecided,
+        reason=f"shaken at {search.runs} values, each time until all lay still; this is one "
+        "change from standing to falling, and beyond it blocks may stand again",
     )
 
 

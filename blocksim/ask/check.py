@@ -13,8 +13,10 @@ from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.engines.base import Method
 from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import PROBE
+from blocksim.evidence.shaken import Shaken, shake
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import Equilibrium, collapse, equilibrium
@@ -77,6 +79,9 @@ class ProblemCheck(Check):
     mechanism : (blocks, 3) float or None
         Rates x, y [size] and rotation with which a collapse starts, the largest way of a
         corner being 1.
+    shaken : Shaken or None
+        Where the ground shakes: what became of the blocks, which the verdict is of. Nothing
+        is said of rest then.
     """
 
     problem: Problem
@@ -84,6 +89,7 @@ class ProblemCheck(Check):
     rest: str | None
     forces: Array | None
     mechanism: Array | None
+    shaken: Shaken | None = None
 
 
 def check(
@@ -117,6 +123,9 @@ def check(
     """
     started = time.perf_counter()
     chosen = choose(method, problem=problem, settings=settings)
+    if problem.shaking is not None:
+        shaken = shake(problem, chosen.name, settings=settings, progress=progress)
+        return _of_shaken(problem, chosen, shaken, chosen_words(method, chosen), started)
     planar = problem.is_planar
     static = equilibrium(problem) if planar else None
     factor = collapse(problem).load_factor if planar and problem.live else None
@@ -150,6 +159,29 @@ def check(
         state_hash=seen and seen.state_hash,
         blocks=seen and seen.blocks,
         splits=seen and seen.splits,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def _of_shaken(
+    problem: Problem, chosen: Method, shaken: Shaken, words: str, started: float
+) -> ProblemCheck:
+    """Answer what became of blocks on ground that shakes."""
+    return ProblemCheck(
+        method=chosen.name,
+        verdict=shaken.verdict,
+        reason=shaken.reason + words + _notes(problem),
+        problem=problem,
+        load_factor=None,
+        rest=None,
+        joints=closed_joints(problem.assembly.joint_angles),
+        forces=None,
+        mechanism=None,
+        shaken=shaken,
+        simulated=float(shaken.recording.times[-1]),
+        state_hash=shaken.recording.state_hash,
+        blocks=len(problem.assembly.blocks),
+        splits=None,
         wall_s=time.perf_counter() - started,
     )
 

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Load, Problem
+from blocksim.blocks.shaking import LONGEST, SHORTEST, STRONGEST, Shaking
 from blocksim.common.errors import InputError
 from blocksim.kinds.files import kind_behind, with_parameter
 from blocksim.limit import collapse, equilibrium
@@ -50,6 +51,8 @@ class Family:
         range, inf where it stands at all values, 0 where it does down to the range's end.
     remark : callable
         What else limit analysis saw on the way, to be added to a reason.
+    start : float or None
+        Where an engine begins its search if limit analysis knows no value.
     spreading : Spreading or None
         Where the parameter is the motion of supports.
     """
@@ -62,6 +65,7 @@ class Family:
     stands: Stands
     exact: Callable[[], float | None]
     remark: Callable[[], str] = str
+    start: float | None = None
     spreading: Spreading | None = None
 
 
@@ -177,12 +181,48 @@ def _over_spread(problem: Problem) -> Family:
     )
 
 
+def _over_amplitude(problem: Problem) -> Family:
+    shaking = _shaking(problem, "amplitude")
+    return Family(
+        name="amplitude",
+        unit="g",
+        at=lambda value: replace(problem, shaking=shaking.with_amplitude(value)),
+        low=0.0,
+        high=STRONGEST,
+        stands="low",
+        exact=lambda: None,
+        start=shaking.amplitude or None,
+    )
+
+
+def _over_duration(problem: Problem) -> Family:
+    shaking = _shaking(problem, "duration")
+    return Family(
+        name="duration",
+        unit="s",
+        at=lambda value: replace(problem, shaking=shaking.with_duration(value)),
+        low=SHORTEST,
+        high=LONGEST,
+        stands="low",
+        exact=lambda: None,
+        start=shaking.duration,
+    )
+
+
+def _shaking(problem: Problem, name: str) -> Shaking:
+    if problem.shaking is None:
+        raise InputError("--over", name, "another parameter, or --shake: the ground is at rest")
+    return problem.shaking
+
+
 FAMILIES: dict[str, Callable[[Problem], Family]] = {
     "load": _over_load,
     "tilt": _over_tilt,
     "lean": _over_lean,
     "mu": _over_mu,
     "spread": _over_spread,
+    "amplitude": _over_amplitude,
+    "duration": _over_duration,
 }
 
 

@@ -118,6 +118,9 @@ def _beyond(method: Method, problem: Problem | None) -> str:
         return ""
     if not problem.is_planar and not method.is_spatial:
         return f"{SPATIAL} where gravity leans out of the plane"
+    if problem.shaking and not (isinstance(method, Engine) and method.shakes):
+        able = ", ".join(each.name for each in ENGINES.values() if each.shakes)
+        return f"one of {able}: {method.name} knows no ground that shakes"
     if method.name == "theory" and "half_angle" not in problem.origin:
         return "limit or an engine: theory is of symmetric circular arches only"
     if not method.has_joint_friction and _own_friction(problem):

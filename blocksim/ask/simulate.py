@@ -7,6 +7,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.observation import hold
 from blocksim.evidence.recording import Recording
+from blocksim.evidence.shaken import shake
 from blocksim.evidence.simulation import BY_RULE, Overrides
 
 
@@ -26,7 +27,8 @@ def simulate(
     method : str
         An engine, or `auto`.
     duration : float, optional
-        Time to record [sqrt(size/g)]; by default until the verdict is certain.
+        Time to record [sqrt(size/g)]; by default until the verdict is certain, or, where
+        the ground shakes, until the blocks lie still.
     settings : mapping of str to float
         Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
     progress : Progress, optional
@@ -43,5 +45,15 @@ def simulate(
         If the engine's library is not installed.
     """
     chosen = choose(method, problem=problem, moving=True, settings=settings)
+    if problem.shaking is not None:
+        seen = shake(
+            problem,
+            chosen.name,
+            until=duration,
+            whole=True,
+            settings=settings,
+            progress=progress,
+        )
+        return seen.recording
     held = hold(problem, chosen.name, settings=settings, progress=progress)
     return held.release(duration, progress).recording

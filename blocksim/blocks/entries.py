@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 from pydantic import Field, TypeAdapter, ValidationError
 
 from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
+from blocksim.blocks.shaking import MOST_ROWS
 from blocksim.common.errors import MISSING, InputError
 
 FARTHEST = 1e15
@@ -92,6 +93,19 @@ class MoveEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ShakeEntry:
+    """`shake`: a shape, how strong [g] and how long [s]; or accelerations [g] over time [s]."""
+
+    __pydantic_config__: ClassVar = _FORBID
+
+    shape: str | None = None
+    amplitude_g: Number | None = None
+    duration_s: Number | None = None
+    times_s: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
+    accelerations_g: Annotated[list[Number], Field(max_length=MOST_ROWS)] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Around:
     """What a structure file says besides its blocks: friction, weight and loads.
 
@@ -108,6 +122,7 @@ class Around:
     dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
     live: Annotated[tuple[LoadEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
+    shake: ShakeEntry | None = None
     load: Number = 0.0
     size: Positive | None = None
 
@@ -124,7 +139,7 @@ class StructureFile(Around):
     joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None
 
 
-_TABLES = (StructureFile, BlockEntry, JointEntry, LoadEntry, MoveEntry)
+_TABLES = (StructureFile, BlockEntry, JointEntry, LoadEntry, MoveEntry, ShakeEntry)
 _KEYS = {field.name for table in _TABLES for field in fields(table)}
 _ALLOWED = {
     "friction": '0 or more, or "inf"',

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
+from blocksim.blocks.shaking import Shaking
 from blocksim.common.checks import is_number, require, require_lean
 
 STANDARD_GRAVITY = 9.81
@@ -90,6 +91,8 @@ class Problem:
     load : float
         The load factor.
     moves : tuple of Move
+    shaking : Shaking or None
+        How the ground shakes from the release on.
     title, source : str
         What it is, and where it comes from.
     origin : mapping
@@ -111,6 +114,7 @@ class Problem:
     live: tuple[Load, ...] = ()
     load: float = 0.0
     moves: tuple[Move, ...] = ()
+    shaking: Shaking | None = None
     title: str = ""
     source: str = ""
     origin: Mapping[str, object] = field(default_factory=dict[str, object])
@@ -165,6 +169,30 @@ class Problem:
     def with_load(self, load: float) -> Problem:
         """Return the same under another load factor."""
         return replace(self, load=load)
+
+    def shaken(self, start: float, end: float) -> Array:
+        """Return gravity as it is seen from the ground, on average between two times.
+
+        Parameters
+        ----------
+        start, end : float
+            Since the release [sqrt(size/g)].
+
+        Returns
+        -------
+        (3,) float
+            As `gravity`.
+        """
+        if self.shaking is None:
+            return self.gravity
+        unit = self.seconds
+        gained = self.shaking.gained(start * unit, end * unit)
+        return self.gravity - np.array([gained / ((end - start) * unit), 0.0, 0.0])
+
+    @property
+    def seconds(self) -> float:
+        """The unit of time of engines, sqrt(size/g) [s]."""
+        return math.sqrt(self.assembly.size / STANDARD_GRAVITY)
 
     def with_friction(self, mu: float) -> Problem:
         """Return the same with another friction coefficient, but for joints with their own."""

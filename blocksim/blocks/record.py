@@ -15,6 +15,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Assembly, Block, Joint, Support
 from blocksim.blocks.problem import Load, Move, Problem
+from blocksim.blocks.shaking import Shaking, table_of
 
 
 def to_record(value: object) -> Any:
@@ -59,6 +60,7 @@ def from_record(record: Mapping[str, Any]) -> Problem:
         dead=tuple(_load(each) for each in given.pop("dead")),
         live=tuple(_load(each) for each in given.pop("live")),
         moves=tuple(Move(**each) for each in given.pop("moves")),
+        shaking=_shaking(given.pop("shaking", None)),
         origin=_numbers(given.pop("origin")),
         notes=tuple(str(each) for each in given.pop("notes")),
         **given,
@@ -73,6 +75,18 @@ def _block(record: dict[str, Any]) -> Block:
 def _load(record: dict[str, Any]) -> Load:
     given: dict[str, Any] = {**record, "blocks": tuple(record["blocks"])}
     return Load(**given)
+
+
+def _shaking(record: Mapping[str, Any] | None) -> Shaking | None:
+    if record is None:
+        return None
+    made = Shaking(**record)
+    if not len(made.table):
+        return made
+    # A stranger's table is checked as one of a file is.
+    times, values = made.table.T
+    table_of(times, values)
+    return made
 
 
 def _numbers(record: Mapping[str, Any]) -> dict[str, object]:

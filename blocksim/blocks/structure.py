@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any, cast
 
 import numpy as np
@@ -18,6 +18,7 @@ from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
+from blocksim.blocks.shaking import shaking_of, shaking_record
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 
@@ -212,6 +213,7 @@ def problem_of(
         live=tuple(live),
         load=float(written.load),
         moves=tuple(moves),
+        shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
         title=written.title,
         source=written.source,
         notes=(*notes, *found),
@@ -319,4 +321,5 @@ def structure_record(problem: Problem) -> dict[str, Any]:
             }
             for move in problem.moves
         ],
+        **({} if problem.shaking is None else {"shake": shaking_record(problem.shaking)}),
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -33,7 +33,9 @@ from blocksim.cli.filming import (
 from blocksim.cli.options import (
     EXIT_CODES,
     Alpha,
+    Amplitude,
     Depth,
+    Duration,
     Eta,
     Given,
     Json,
@@ -46,6 +48,7 @@ from blocksim.cli.options import (
     Reduce,
     Scene,
     Set,
+    Shake,
     Tilt,
     Voussoirs,
     WeightOption,
@@ -99,6 +102,9 @@ def check(
     method: MethodOption = "auto",
     load: Load = None,
     tilt: Tilt = None,
+    shake: Shake = None,
+    amplitude: Amplitude = None,
+    duration: Duration = None,
     lean: Lean = None,
     settings: Set = None,
     reduce: Reduce = False,
@@ -109,7 +115,9 @@ def check(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
         depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
-    loading = Loading(load=load, tilt=tilt)
+    loading = Loading(
+        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
+    )  # fmt: skip
     if scene is not None and is_structure(scene):
         require(not reduce, "--reduce", reduce, "left out: it is for arches")
         problem = structure(scene, given, loading)
@@ -150,6 +158,9 @@ def bracket(
     ratio: Ratio = None,
     load: Load = None,
     tilt: Tilt = None,
+    shake: Shake = None,
+    amplitude: Amplitude = None,
+    duration: Duration = None,
     lean: Lean = None,
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
@@ -162,7 +173,9 @@ def bracket(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
         depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
-    loading = Loading(load=load, tilt=tilt)
+    loading = Loading(
+        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
+    )  # fmt: skip
     if is_structure(scene) or over not in {None, THICKNESS}:
         require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
         if scene is not None and is_structure(scene):
@@ -173,7 +186,8 @@ def bracket(
             problem = loaded(built, Given(), loading)
         bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
         return
-    for name, value in (("eta", eta), ("ratio", ratio), ("load", load), ("tilt", tilt)):
+    left = {"eta": eta, "ratio": ratio, **asdict(loading)}
+    for name, value in left.items():
         require(value is None, f"--{name}", value, "left out over thickness")
     require(within is None, "--within", within, "left out over thickness")
     asked = question(scene, given)
@@ -216,6 +230,9 @@ def simulate(
     ] = None,
     load: Load = None,
     tilt: Tilt = None,
+    shake: Shake = None,
+    amplitude: Amplitude = None,
+    duration: Duration = None,
     lean: Lean = None,
     settings: Set = None,
 ) -> None:
@@ -224,7 +241,9 @@ def simulate(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
         depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
-    loading = Loading(load=load, tilt=tilt)
+    loading = Loading(
+        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
+    )  # fmt: skip
     if scene is not None and is_structure(scene):
         require_given(out=out)
         problem, size = structure(scene, given, loading), "L"
@@ -263,6 +282,9 @@ def render(
     depth: Depth = None,
     load: Load = None,
     tilt: Tilt = None,
+    shake: Shake = None,
+    amplitude: Amplitude = None,
+    duration: Duration = None,
     lean: Lean = None,
     beside: Beside = None,
     view: View = "2d",
@@ -283,7 +305,9 @@ def render(
         alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
         depth=depth, lean=lean, parameters=parameters,
     )  # fmt: skip
-    loading = Loading(load=load, tilt=tilt)
+    loading = Loading(
+        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
+    )  # fmt: skip
     if scene is None:
         question(scene, given, out=out)
     require_given(out=out)
@@ -309,6 +333,9 @@ def render(
             draw_structure(out, kind, problem, method or "auto", height)
         else:
             require(
-                not loading.given, "--load, --tilt", scene, "left out: film it, or use check"
+                not loading.given,
+                "--load, --tilt, --shake",
+                scene,
+                "left out: film it, or use check",
             )
             write_arch(out, kind, scene, given, height)

@@ -114,7 +114,8 @@ def recordings(
         built = arch_of(asked, given.ratio).problem(asked.mu, asked.lean)
         problem = loaded(built, Given(), loading)
     with named_options(), progress() as report:
-        run = simulate(problem, method=method or "auto", duration=FALL, progress=report)
+        until = FALL if problem.shaking is None else None
+        run = simulate(problem, method=method or "auto", duration=until, progress=report)
     return [run, *second]
 
 

@@ -17,6 +17,7 @@ from blocksim.arch.scenario import Scenario, load_scenario
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.ask.search import ETA_MAX
+from blocksim.blocks.shaking import COLUMNS, SHAPES
 from blocksim.common.checks import is_number, require, require_friction
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.evidence.simulation import SETTINGS
@@ -55,6 +56,18 @@ Tilt = Annotated[
     float | None,
     typer.Option(help="Tilt of the table in the plane, in degrees: its right side goes down."),
 ]
+Shake = Annotated[
+    str | None,
+    typer.Option(
+        metavar="SHAPE|FILE",
+        help=f"Ground that shakes: {', '.join(SHAPES)}, or a .csv file "
+        f"({','.join(COLUMNS)}); does it survive?",
+    ),
+]
+Amplitude = Annotated[
+    float | None, typer.Option(help="Largest acceleration of the ground, in g.")
+]
+Duration = Annotated[float | None, typer.Option(help="How long the ground shakes, in s.")]
 Over = Annotated[
     str | None,
     typer.Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
@@ -254,7 +267,19 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
     return settings
 
 
-OPTIONS = {"eta", "mu", "voussoirs", "weight", "depth", "method", "tol", "reduce"}
+OPTIONS = {
+    "shake",
+    "amplitude",
+    "duration",
+    "eta",
+    "mu",
+    "voussoirs",
+    "weight",
+    "depth",
+    "method",
+    "tol",
+    "reduce",
+}
 """Fields that are options, too."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import typer
@@ -14,6 +14,7 @@ from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.cli.console import answer_with, progress, save_picture, say
 from blocksim.cli.options import (
     EXIT_CODES,
@@ -27,6 +28,7 @@ from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_place
 from blocksim.evidence.recording import Recording
+from blocksim.evidence.shaken import rocking_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import changed, load_structure, structure_of
 from blocksim.report.structures import (
@@ -38,6 +40,8 @@ from blocksim.report.structures import (
 
 THICKNESS = "thickness"
 """The parameter of `bracket` that is left out: of arches."""
+LEAST_ROTATION = 1e-3
+"""Rotation of a block from which on a recording is said to have turned one [rad]."""
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
 
@@ -48,11 +52,14 @@ class Loading:
 
     load: float | None = None
     tilt: float | None = None
+    shake: str | None = None
+    amplitude: float | None = None
+    duration: float | None = None
 
     @property
     def given(self) -> bool:
         """Whether there is any of it."""
-        return self.load is not None or self.tilt is not None
+        return self != Loading()
 
 
 def is_structure(scene: str | None) -> bool:
@@ -116,7 +123,27 @@ def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
             ok = is_number(given.lean, -90, math.nextafter(90, 0))
             require(ok, "--lean", given.lean, "above -90 and below 90 deg")
             problem = problem.leaning(math.radians(given.lean))
-    return problem
+        return replace(problem, shaking=_shaking(problem.shaking, loading))
+
+
+def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
+    """Shake the ground as the options say, which change what a file says."""
+    shape, amplitude, duration = loading.shake, loading.amplitude, loading.duration
+    if shape is not None and shape.endswith(".csv"):
+        shaking = read_table(shape)
+    elif shape is not None:
+        shapes = ", ".join(SHAPES)
+        require(shape in SHAPES, "--shake", shape, f"one of {shapes}, or a .csv file")
+        require_given(amplitude=amplitude, duration=duration)
+        shaking = Shaking(shape=shape, amplitude=amplitude or 0.0, duration=duration or 0.0)
+    for name, value in (("amplitude", amplitude), ("duration", duration)):
+        allowed = "left out, or --shake beside it: the ground is at rest"
+        require(value is None or shaking is not None, f"--{name}", value, allowed)
+    if shaking is not None and amplitude is not None:
+        shaking = shaking.with_amplitude(amplitude)
+    if shaking is not None and duration is not None:
+        shaking = shaking.with_duration(duration)
+    return shaking
 
 
 def check_structure(
@@ -200,8 +227,20 @@ def say_recorded(out: Path, recording: Recording, unit: str) -> None:
         f"{recording.seconds(STANDARD_GRAVITY)[-1]:.2f} s, "
         f"moved {recording.displacement[-1]:.2g} {unit}, state {recording.state_hash}"
     )
-    kept = recording.quality
+    kept, rocking, problem = recording.quality, rocking_of(recording), recording.problem
     said: list[str] = []
+    if problem.shaking is not None:
+        said.append(problem.shaking.words)
+    if rocking.rotation >= LEAST_ROTATION:
+        name = problem.assembly.blocks[rocking.block].name or str(rocking.block)
+        said.append(f"block {name} turned by {math.degrees(rocking.rotation):.3g} deg at most")
+    if rocking.impact is not None:
+        said.append(
+            f"a joint first closed again after {rocking.impact * problem.seconds:.4g} s"
+        )
+    if said:
+        say("  " + ", ".join(said))
+    said = []
     if kept.penetration is not None:
         said.append(f"blocks overlap by at most {kept.penetration:.1e} {unit}")
     if kept.gain is not None:

@@ -232,6 +232,8 @@ class Engine(Method):
         Puts the blocks of a problem into the engine, all contacts closed, at rest.
     most_friction : float
         Friction above which the engine takes this instead.
+    shakes : bool
+        Whether its ground can shake.
     finds_rest : bool
         Whether rest is found wherever it is possible, from any beginning.
     takes_forces, tells_forces : bool
@@ -250,6 +252,7 @@ class Engine(Method):
     rule: Callable[[Assembly], Settings]
     build: Callable[[Problem, Settings], World]
     most_friction: float = FRICTION_CAP
+    shakes: bool = False
     finds_rest: bool = False
     takes_forces: bool = False
     tells_forces: bool = False

@@ -82,6 +82,7 @@ class Blocks:
         loads = problem.dead + problem.live
         self._turning = any(load.point is not None for load in loads)
         self._free = problem.pull() / self._mass
+        self._time = 0.0
         self._solution: Solution | None = None
         self._balance = Balance(problem, self._poses)
         self._residual = self._penetration = 0.0
@@ -102,7 +103,9 @@ class Blocks:
             # With nothing known of them, blocks may fall.
             speeding = self._free if self._solution is None else self._solution.acceleration
             way = step * np.abs(self._velocities) + step**2 * np.abs(speeding)
-            count = count if way.max() < SLOW else steps
+            # Ground that shakes sets them in motion at any time.
+            slow = way.max() < SLOW and self._asked.shaking is None
+            count = count if slow else steps
         for _ in range(count):
             # A step that cannot be solved is the last: the blocks stay, the residual tells.
             if self._residual <= UNSOLVED:
@@ -112,6 +115,7 @@ class Blocks:
     def _move(self, step: float) -> None:
         self._looked = self._poses + step / 2 * self._velocities
         self._pull()
+        self._shake(step)
         touch = self._touch(self._looked, step)
         rates = self._rates(touch.rows)
         gap = touch.gap - step / 2 * rates[:, :2]
@@ -127,6 +131,14 @@ class Blocks:
         """Find the accelerations without contact, which change as blocks with loads turn."""
         if self._turning:
             self._free = self._asked.pull(self._looked) / self._mass
+
+    def _shake(self, step: float) -> None:
+        """Add what the ground's acceleration does in a step to the accelerations."""
+        if self._asked.shaking is not None:
+            start, self._time = self._time, self._time + step
+            across = self._asked.shaken(start, self._time) - self._asked.gravity
+            self._free = self._asked.pull(self._looked) / self._mass
+            self._free[:, :2] += across[:2]
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""
@@ -223,6 +235,7 @@ ENGINE = Engine(
     adjustable=("step", "still", "rest"),
     finest=1e-8,
     most_friction=math.inf,
+    shakes=True,
     finds_rest=True,
     tells_forces=True,
     chart={

@@ -104,6 +104,7 @@ class _Space:
         self._penetration = 0.0
         self._space, self._bodies = self._build()
         self._balance = Balance(problem, self.poses())
+        self._time = 0.0
         self._last, self._rate = settings.step, np.zeros((len(self._bodies), 3))
         self._unseen, self._ahead = 1, 0
 
@@ -222,7 +223,7 @@ class _Space:
             self._space.iterations = self._settings.sweeps
             self._watch()
             before = self._velocities() if self._solids.loose else None
-            self._step(self._settings.step)
+            self._go(self._settings.step)
             if before is not None:
                 self._rate = (self._velocities() - before) / self._settings.step
                 self._make_solid()
@@ -252,10 +253,10 @@ class _Space:
         self._space.iterations = max(RUBBLE_SWEEPS, self._settings.sweeps // parts)
         for _ in range(parts - 1):
             self._forget()
-            self._step(part)
+            self._go(part)
         before = self._velocities()
         self._forget()
-        self._step(part)
+        self._go(part)
         after = self._velocities()
         self._balance.look(self.poses(), before, after)
         self._last, self._rate = part, (after - before) / part
@@ -263,6 +264,14 @@ class _Space:
 
     def _velocities(self) -> Array:
         return np.array([(*body.velocity, body.angular_velocity) for body in self._bodies])
+
+    def _go(self, step: float) -> None:
+        """Take a step in time, in which the ground may shake."""
+        if self._problem.shaking is not None:
+            x, y, _ = self._problem.shaken(self._time, self._time + step).tolist()
+            self._space.gravity = x, y
+            self._time += step
+        self._step(step)
 
     def _step(self, step: float) -> None:
         """Take a step under gravity and loads, which pymunk forgets after each."""
@@ -358,6 +367,7 @@ ENGINE = Engine(
     build=_Space,
     adjustable=("step", "sweeps", "hold_sweeps", "still", "rest"),
     finest=1e-4,
+    shakes=True,
     takes_forces=True,
     tells_forces=True,
     usual_sweeps=10,

@@ -10,6 +10,7 @@ from blocksim.ask.check import ProblemCheck
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.shaking import shaking_record
 
 SHOWN = 8
 """Joints and blocks told in a line of text."""
@@ -36,11 +37,13 @@ def check_record(answer: ProblemCheck) -> dict[str, object]:
             "mu": problem.mu,
             **tilt_and_lean(problem),
             "load": problem.load,
+            "shake": None if problem.shaking is None else shaking_record(problem.shaking),
         },
         "load_factor": answer.load_factor,
         "rest": answer.rest,
         "joints": _joints(answer),
         "mechanism": _mechanism(answer.mechanism, assembly),
+        "shaken": _shaken(answer),
         "simulated_s": seconds,
         "state_hash": answer.state_hash,
         "wall_s": answer.wall_s,
@@ -164,6 +167,20 @@ def _joints(answer: ProblemCheck) -> list[dict[str, object]]:
     return told
 
 
+def _shaken(answer: ProblemCheck) -> dict[str, object] | None:
+    """Tell what became of blocks on ground that shakes; times since the release."""
+    if answer.shaken is None:
+        return None
+    rocking, assembly = answer.shaken.rocking, answer.problem.assembly
+    impact = rocking.impact
+    return {
+        "largest_rotation_deg": math.degrees(rocking.rotation),
+        "block": assembly.blocks[rocking.block].name or str(rocking.block),
+        "first_impact_s": None if impact is None else impact * answer.problem.seconds,
+        "moved_m": answer.shaken.moved * assembly.size,
+    }
+
+
 def _mechanism(rates: Array | None, assembly: Assembly) -> list[dict[str, object]] | None:
     """Rates of the blocks: x and y in m for each radian of rotation, which has no unit."""
     if rates is None:
@@ -201,6 +218,8 @@ def _described(problem: Problem) -> str:
         said.append(
             f"live loads times {problem.load:g}" if problem.load else "no live load on it"
         )
+    if problem.shaking is not None:
+        said.append(problem.shaking.words)
     said.append(f"L = {assembly.size:g} m")
     return ", ".join(said)
 

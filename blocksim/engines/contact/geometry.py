@@ -66,7 +66,7 @@ class Geometry:
         self._corners = np.flatnonzero(joints.is_corner)
         self._carried_by_after = joints.carrier[self._corners, None] == 1
         self._turns = np.array(
-            [_turns(assembly, int(index)) for index in self._corners]
+            [turns_of(assembly, int(index)) for index in self._corners]
         ).reshape(-1, 2)
 
     def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
@@ -164,7 +164,7 @@ def faces_at_joints(assembly: Assembly) -> Array:
     return np.where((found == as_built)[..., None], exact, points)
 
 
-def _turns(assembly: Assembly, joint: int) -> tuple[float, float]:
+def turns_of(assembly: Assembly, joint: int) -> tuple[float, float]:
     """Sines of the turns of `after` against `before` that a corner allows, either way."""
     made, joints = assembly.joints[joint], assembly.joint_arrays
     sign = 1.0 if joints.carrier[joint] == 0 else -1.0

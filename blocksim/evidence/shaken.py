@@ -1,0 +1,223 @@
+"""Blocks on ground that shakes: recorded until they lie still, and what became of them.
+
+- *stands*: they lie still after the shaking, and every joint still is one: its faces lie
+  over each other, nearly parallel, and touch;
+- *collapses*: they lie still and a joint is none any more, or a block has sunk by `SUNK`;
+- *undecided*: they still move when the time is over.
+
+Blocks rock: what a joint opens it closes again, with an impact. No restitution is put in; what
+an impact leaves is what contact and friction leave. The first impact and the largest
+rotation are read from the recorded poses.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from blocksim.blocks.assembly import PLANAR, Array, Assembly, displacement
+from blocksim.blocks.problem import Problem
+from blocksim.common.progress import Progress, silent
+from blocksim.engines.base import trusted
+from blocksim.engines.contact.geometry import Geometry, turns_of
+from blocksim.evidence.motion import FRAME, UNSEEN
+from blocksim.evidence.observation import hold
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
+from blocksim.evidence.verdict import Verdict
+
+SUNK = 0.5
+"""How far a block's centre has sunk that will not come back [size]."""
+LONGEST = 200.0
+"""Time after the shaking at which blocks that still move are given up [sqrt(size/g)]."""
+STILL = 40
+"""Frames in which blocks that lie still move by less than `UNSEEN`."""
+APART = 0.01
+"""Gap across a joint from which its blocks do not touch [size]."""
+TURNED, SHUT = 1e-4, 1e-7
+"""Rotation by which a joint has opened, and at which it has closed again [rad]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rocking:
+    """How blocks of a recording turned.
+
+    Parameters
+    ----------
+    rotation : float
+        Largest rotation of any block at any time [rad].
+    block : int
+        Which one that was.
+    impact : float or None
+        When a joint that had opened closed first [sqrt(size/g)]; None where none did.
+    """
+
+    rotation: float
+    block: int
+    impact: float | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Shaken:
+    """What became of blocks on ground that shakes.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    reason : str
+    rocking : Rocking
+    moved : float
+        Largest displacement of any corner at the end [size].
+    recording : Recording
+    """
+
+    verdict: Verdict
+    reason: str
+    rocking: Rocking
+    moved: float
+    recording: Recording
+
+
+def shake(
+    problem: Problem,
+    engine: str,
+    *,
+    until: float | None = None,
+    whole: bool = False,
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> Shaken:
+    """Let blocks go on ground that shakes, and see what becomes of them.
+
+    Parameters
+    ----------
+    problem : Problem
+        With `shaking`.
+    engine : str
+        One that `shakes`.
+    until : float, optional
+        Time to record for [sqrt(size/g)], or until all lies still.
+    whole : bool
+        Go on where a block has sunk by `SUNK`, and the verdict is certain.
+    settings : mapping of str to float
+        Given instead of what the engine's rule says.
+    progress : Progress, optional
+
+    Returns
+    -------
+    Shaken
+    """
+    assert problem.shaking is not None  # noqa: S101
+    held = hold(problem, engine, settings=settings, progress=progress)
+    simulation, world = held.simulation, held.world
+    assembly, step = simulation.assembly, simulation.settings.step
+    stride = max(1, round(FRAME / step))
+    shaken = problem.shaking.duration / problem.seconds
+    end = shaken + LONGEST if until is None else until
+    times, poses, taken = [0.0], [world.poses()], 0
+    verdict, what = Verdict.UNDECIDED, "still moves when the time is over"
+    while times[-1] < end - step / 2:
+        world.advance(stride)
+        taken += stride
+        times.append(taken * step)
+        poses.append(world.poses())
+        sunk = float((poses[0][:, 1] - poses[-1][:, 1]).max())
+        if sunk > SUNK and not whole:
+            verdict, what = Verdict.COLLAPSES, f"a block sank by {sunk:.2g} {simulation.length}"
+            break
+        if times[-1] > shaken and _lie_still(assembly, poses):
+            ended = _ended(assembly, poses[-1])
+            verdict = Verdict.COLLAPSES if ended else Verdict.STANDS
+            what = f"lies still, {ended} joints have come apart"
+            what = what if ended else "lies still, every joint still is one"
+            break
+        progress(min(1.0, times[-1] / end), "shaking")
+    quality = replace(world.quality(), gain=None)
+    if not trusted(world, simulation.settings) and verdict is Verdict.STANDS:
+        verdict, what = Verdict.UNDECIDED, "a contact was not solved, or blocks overlap"
+    recording = simulation.record(times, poses, quality)
+    rocking = rocking_of(recording)
+    return Shaken(
+        verdict=verdict,
+        reason=_words(verdict, what, recording, rocking) + given_words(settings),
+        rocking=rocking,
+        moved=float(recording.displacement[-1]),
+        recording=recording,
+    )
+
+
+def rocking_of(recording: Recording) -> Rocking:
+    """Read from the poses how far blocks turned, and when a joint first closed again."""
+    turned = recording.poses[:, :, 2] - recording.poses[0, :, 2]
+    frame, block = np.unravel_index(int(np.abs(turned).argmax()), turned.shape)
+    return Rocking(
+        rotation=float(abs(turned[frame, block])),
+        block=int(block),
+        impact=_first_impact(recording.assembly, recording.times, turned),
+    )
+
+
+def _first_impact(assembly: Assembly, times: Array, turned: Array) -> float | None:
+    """Find when the rotation of an open joint, followed from before, first comes to 0."""
+    joints = assembly.joint_arrays
+    still = np.column_stack([turned, np.zeros(len(turned))])
+    across = still[:, joints.after] - still[:, joints.before]
+    ways = [across[:, ~joints.is_corner]]
+    for joint in np.flatnonzero(joints.is_corner).tolist():
+        down, up = np.arcsin(turns_of(assembly, joint))
+        ways.append(np.stack([across[:, joint] + down, up - across[:, joint]], axis=1))
+    way = np.hstack(ways)
+    # Three to follow, and the one after.
+    if len(times) < 4:
+        return None
+    step = times[-1] - times[-2]
+    older, old, now, then = way[:-3], way[1:-2], way[2:-1], way[3:]
+    slope, bend = (3 * now - 4 * old + older) / 2, (now - 2 * old + older) / 2
+    expected = now + slope + bend
+    closes = (np.abs(now) > TURNED) & (now * expected <= 0)
+    closes &= (now * then <= 0) | (np.abs(then) < TURNED)
+    if not closes.any():
+        return None
+    frame = int(closes.any(axis=1).argmax())
+    shares = [
+        _zero(now[frame, at], slope[frame, at], bend[frame, at])
+        for at in np.flatnonzero(closes[frame])
+    ]
+    return float(times[frame + 2] + step * min(shares))
+
+
+def _zero(now: float, slope: float, bend: float) -> float:
+    """Find where a parabola first comes to 0 in a step."""
+    found = np.roots([bend, slope, now])
+    inside = found[(abs(found.imag) < SHUT) & (found.real >= 0) & (found.real <= 1)].real
+    return float(inside.min()) if len(inside) else 1.0
+
+
+def _lie_still(assembly: Assembly, poses: list[Array]) -> bool:
+    """Tell whether blocks have hardly moved for a while."""
+    if len(poses) <= STILL:
+        return False
+    last = np.array(poses[-1 - STILL :])
+    return float(displacement(last - last[-1], assembly).max()) < UNSEEN
+
+
+def _ended(assembly: Assembly, poses: Array) -> int:
+    """Count the joints that are none any more."""
+    touch, holds = Geometry(assembly).touch(poses[:, :PLANAR])
+    return int((~holds | (touch.gap.min(axis=1) > APART)).sum())
+
+
+def _words(verdict: Verdict, what: str, recording: Recording, rocking: Rocking) -> str:
+    """Say what was seen."""
+    seconds = recording.problem.seconds
+    name = recording.assembly.blocks[rocking.block].name or str(rocking.block)
+    said = [what]
+    said.append(f"largest rotation {math.degrees(rocking.rotation):.3g} deg, of block {name}")
+    if rocking.impact is not None:
+        said.append(f"first impact after {rocking.impact * seconds:.4g} s")
+    if verdict is Verdict.STANDS:
+        said.append(f"at the end {recording.displacement[-1]:.1e} L from where it was")
+    said.append(f"watched for {recording.times[-1] * seconds:.3g} s")
+    return "; ".join(said)
