@@ -92,9 +92,11 @@ def family_of(problem: Problem, over: str) -> Family:
 
 
 def families_of(problem: Problem) -> tuple[str, ...]:
-    """Names of the parameters there are: `load`, `tilt`, `lean`, `mu`, and those of a kind."""
+    """Names of the parameters there are: of any problem, of its shaking, and of its kind."""
     kind = kind_behind(problem)
-    return (*FAMILIES, *(() if kind is None else kind.bracketed))
+    still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
+    always = [name for name in FAMILIES if name not in still]
+    return (*always, *(() if kind is None else kind.bracketed))
 
 
 def _over_load(problem: Problem) -> Family:

@@ -103,9 +103,9 @@ class Blocks:
             # With nothing known of them, blocks may fall.
             speeding = self._free if self._solution is None else self._solution.acceleration
             way = step * np.abs(self._velocities) + step**2 * np.abs(speeding)
-            # Ground that shakes sets them in motion at any time.
-            slow = way.max() < SLOW and self._asked.shaking is None
-            count = count if slow else steps
+            # Ground that shakes may set them in motion at any time.
+            shakes = self._asked.shaking and self._asked.shaking.duration > self._seconds
+            count = count if way.max() < SLOW and not shakes else steps
         for _ in range(count):
             # A step that cannot be solved is the last: the blocks stay, the residual tells.
             if self._residual <= UNSOLVED:
@@ -139,6 +139,10 @@ class Blocks:
             across = self._asked.shaken(start, self._time) - self._asked.gravity
             self._free = self._asked.pull(self._looked) / self._mass
             self._free[:, :2] += across[:2]
+
+    @property
+    def _seconds(self) -> float:
+        return self._time * self._asked.seconds
 
     def poses(self) -> Array:
         """Return centres of mass and rotations."""

@@ -46,8 +46,14 @@ class Held:
 
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
         """Let the blocks go; see `moving_run`."""
-        repeat = self.onset.repeat
-        return moving_run(self.simulation, self.world, repeat, until=until, progress=progress)
+        return moving_run(
+            self.simulation,
+            self.world,
+            self.onset.repeat,
+            until=until,
+            moves=self.onset.verdict is Verdict.COLLAPSES,
+            progress=progress,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

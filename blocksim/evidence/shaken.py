@@ -176,7 +176,7 @@ def _first_impact(assembly: Assembly, times: Array, turned: Array) -> float | No
     older, old, now, then = way[:-3], way[1:-2], way[2:-1], way[3:]
     slope, bend = (3 * now - 4 * old + older) / 2, (now - 2 * old + older) / 2
     expected = now + slope + bend
-    closes = (np.abs(now) > TURNED) & (now * expected <= 0)
+    closes = (np.abs(older) > TURNED) & (older * now >= 0) & (now * expected <= 0)
     closes &= (now * then <= 0) | (np.abs(then) < TURNED)
     if not closes.any():
         return None

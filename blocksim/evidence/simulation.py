@@ -61,6 +61,11 @@ def require_setting(name: str, value: float) -> None:
     require(ok, f"settings.{name}", value, setting.allowed)
 
 
+def setting_of(name: str, value: float) -> float:
+    """Return the value of a setting, as an `int` where it is a whole number."""
+    return round(value) if SETTINGS[name].is_whole else value
+
+
 def given_words(settings: Overrides) -> str:
     """Say which settings were given, to be added to the reason of an answer."""
     return "".join(f"; {name} {value:g} as given" for name, value in settings.items())
@@ -127,10 +132,7 @@ class Simulation:
     ) -> Simulation:
         """Take the settings that the engine chooses for the blocks, or those given."""
         found = get_engine(engine)
-        given = {
-            name: int(value) if SETTINGS[name].is_whole else value
-            for name, value in settings.items()
-        }
+        given = {name: setting_of(name, value) for name, value in settings.items()}
         return cls(
             problem=problem,
             engine=found,

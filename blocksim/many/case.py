@@ -20,6 +20,11 @@ Given = tuple[tuple[str, float], ...]
 """Settings by name."""
 
 
+def identity_of(case: tuple[object, ...], version: str) -> bytes:
+    """Hash of what is asked and of the version of the method that answers."""
+    return blake2b(f"{tuple(case)!r} {version}".encode(), digest_size=12).digest()
+
+
 class Case(NamedTuple):
     """One question about one arch.
 
@@ -103,7 +108,7 @@ class Case(NamedTuple):
 
     def identity(self, version: str) -> bytes:
         """Hash of what is asked and of the version of the method that answers."""
-        return blake2b(f"{tuple(self)!r} {version}".encode(), digest_size=12).digest()
+        return identity_of(self, version)
 
 
 class Questions(Protocol):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, cast
+from typing import Annotated, ClassVar, Protocol, cast
 
 import numpy as np
 from pydantic import BeforeValidator, Field
@@ -18,7 +18,7 @@ from blocksim.ask.methods import CHOICES, METHODS, STATIC
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
-from blocksim.evidence.simulation import SETTINGS, require_setting
+from blocksim.evidence.simulation import SETTINGS, require_setting, setting_of
 from blocksim.many.axis import DRAWN_AT_ONCE, Axis, AxisField, Number, require_axis
 from blocksim.many.case import AUTO_ENGINE, Case
 
@@ -126,7 +126,7 @@ class Design:
         free = [(*self._width(method), self.taken(method), method) for method in self.method]
         for (alpha, mu, voussoirs, weight, eta, ratio), values in arches:
             given = tuple(
-                (name, round(value) if SETTINGS[name].is_whole else value)
+                (name, setting_of(name, value))
                 for name, value in zip(names, values, strict=True)
             )
             arch = alpha, mu, round(voussoirs), weight, eta, ratio
@@ -238,29 +238,76 @@ def _require_ranges(design: Design) -> None:
         if field == "voussoirs":
             for value in (*axis.ends, *(axis.every() if spaced else ())):
                 require(3 <= value == int(value), field, value, allowed)
-    for field, words, known in (
-        ("weight", design.weight, WEIGHTS),
-        ("method", design.method, CHOICES),
-    ):
-        for word in words:
-            require(word in known, field, word, f"one of {', '.join(known)}")
-    for name, axis in design.settings.axes.items():
-        field = f"settings.{name}"
-        require_axis(field, axis, spaced)
-        for value in axis.ends if not spaced else axis.every():
-            require_setting(name, value)
-        taken = any(name in design.taken(method) for method in design.method)
-        require(taken, field, "given", "left out: no method asked is run with it")
+    for word in design.weight:
+        require(word in WEIGHTS, "weight", word, f"one of {', '.join(WEIGHTS)}")
+    bracketed = design.eta is None and design.ratio is None
+    require_asked(design, CHOICES, bracketed=bracketed)
     both = design.eta is not None and design.ratio is not None
     require(not both, "ratio", "given", "left out where eta is given")
     band_ok = design.band is None or is_number(design.band, 0, math.inf)
     require(band_ok, "band", design.band, "above 0 (inf to simulate every arch)")
-    require(is_number(design.tol, 0, 0.5), "tol", design.tol, "above 0 and at most 0.5")
-    if design.eta is None and design.ratio is None:
+    if bracketed:
         require(design.band is None, "band", design.band, "left out where brackets are asked")
-        for name in set(design.method) - {"auto"}:
-            finest = METHODS[name].finest
-            require(design.tol >= finest, "tol", design.tol, f"at least {finest:g} for {name}")
+
+
+class Asked(Protocol):
+    """How a design asks, whatever it asks about."""
+
+    @property
+    def method(self) -> tuple[str, ...]:
+        """Methods."""
+        ...
+
+    @property
+    def tol(self) -> float:
+        """Relative width of a bracket."""
+        ...
+
+    @property
+    def settings(self) -> SettingsTable:
+        """Axes of the engines' settings."""
+        ...
+
+    @property
+    def random(self) -> RandomTable | None:
+        """Whether cases are drawn."""
+        ...
+
+    @property
+    def size(self) -> int:
+        """Number of cases."""
+        ...
+
+    def taken(self, method: str) -> tuple[str, ...]:
+        """Names of the settings that change an answer of a method."""
+        ...
+
+
+def require_asked(design: Asked, choices: Sequence[str], *, bracketed: bool) -> None:
+    """Raise `InputError` where methods, tolerance, settings or size are out of range.
+
+    Parameters
+    ----------
+    design : Asked
+    choices : sequence of str
+        Methods that may be asked.
+    bracketed : bool
+        Whether the question is where something changes.
+    """
+    for word in design.method:
+        require(word in choices, "method", word, f"one of {', '.join(choices)}")
+    require(is_number(design.tol, 0, 0.5), "tol", design.tol, "above 0 and at most 0.5")
+    for name in sorted(set(design.method) - {"auto"}) if bracketed else ():
+        finest = METHODS[name].finest
+        require(design.tol >= finest, "tol", design.tol, f"at least {finest:g} for {name}")
+    spaced = design.random is None
+    for name, axis in design.settings.axes.items():
+        field = f"settings.{name}"
+        require_axis(field, axis, spaced)
+        for value in axis.every() if spaced else axis.ends:
+            require_setting(name, value)
+        taken = any(name in design.taken(method) for method in design.method)
+        require(taken, field, "given", "left out: no method asked is run with it")
     count = design.size
     ok = 0 < count <= LARGEST_DESIGN
     require(ok, "design", f"{count} cases", f"at most {LARGEST_DESIGN} cases")

@@ -14,21 +14,20 @@ import numpy as np
 from blocksim.arch.scenario import read_table
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES, METHODS
+from blocksim.blocks.shaking import SHAPES
 from blocksim.common.checks import is_number, require
-from blocksim.common.errors import InputError
-from blocksim.evidence.simulation import SETTINGS, require_setting
+from blocksim.common.errors import MISSING, InputError
+from blocksim.evidence.simulation import SETTINGS, setting_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, Parameter, parameters_of
 from blocksim.kinds.circular import CircularArch
 from blocksim.many.axis import DRAWN_AT_ONCE, Axis, AxisField, Number, require_axis
-from blocksim.many.case import Given
-from blocksim.many.design import LARGEST_DESIGN, RandomTable, SettingsTable, Words
-from blocksim.many.structurecase import StructureCase
+from blocksim.many.design import RandomTable, SettingsTable, Words, require_asked
+from blocksim.many.structurecase import ACTING, StructureCase
 
-COMMON = ("live", "dead", "move", "density")
+COMMON = ("live", "dead", "move", "density", "shake")
 """Keys of structure files that all cases have in common."""
 Value = float | str
-Loading = float | None
 # What pydantic is given, which is made while the program runs.
 _AXIS: Any = cast("Any", AxisField) | None
 _WORDS: Any = cast("Any", Words) | None
@@ -46,7 +45,8 @@ class KindDesign:
     rest : mapping
         Parameters that are tables, and keys of structure files: loads, density.
     mu : Axis
-    load, tilt_deg : Axis, optional
+    acting : mapping of str to Axis
+        Of `ACTING`, as far as they are given.
     over : str, optional
         Parameter to bracket over; without it the question is whether it stands.
     method : tuple of str
@@ -60,8 +60,7 @@ class KindDesign:
     axes: Mapping[str, Axis | tuple[str, ...]]
     rest: Mapping[str, Any]
     mu: Axis
-    load: Axis | None
-    tilt_deg: Axis | None
+    acting: Mapping[str, Axis]
     over: str | None
     method: tuple[str, ...]
     tol: float
@@ -82,57 +81,55 @@ class KindDesign:
         for values in self._grid() if self.random is None else self._drawn(self.random):
             at = len(names)
             parameters = tuple(
-                (name, round(cast(float, value)) if name in whole else cast(Value, value))
+                (name, round(cast(float, value)) if name in whole else value)
                 for name, value in zip(names, values, strict=False)
             )
-            mu, load, tilt = cast("tuple[float, Loading, Loading]", values[at : at + 3])
-            given = self._settings(values[at + 3 :])
+            mu, *others = cast("tuple[float, ...]", values[at:])
+            acting = tuple(zip(self.acting, others, strict=False))
+            given = tuple(
+                (name, setting_of(name, value))
+                for name, value in zip(self.settings.axes, others[len(acting) :], strict=True)
+            )
             for method in self.method:
-                taken = METHODS[method].adjustable if method != "auto" else ()
+                taken = self.taken(method)
                 yield StructureCase(
                     self.kind,
                     parameters,
                     common,
                     mu,
-                    load,
-                    tilt,
+                    acting,
                     self.over,
                     method,
                     self.tol if self.over is not None else 0.0,
                     tuple(each for each in given if each[0] in taken),
                 )
 
-    def _settings(self, values: Sequence[Value | None]) -> Given:
-        return tuple(
-            (name, round(cast(float, value)) if SETTINGS[name].is_whole else cast(float, value))
-            for name, value in zip(self.settings.axes, values, strict=True)
-        )
+    def taken(self, method: str) -> tuple[str, ...]:
+        """Names of the settings that change an answer of a method."""
+        return () if method == "auto" else METHODS[method].adjustable
 
-    def _all(self) -> list[Axis | tuple[str, ...] | None]:
-        loads = [self.mu, self.load, self.tilt_deg]
-        return [*self.axes.values(), *loads, *self.settings.axes.values()]
+    def _all(self) -> list[Axis | tuple[str, ...]]:
+        return [
+            *self.axes.values(),
+            self.mu,
+            *self.acting.values(),
+            *self.settings.axes.values(),
+        ]
 
-    def _grid(self) -> Iterator[tuple[Value | None, ...]]:
+    def _grid(self) -> Iterator[tuple[Value, ...]]:
         return itertools.product(*(_every(axis) for axis in self._all()))
 
-    def _drawn(self, table: RandomTable) -> Iterator[tuple[Value | None, ...]]:
+    def _drawn(self, table: RandomTable) -> Iterator[tuple[Value, ...]]:
         generator = np.random.default_rng(table.seed)
-        names = [*self.axes, None, None, None, *self.settings.axes]
         whole = [
-            name is not None
-            and (
-                SETTINGS[name].is_whole
-                if name in SETTINGS
-                else _known(self.kind, self.rest, name).whole
-            )
-            for name in names
+            *(_known(self.kind, self.rest, name).whole for name in self.axes),
+            *(False for _ in ("mu", *self.acting)),
+            *(SETTINGS[name].is_whole for name in self.settings.axes),
         ]
         for start in range(0, table.count, DRAWN_AT_ONCE):
             drawn: list[list[Any]] = []
             for axis, is_whole in zip(self._all(), whole, strict=True):
-                if axis is None:
-                    drawn.append([None] * DRAWN_AT_ONCE)
-                elif isinstance(axis, Axis):
+                if isinstance(axis, Axis):
                     drawn.append(axis.draw(generator, whole=is_whole))
                 else:
                     drawn.append(generator.choice(axis, DRAWN_AT_ONCE).tolist())
@@ -140,9 +137,7 @@ class KindDesign:
             yield from itertools.islice(zip(*drawn, strict=True), left)
 
 
-def _every(axis: Axis | tuple[str, ...] | None) -> Sequence[Value | None]:
-    if axis is None:
-        return [None]
+def _every(axis: Axis | tuple[str, ...]) -> Sequence[Value]:
     return axis.every() if isinstance(axis, Axis) else axis
 
 
@@ -181,8 +176,9 @@ def load_kind_design(path: Any, table: Mapping[str, Any]) -> KindDesign:
             axes=axes,
             rest=rest | {key: table[key] for key in COMMON if key in table},
             mu=written.mu,
-            load=written.load,
-            tilt_deg=written.tilt_deg,
+            acting={
+                name: axis for name in ACTING if (axis := getattr(written, name)) is not None
+            },
             over=written.over,
             method=written.method,
             tol=written.tol,
@@ -209,8 +205,7 @@ def _schema(kind: type[Kind], table: Mapping[str, Any]) -> type[Any]:
     rows: list[tuple[str, Any, Any]] = [
         *_fields(kind, table),
         ("mu", AxisField, field()),
-        ("load", _AXIS, field(default=None)),
-        ("tilt_deg", _AXIS, field(default=None)),
+        *((name, _AXIS, field(default=None)) for name in ACTING),
         ("over", str | None, field(default=None)),
         ("method", Words, field(default=("auto",))),
         ("tol", Number, field(default=0.005)),
@@ -295,40 +290,27 @@ def _require_ranges(design: KindDesign, kind: type[Kind]) -> None:
         values = (*ends, *(_every(axis) if spaced else ())) if known.whole else ends
         for value in values:
             known.require(name, value)
-    for name, axis, low, above in (
-        ("mu", design.mu, 0.0, False),
-        ("load", design.load, -math.inf, True),
-        ("tilt_deg", design.tilt_deg, -180.0, True),
-    ):
-        if axis is None:
-            continue
+    for name, axis in (("mu", design.mu), *design.acting.items()):
         require_axis(name, axis, spaced)
-        high = {"mu": math.inf, "load": 1e15, "tilt_deg": 180.0}[name]
+        low, high = ACTING.get(name, (0.0, math.inf))
         for value in axis.ends:
-            ok = is_number(value, low, high) or (value == low and not above)
+            ok = value == low or is_number(value, low, high)
             require(ok, name, value, f"from {low:g} to {high:g}")
-    live = "live" in design.rest
-    require(live or design.load is None, "load", "given", "left out: no live loads")
+    live, shaken = "live" in design.rest, design.rest.get("shake")
+    known = not isinstance(shaken, str) or shaken in SHAPES
+    require(known, "shake", shaken, f"one of {', '.join(SHAPES)}, or a table")
+    for name, there, why in (
+        ("load", live, "no live loads"),
+        ("amplitude_g", shaken, "no shake"),
+        ("duration_s", shaken, "no shake"),
+    ):
+        ok = bool(there) or name not in design.acting
+        require(ok, name, "given", f"left out: {why}")
+        if isinstance(shaken, str) and name != "load" and name not in design.acting:
+            raise InputError(name, MISSING, "given with shake")
     if design.over is not None:
-        known = (*FAMILIES, *_bracketed(kind, design.rest))
-        require(design.over in known, "over", design.over, f"one of {', '.join(known)}")
+        names = (*FAMILIES, *_bracketed(kind, design.rest))
+        require(design.over in names, "over", design.over, f"one of {', '.join(names)}")
         require(live or design.over != "load", "over", "load", "another: no live loads")
-    for word in design.method:
-        choices = [each for each in CHOICES if each != "theory"]
-        require(word in choices, "method", word, f"one of {', '.join(choices)}")
-        finest = METHODS[word].finest if word != "auto" else 0.0
-        if design.over is not None:
-            allowed = f"at least {finest:g} for {word}"
-            require(design.tol >= finest, "tol", design.tol, allowed)
-    require(is_number(design.tol, 0, 0.5), "tol", design.tol, "above 0 and at most 0.5")
-    for name, axis in design.settings.axes.items():
-        require_axis(f"settings.{name}", axis, spaced)
-        for value in axis.ends if not spaced else axis.every():
-            require_setting(name, value)
-        taken = any(
-            word != "auto" and name in METHODS[word].adjustable for word in design.method
-        )
-        allowed = "left out: no method asked is run with it"
-        require(taken, f"settings.{name}", "given", allowed)
-    ok = 0 < design.size <= LARGEST_DESIGN
-    require(ok, "design", f"{design.size} cases", f"at most {LARGEST_DESIGN} cases")
+    choices = [each for each in CHOICES if each != "theory"]
+    require_asked(design, choices, bracketed=design.over is not None)

@@ -5,17 +5,26 @@ from __future__ import annotations
 import json
 import math
 import time
-from hashlib import blake2b
 from typing import Any, NamedTuple, cast
 
 from blocksim.ask.bracket import bracket
-from blocksim.ask.check import check
+from blocksim.ask.check import ProblemCheck, check
 from blocksim.ask.families import family_of
 from blocksim.ask.methods import STATIC
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.shaking import LONGEST, SHORTEST, STRONGEST
 from blocksim.common.errors import MissingPart
 from blocksim.kinds.files import structure_of
-from blocksim.many.case import Given, Pace, Row
+from blocksim.many.case import Given, Pace, Row, identity_of
+
+ACTING: dict[str, tuple[float, float]] = {
+    "load": (-1e15, 1e15),
+    "tilt_deg": (-180.0, 180.0),
+    "amplitude_g": (0.0, STRONGEST),
+    "duration_s": (SHORTEST, LONGEST),
+}
+"""What acts on a structure, and the range of each: factor on the live loads, tilt of the table,
+how strongly and how long the ground shakes."""
 
 
 class StructureCase(NamedTuple):
@@ -29,8 +38,8 @@ class StructureCase(NamedTuple):
     rest : str
         JSON of what all cases of a design have in common: tables, loads, density.
     mu : float
-    load, tilt_deg : float or None
-        Factor on the live loads, and tilt of the table.
+    acting : tuple of (str, float)
+        What acts on it besides, of `ACTING`, as far as the design sets it.
     over : str or None
         Parameter to bracket over; None: does it stand?
     method : str
@@ -44,8 +53,7 @@ class StructureCase(NamedTuple):
     parameters: tuple[tuple[str, float | str], ...]
     rest: str
     mu: float
-    load: float | None
-    tilt_deg: float | None
+    acting: tuple[tuple[str, float], ...]
     over: str | None
     method: str
     tol: float
@@ -53,7 +61,7 @@ class StructureCase(NamedTuple):
 
     def identity(self, version: str) -> bytes:
         """Hash of what is asked and of the version of the method that answers."""
-        return blake2b(f"{tuple(self)!r} {version}".encode(), digest_size=12).digest()
+        return identity_of(self, version)
 
     @property
     def pace(self) -> Pace:
@@ -70,24 +78,31 @@ class StructureCase(NamedTuple):
             for part in path:
                 inside = cast("dict[str, Any]", inside.setdefault(part, {}))
             inside[last] = value
+        acting = dict(self.acting)
+        if isinstance(table.get("shake"), str):
+            table["shake"] = {"shape": table["shake"]}
+        if "shake" in table:
+            table["shake"] |= {
+                name: acting[name] for name in ("amplitude_g", "duration_s") if name in acting
+            }
+        if "load" in acting:
+            table["load"] = acting["load"]
         return {**table, "friction": "inf" if math.isinf(self.mu) else self.mu}
 
     def problem(self) -> Problem:
         """Build it, under its load and on its slope."""
         built = structure_of(self.table)
-        if self.load is not None:
-            built = built.with_load(self.load)
-        return built if self.tilt_deg is None else built.tilted(math.radians(self.tilt_deg))
+        return built.tilted(math.radians(dict(self.acting).get("tilt_deg", 0.0)))
 
     def row(self, identity: bytes, version: str) -> Row:
         """Return the row with nothing answered."""
+        acting = dict(self.acting)
         return {
             "id": identity.hex(),
             "kind": self.kind,
             "parameters": dict(self.parameters),
             "mu": "inf" if math.isinf(self.mu) else self.mu,
-            "load": self.load,
-            "tilt_deg": self.tilt_deg,
+            **{name: acting.get(name) for name in ACTING},
             "over": self.over,
             "asked": self.method,
             "settings": dict(self.settings) or None,
@@ -96,6 +111,8 @@ class StructureCase(NamedTuple):
             "verdict": None,
             "rest": None,
             "load_factor": None,
+            "largest_rotation_deg": None,
+            "first_impact_s": None,
             "limit": None,
             "low": None,
             "high": None,
@@ -124,6 +141,7 @@ class StructureCase(NamedTuple):
             "verdict": seen.verdict.value,
             "rest": seen.rest,
             "load_factor": _written(seen.load_factor),
+            **_rocking(seen),
             "reason": seen.reason,
         }
 
@@ -138,6 +156,18 @@ class StructureCase(NamedTuple):
             "confirmed": found.confirmed,
             "reason": found.reason,
         }
+
+
+def _rocking(seen: ProblemCheck) -> Row:
+    """Tell how blocks turned on ground that shakes."""
+    if seen.shaken is None:
+        return {}
+    rocking = seen.shaken.rocking
+    impact = rocking.impact and rocking.impact * seen.problem.seconds
+    return {
+        "largest_rotation_deg": math.degrees(rocking.rotation),
+        "first_impact_s": impact,
+    }
 
 
 def reason_of(error: BaseException) -> str:
