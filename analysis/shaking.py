@@ -1,0 +1,281 @@
+"""Ground that shakes: pulses that overturn blocks, and a map of how strong against how long.
+
+Question: which pulses of the ground does a structure survive? Blocks are let go on ground that
+shakes, in `direct` and in pymunk, until they lie still. No restitution is put in.
+
+Expected: pulses overturn a block, or a frame, from the amplitude on that Housner's equation
+has for their duration (`tests/structures/cases/pulse_*`, `frame_pulse_*`), within 1 %; a block
+let go on its corner falls back after 0.69834 s to 1e-4 and keeps 0.911765 of its angular
+velocity to 1e-3 (`rocking_1x4_5`). On the map a block stands below the line of that
+equation, and an arch below the acceleration of its static limit, 0.3705 g, moves not at all.
+
+    python -m analysis.shaking OUT [--quick]
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from analysis.command import run
+from blocksim.ask.bracket import bracket
+from blocksim.ask.families import family_of
+from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.shaking import Shaking
+from blocksim.evidence.shaken import rocking_of
+from blocksim.evidence.simulation import Simulation
+from blocksim.kinds.files import structure_of
+from blocksim.many import load_design, read_rows, sweep
+from blocksim.view.style import FONT
+from tests.structure_cases import case, scenes
+
+ENGINES = ("direct", "pymunk")
+PULSES = {
+    "pulse_1x4_03": 0.3,
+    "pulse_1x4_05": 0.5,
+    "pulse_1x4_10": 1.0,
+    "frame_pulse_gamma05": 0.4,
+    "frame_pulse_gamma20": 0.4,
+}
+"""Cases, and the amplitude of each [g]."""
+TOL = 0.005
+"""Relative width of the brackets."""
+FINE = 2.5e-4
+"""Step with which the fall of a block on its corner is timed [sqrt(size/g)]."""
+BLOCK = {"kind": "column", "drums": 1, "drum_height": 4.0, "width": 1.0}
+ARCH = {
+    "kind": "circular-arch",
+    "radius": 10.0,
+    "thickness": 1.5,
+    "voussoirs": 7,
+    "left_deg": 78.75,
+    "right_deg": 78.75,
+}
+STATIC = {"block": 0.25, "arch": 0.3705338738135736}
+"""Acceleration from which on they move at all [g]: width over height, and Oppenheim's."""
+COLOURS = {"stands": "#2b7bba", "collapses": "#d1495b", "undecided": "#999999"}
+MARKERS = {"stands": "o", "collapses": "x", "undecided": "?"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One pulse whose least amplitude is known for its duration.
+
+    Parameters
+    ----------
+    name, engine : str
+    duration : float
+        [s]
+    known : float
+        Least amplitude that overturns [g].
+    low, high : float or None
+        Largest that was survived and least that was not, as found [g].
+    error : float
+        Of the farther end, relative.
+    seconds : float
+        Processor time.
+    """
+
+    name: str
+    engine: str
+    duration: float
+    known: float
+    low: float | None
+    high: float | None
+    error: float
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fall:
+    """A block let go on its corner.
+
+    Parameters
+    ----------
+    time, time_known : float
+        From the release to the impact [s].
+    kept, kept_known : float
+        Share of its angular velocity after the impact.
+    """
+
+    time: float
+    time_known: float
+    kept: float
+    kept_known: float
+
+
+@dataclass(frozen=True)
+class Result:
+    """Pulses, the fall of a block, and the rows of the two maps."""
+
+    pulses: tuple[Row, ...]
+    fall: Fall
+    maps: dict[str, list[dict[str, Any]]]
+
+    @property
+    def worst(self) -> float:
+        """Largest error of an end of a bracket."""
+        return max(row.error for row in self.pulses)
+
+
+def pulse(name: str, engine: str) -> Row:
+    """Bracket the amplitude of a pulse of the case's duration."""
+    begin, known = time.process_time(), PULSES[name]
+    duration = case(name)["expected"]["least_duration_s"]
+    shaking = Shaking(shape="constant", amplitude=known, duration=duration)
+    problem = replace(structure_of(scenes(name)[0]), shaking=shaking)
+    found = bracket(family_of(problem, "amplitude"), method=engine, tol=TOL)
+    ends = [end for end in (found.low, found.high) if end is not None]
+    return Row(
+        name=name,
+        engine=engine,
+        duration=duration,
+        known=known,
+        low=found.low,
+        high=found.high,
+        error=max(abs(end / known - 1) for end in ends) if len(ends) > 1 else math.inf,
+        seconds=round(time.process_time() - begin, 1),
+    )
+
+
+def fall(step: float) -> Fall:
+    """Let a block go on its corner, and time its fall."""
+    known, scene = case("rocking_1x4_5"), scenes("rocking_1x4_5")[0]
+    turned = known["initial"]["rotation"]
+    corners = np.array(scene["blocks"][1]["vertices"], dtype=float)
+    pivot = np.array([corners[:, 0].max(), 0.0])
+    cos, sin = math.cos(-turned), math.sin(-turned)
+    corners = (corners - pivot) @ np.array([[cos, sin], [-sin, cos]]) + pivot
+    scene["blocks"][1]["vertices"] = corners.tolist()
+    problem, expected = structure_of(scene), known["expected"]
+    simulation = Simulation.of(problem, "direct", settings={"step": step})
+    world: Any = simulation.world()
+    world.hold(1)
+    stride = max(1, round(0.02 / step))
+    times, poses, speeds = [0.0], [world.poses()], [0.0]
+    for count in range(
+        1, round(1.1 * expected["time_to_first_impact_s"] / problem.seconds / step)
+    ):
+        world.advance(1)
+        speeds.append(float(world.velocities[0, 2]))
+        if count % stride == 0:
+            times.append(count * step)
+            poses.append(world.poses())
+    impact = rocking_of(simulation.record(times, poses, world.quality())).impact
+    # An impact takes up to two steps.
+    last = int(np.argmax(np.diff(speeds) < -0.01 * max(speeds)))
+    return Fall(
+        time=(impact or math.inf) * problem.seconds,
+        time_known=expected["time_to_first_impact_s"],
+        kept=speeds[last + 2] / speeds[last],
+        kept_known=expected["ratio_after_impact (no bounce, no slip)"],
+    )
+
+
+def overturning(duration: float, width: float = 1.0, height: float = 4.0) -> float:
+    """Least constant acceleration [g] that overturns a block without an impact, by its ODE."""
+    alpha, radius = math.atan2(width, height), math.hypot(width, height) / 2
+    squared = 3 * STANDARD_GRAVITY / (4 * radius)
+
+    def passes(amplitude: float) -> float:
+        """Energy left over at the top, once the ground keeps its speed."""
+
+        def motion(_: float, state: Sequence[float]) -> list[float]:
+            tilt = alpha - state[0]
+            return [state[1], squared * (amplitude * math.cos(tilt) - math.sin(tilt))]
+
+        def top(_: float, state: Sequence[float]) -> float:
+            return alpha - state[0]
+
+        top.terminal = True  # type: ignore[attr-defined]
+        end = solve_ivp(
+            motion, (0, duration), [0.0, 0.0], events=top, rtol=1e-10, atol=1e-13
+        ).y[:, -1]
+        return float(end[1] ** 2 / 2 - squared * (1 - math.cos(alpha - end[0])))
+
+    return float(brentq(passes, math.tan(alpha) * (1 + 1e-9), 10.0))
+
+
+def mapped(name: str, table: dict[str, Any], folder: Path, steps: int) -> list[dict[str, Any]]:
+    """Shake a structure by half sines and constant pulses of many strengths and durations."""
+    lines = [f"{key} = {value!r}".replace("'", '"') for key, value in table.items()]
+    high, longest = {"block": (1.2, 1.0), "arch": (2.0, 1.0)}[name]
+    lines += [
+        'shake = "constant"',
+        'method = "pymunk"' if name == "block" else 'method = "direct"',
+        f"mu = {2.0 if name == 'block' else '[inf]'}",
+        f"amplitude_g = {{ low = 0.2, high = {high}, steps = {steps} }}",
+        f"duration_s = {{ low = 0.1, high = {longest}, steps = {steps} }}",
+    ]
+    path = folder / f"shaking_{name}.toml"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    sweep(load_design(path), folder / f"shaking_{name}", workers=1)
+    return list(read_rows(folder / f"shaking_{name}"))
+
+
+def main(out: Path, *, quick: bool = False) -> Result:
+    """Run the study, write its tables and figure, and return its numbers."""
+    out.mkdir(parents=True, exist_ok=True)
+    asked = [("pulse_1x4_10", "pymunk")] if quick else [(n, e) for n in PULSES for e in ENGINES]
+    pulses = [pulse(*each) for each in asked]
+    maps = {
+        name: mapped(name, table, out, 2 if quick else 12)
+        for name, table in (("block", BLOCK), ("arch", ARCH))
+    }
+    result = Result(tuple(pulses), fall(0.004 if quick else FINE), maps)
+    with (out / "shaking.csv").open("w", newline="", encoding="utf-8") as file:
+        written = csv.DictWriter(file, [field.name for field in fields(Row)])
+        written.writeheader()
+        written.writerows(asdict(row) for row in pulses)
+    _figure(result, out / "shaking.png")
+    return result
+
+
+def _figure(result: Result, path: Path) -> None:
+    with mpl.rc_context(FONT):
+        figure = Figure(figsize=(10, 4.8), layout="constrained")
+        for axes, name in zip(figure.subplots(1, 2), result.maps, strict=True):
+            _map(axes, name, result.maps[name])
+        figure.savefig(path, dpi=150)
+
+
+def _map(axes: Axes, name: str, rows: list[dict[str, Any]]) -> None:
+    for verdict, colour in COLOURS.items():
+        chosen = [row for row in rows if row["verdict"] == verdict]
+        if chosen:
+            axes.plot(
+                [row["duration_s"] for row in chosen],
+                [row["amplitude_g"] for row in chosen],
+                MARKERS[verdict] if verdict != "undecided" else "d",
+                color=colour,
+                markersize=6,
+                label={"stands": "survives", "collapses": "falls"}.get(verdict, verdict),
+            )
+    axes.axhline(STATIC[name], color="#555555", ls="--", lw=1, label="moves from here on")
+    if name == "block":
+        durations = np.linspace(0.1, 1.0, 60)
+        line = [overturning(float(each)) for each in durations]
+        axes.plot(durations, line, color="black", lw=1.2, label="falls from here on (Housner)")
+        title = "a block 1 by 4 m, by pymunk"
+    else:
+        title = "Oppenheim's arch of 7, r = 10 m, by direct"
+    axes.set_title(title)
+    axes.set_xlabel("duration of a constant acceleration of the ground [s]")
+    axes.set_ylabel("acceleration [g]")
+    axes.legend(loc="upper right", framealpha=1)
+
+
+if __name__ == "__main__":
+    run(main, show=lambda result: f"{result.worst:.2%}, {result.fall}")
