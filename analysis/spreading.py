@@ -31,7 +31,8 @@ from analysis.command import run
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.joints import JointState
 from blocksim.kinds.files import structure_of
-from blocksim.limit.spreading import Frame, lying
+from blocksim.limit.displaced import Frame
+from blocksim.limit.spreading import lying
 from blocksim.view.style import FONT, GROUND, INK, MECHANISM, PAPER, QUIET, STONE
 from tests.structure_cases import case
 

@@ -18,6 +18,8 @@ from blocksim.engines.direct import UNSOLVED, rule
 from blocksim.engines.moving import OnMovingSupports
 from blocksim.limit.spreading import Event, Path, follow, lying
 
+SIDES = (-1.0, 1.0)
+"""Ways of the left and the right support where a file does not say them."""
 FARTHEST = 1.0
 """How far supports move at most [size]."""
 SPEED, STEP = 1e-3, 0.05
@@ -209,9 +211,6 @@ def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int
         low, high = (middle, high) if stays(frames[middle]) else (low, middle)
         runs += 1
     return low, runs
-
-
-SIDES = (-1.0, 1.0)
 
 
 def _event(event: Event, names: list[str]) -> str:
