@@ -76,7 +76,7 @@ class Shaking:
         require(strong, "amplitude", self.amplitude, f"0 to {STRONGEST:g} g")
         long = is_number(self.duration, 0, LONGEST) and self.duration >= SHORTEST
         require(long, "duration", self.duration, f"{SHORTEST:g} to {LONGEST:g} s")
-        object.__setattr__(self, "table", frozen(self.table, (-1, 2)))
+        object.__setattr__(self, "table", frozen(np.reshape(self.table, (-1, 2)), (-1, 2)))
 
     def with_amplitude(self, amplitude: float) -> Shaking:
         """Return the same with another largest acceleration [g]."""

@@ -77,7 +77,7 @@ def friction_words(mu: float) -> str:
 
 
 def loading_words(problem: Problem) -> list[str]:
-    """Say what besides its weight acts: gravity that tilts or leans, and the load factor."""
+    """Say what besides its weight acts: tilt, lean, the load factor, ground that shakes."""
     x, y, z = problem.gravity.tolist()
     words: list[str] = []
     if not (x or y or z):
@@ -91,6 +91,8 @@ def loading_words(problem: Problem) -> list[str]:
         words.append(f"gravity leans {lean:.3g}° out of the plane")
     if problem.live and problem.load:
         words.append(f"load factor {problem.load:.4g}")
+    if problem.shaking is not None:
+        words.append(problem.shaking.words)
     return words
 
 
