@@ -215,7 +215,7 @@ def mapped(name: str, table: dict[str, Any], folder: Path, steps: int) -> list[d
     lines += [
         'shake = "constant"',
         'method = "pymunk"' if name == "block" else 'method = "direct"',
-        f"mu = {2.0 if name == 'block' else '[inf]'}",
+        f"mu = {2.0 if name == 'block' else 0.8}",
         f"amplitude_g = {{ low = 0.2, high = {high}, steps = {steps} }}",
         f"duration_s = {{ low = 0.1, high = {longest}, steps = {steps} }}",
     ]

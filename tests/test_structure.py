@@ -218,7 +218,10 @@ BROKEN: list[tuple[dict[str, Any], str]] = [
     (broken("live", 0, to={"body": [1, 0], "blocks": []}), "live[0].blocks = []"),
     (broken("live", 0, to={"block": 9, "force": [1, 0]}), "live[0].block = 9"),
     (broken("live", 0, to={"block": "ground", "force": [1, 0]}), "live[0].block = 'ground'"),
-    (broken("live", 0, to={"force": [1, 0]}), "live[0] = ['force']: must be either body"),
+    (
+        broken("live", 0, to={"force": [1, 0]}),
+        "['force']: must be one of body, block and patch",
+    ),
     (broken("live", 0, to={"block": 1, "force": [1, 0], "body": [1, 0]}), "live[0]"),
     (broken("live", 0, to={"body": [1, 0, 1]}), "live[0].body = [1.0, 0.0, 1.0]"),
     (broken("move", to=[{"block": 1, "direction": [1, 0]}]), "move[0].block = 1"),

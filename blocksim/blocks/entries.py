@@ -65,7 +65,10 @@ class JointEntry:
 
 @dataclass(frozen=True, kw_only=True)
 class LoadEntry:
-    """Entry of `dead` or `live`: a `body` force, or a `force` on a block."""
+    """Entry of `dead` or `live`: a `body` force, or a `force` on a block or along a `patch`.
+
+    A patch is from one x to another: what lies uppermost there bears the force, evenly.
+    """
 
     __pydantic_config__: ClassVar = _FORBID
 
@@ -74,6 +77,7 @@ class LoadEntry:
     block: Id | None = None
     point: Point | None = None
     force: Point | None = None
+    patch: Point | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

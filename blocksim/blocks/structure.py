@@ -13,8 +13,9 @@ from typing import Any, cast
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Assembly
-from blocksim.blocks.entries import Around, Id, LoadEntry, StructureFile, entries_of
+from blocksim.blocks.entries import Around, LoadEntry, StructureFile, entries_of
 from blocksim.blocks.given import GivenJoint
+from blocksim.blocks.loads import LoadsOf, Names
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
@@ -79,7 +80,7 @@ def _bodies(written: StructureFile) -> list[Body]:
 def _joints(written: StructureFile, bodies: Sequence[Body]) -> list[GivenJoint] | None:
     if written.joints is None:
         return None
-    body_of = _Names(bodies)
+    body_of = Names(bodies)
     joints: list[GivenJoint] = []
     for at, joint in enumerate(written.joints):
         a = body_of(joint.a, f"joints[{at}].a")
@@ -98,18 +99,6 @@ def _joints(written: StructureFile, bodies: Sequence[Body]) -> list[GivenJoint] 
             )
         )
     return joints
-
-
-class _Names:
-    """Bodies by name."""
-
-    def __init__(self, bodies: Sequence[Body]) -> None:
-        self._index = {body.name: at for at, body in enumerate(bodies)}
-
-    def __call__(self, name: Id, field: str) -> int:
-        """Return the place of a body."""
-        require(str(name) in self._index, field, name, "the id of a block")
-        return self._index[str(name)]
 
 
 def problem_of(
@@ -132,54 +121,24 @@ def problem_of(
         In one line: a load on no block.
     """
     fixed = [body.fixed for body in bodies]
-    body_of = _Names(bodies)
-    # Blocks that move are numbered without the fixed ones, and these without those.
-    moving = np.cumsum([not each for each in fixed]) - 1
+    body_of, loads_of = Names(bodies), LoadsOf(bodies)
+    # Fixed blocks are numbered without those that move.
     bed = np.cumsum(fixed) - 1
-
-    def load_of(load: LoadEntry, field: str) -> Load:
-        one = load.block is not None and load.force is not None
-        body = load.body is not None
-        require(one != body, field, _keys(load), "either body, or block and force")
-        if body:
-            mixed = any(each is not None for each in (load.block, load.force, load.point))
-            require(not mixed, field, _keys(load), "body and blocks alone")
-        else:
-            require(
-                load.blocks is None, f"{field}.blocks", load.blocks, "left out: body has it"
-            )
-        chosen: Sequence[Id] = load.blocks or ([] if load.block is None else [load.block])
-        key = f"{field}.block" if load.blocks is None else f"{field}.blocks"
-        on: list[int] = []
-        for name in chosen:
-            place = body_of(name, key)
-            require(not fixed[place], key, name, "a block that is not fixed")
-            on.append(int(moving[place]))
-        require(len(set(on)) == len(on), key, load.blocks, "each block once")
-        force = load.body or load.force or [0.0, 0.0]
-        require(
-            len(force) == 2 or not force[2], f"{field}.body", force, "x and y, on these blocks"
-        )
-        return Load(
-            force=np.array(force[:2], dtype=float),
-            blocks=tuple(on) if on else tuple(range(fixed.count(False))),
-            point=None if load.point is None else np.array(load.point, dtype=float),
-            per_weight=body,
-        )
-
     gravity, dead = DOWN, list[Load]()
     notes: list[str] = []
     if written.dead is not None:
         gravity = np.zeros(3)
         for at, load in enumerate(written.dead):
             if load.body is not None and load.blocks is None:
-                load_of(_flat(load), f"dead[{at}]")
+                loads_of(_flat(load), f"dead[{at}]")
                 gravity[: len(load.body)] += load.body
             else:
-                dead.append(load_of(load, f"dead[{at}]"))
+                dead += loads_of(load, f"dead[{at}]")
         if not gravity.any():
             notes.append("no gravity: dead has no body force on all blocks")
-    live = [load_of(load, f"live[{at}]") for at, load in enumerate(written.live)]
+    live = [
+        each for at, load in enumerate(written.live) for each in loads_of(load, f"live[{at}]")
+    ]
     moves: list[Move] = []
     for at, move in enumerate(written.move):
         place = body_of(move.block, f"move[{at}].block")
@@ -227,11 +186,6 @@ def _friction(value: float | str | None) -> float | None:
 def _friction_text(value: float) -> float | str:
     """Return a number that JSON can write."""
     return "inf" if math.isinf(value) else value
-
-
-def _keys(load: LoadEntry) -> list[str]:
-    names = ("body", "blocks", "block", "point", "force")
-    return [name for name in names if getattr(load, name) is not None]
 
 
 def _flat(load: LoadEntry) -> LoadEntry:

@@ -164,7 +164,7 @@ def _released(
     quality = world.quality()
     if not trusted(world, simulation.settings):
         verdict = Verdict.UNDECIDED
-        reason = "released, " + _distrust(quality, simulation.settings, simulation.length)
+        reason = "released, " + distrust(quality, simulation.settings, simulation.length)
     return Motion(
         verdict=verdict,
         reason=reason,
@@ -183,7 +183,8 @@ def _lies_still(assembly: Assembly, poses: list[Array], moved: list[float]) -> b
     )
 
 
-def _distrust(quality: Quality, settings: Settings, length: str) -> str:
+def distrust(quality: Quality, settings: Settings, length: str) -> str:
+    """Say why contacts cannot be trusted."""
     residual, penetration = quality.residual, quality.penetration
     if residual is not None and not math.isfinite(residual):
         return UNFOUND

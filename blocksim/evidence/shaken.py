@@ -22,7 +22,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import trusted
 from blocksim.engines.contact.geometry import Geometry, turns_of
-from blocksim.evidence.motion import FRAME, UNSEEN
+from blocksim.evidence.motion import FRAME, UNSEEN, distrust
 from blocksim.evidence.observation import hold
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
@@ -117,35 +117,46 @@ def shake(
     shaken = problem.shaking.duration / problem.seconds
     end = shaken + LONGEST if until is None else until
     times, poses, taken = [0.0], [world.poses()], 0
-    verdict, what = Verdict.UNDECIDED, "still moves when the time is over"
     while times[-1] < end - step / 2:
         world.advance(stride)
         taken += stride
         times.append(taken * step)
         poses.append(world.poses())
-        sunk = float((poses[0][:, 1] - poses[-1][:, 1]).max())
-        if sunk > SUNK and not whole:
-            verdict, what = Verdict.COLLAPSES, f"a block sank by {sunk:.2g} {simulation.length}"
-            break
         if times[-1] > shaken and _lie_still(assembly, poses):
-            ended = _ended(assembly, poses[-1])
-            verdict = Verdict.COLLAPSES if ended else Verdict.STANDS
-            what = f"lies still, {ended} joints have come apart"
-            what = what if ended else "lies still, every joint still is one"
+            break
+        if not whole and _sunk(poses) > SUNK:
             break
         progress(min(1.0, times[-1] / end), "shaking")
+    # The ground does work: what energy there is says nothing of the engine.
     quality = replace(world.quality(), gain=None)
-    if not trusted(world, simulation.settings) and verdict is Verdict.STANDS:
-        verdict, what = Verdict.UNDECIDED, "a contact was not solved, or blocks overlap"
     recording = simulation.record(times, poses, quality)
+    verdict, what = outcome(recording)
+    if not trusted(world, simulation.settings) and verdict is Verdict.STANDS:
+        verdict = Verdict.UNDECIDED
+        what = distrust(quality, simulation.settings, simulation.length)
     rocking = rocking_of(recording)
     return Shaken(
         verdict=verdict,
-        reason=_words(verdict, what, recording, rocking) + given_words(settings),
+        reason=_words(what, recording, rocking) + given_words(settings),
         rocking=rocking,
         moved=float(recording.displacement[-1]),
         recording=recording,
     )
+
+
+def outcome(recording: Recording) -> tuple[Verdict, str]:
+    """Tell from the poses what became of blocks on ground that shook, and in words why."""
+    poses, problem = list(recording.poses), recording.problem
+    over = problem.shaking.duration / problem.seconds if problem.shaking else 0.0
+    if recording.times[-1] > over and _lie_still(problem.assembly, poses):
+        ended = _ended(problem.assembly, poses[-1])
+        if ended:
+            return Verdict.COLLAPSES, f"lies still; joints that are none any more: {ended}"
+        return Verdict.STANDS, "lies still, and every joint still is one"
+    sunk = _sunk(poses)
+    if sunk > SUNK:
+        return Verdict.COLLAPSES, f"a block sank by {sunk * problem.assembly.size:.2g} m"
+    return Verdict.UNDECIDED, "still moves when the time is over"
 
 
 def rocking_of(recording: Recording) -> Rocking:
@@ -209,15 +220,19 @@ def _ended(assembly: Assembly, poses: Array) -> int:
     return int((~holds | (touch.gap.min(axis=1) > APART)).sum())
 
 
-def _words(verdict: Verdict, what: str, recording: Recording, rocking: Rocking) -> str:
+def _sunk(poses: list[Array]) -> float:
+    """How far a block's centre has sunk at most."""
+    return float((poses[0][:, 1] - poses[-1][:, 1]).max())
+
+
+def _words(what: str, recording: Recording, rocking: Rocking) -> str:
     """Say what was seen."""
-    seconds = recording.problem.seconds
-    name = recording.assembly.blocks[rocking.block].name or str(rocking.block)
+    seconds, assembly = recording.problem.seconds, recording.assembly
+    name = assembly.blocks[rocking.block].name or str(rocking.block)
     said = [what]
     said.append(f"largest rotation {math.degrees(rocking.rotation):.3g} deg, of block {name}")
     if rocking.impact is not None:
         said.append(f"first impact after {rocking.impact * seconds:.4g} s")
-    if verdict is Verdict.STANDS:
-        said.append(f"at the end {recording.displacement[-1]:.1e} L from where it was")
-    said.append(f"watched for {recording.times[-1] * seconds:.3g} s")
+    moved = recording.displacement[-1] * assembly.size
+    said.append(f"moved by {moved:.2g} m in the {recording.times[-1] * seconds:.3g} s watched")
     return "; ".join(said)

@@ -6,6 +6,7 @@ from blocksim.arch import limit
 from blocksim.arch.circular import arch_of
 from blocksim.evidence.motion import MOVED, UNMOVED
 from blocksim.evidence.recording import Recording
+from blocksim.evidence.shaken import outcome
 from blocksim.evidence.verdict import Verdict
 from blocksim.view.canvas import width_of
 from blocksim.view.drawing import loading_words
@@ -15,6 +16,8 @@ def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
     """Say whether it falls: as a check does, or by how far it has moved."""
     if verdict is not None:
         return verdict.value
+    if recording.problem.shaking is not None:
+        return outcome(recording)[0].value
     moved = float(recording.displacement.max())
     if moved > MOVED:
         return Verdict.COLLAPSES.value

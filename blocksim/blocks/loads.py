@@ -1,0 +1,99 @@
+"""Loads as structure files say them: on blocks, on all of them, or along a patch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from blocksim.blocks.entries import Id, LoadEntry
+from blocksim.blocks.patch import shares
+from blocksim.blocks.polygons import Body
+from blocksim.blocks.problem import Load
+from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
+
+FORMS = ("body", "block", "patch")
+"""What a load acts on: blocks by their weight, one block, or what lies uppermost."""
+
+
+class Names:
+    """Bodies by name."""
+
+    def __init__(self, bodies: Sequence[Body]) -> None:
+        self._index = {body.name: at for at, body in enumerate(bodies)}
+
+    def __call__(self, name: Id, field: str) -> int:
+        """Return the place of a body."""
+        require(str(name) in self._index, field, name, "the id of a block")
+        return self._index[str(name)]
+
+
+class LoadsOf:
+    """What a load of a file comes to on the bodies of a structure."""
+
+    def __init__(self, bodies: Sequence[Body]) -> None:
+        self._bodies, self._names = bodies, Names(bodies)
+        fixed = [body.fixed for body in bodies]
+        # Blocks that move are numbered without the fixed ones.
+        self._place = np.cumsum([not each for each in fixed]) - 1
+        self._count = fixed.count(False)
+
+    def __call__(self, load: LoadEntry, field: str) -> list[Load]:
+        """Return the loads of one entry.
+
+        Raises
+        ------
+        InputError
+            In one line, if it is none, or on no block that moves.
+        """
+        given = [form for form in FORMS if getattr(load, form) is not None]
+        require(len(given) == 1, field, _keys(load), "one of body, block and patch")
+        if load.body is not None:
+            return [self._body(load, load.body, field)]
+        require(load.blocks is None, f"{field}.blocks", load.blocks, "left out: body has it")
+        if load.force is None:
+            raise InputError(f"{field}.force", MISSING, "given")
+        if load.patch is not None:
+            return self._patch(load.patch, load, np.array(load.force), field)
+        assert load.block is not None  # noqa: S101
+        point = None if load.point is None else np.array(load.point, dtype=float)
+        on = self._moving(load.block, f"{field}.block")
+        return [Load(force=np.array(load.force, dtype=float), blocks=(on,), point=point)]
+
+    def _body(self, load: LoadEntry, body: list[float], field: str) -> Load:
+        alone = load.force is None and load.point is None
+        require(alone, field, _keys(load), "body and blocks alone")
+        flat = len(body) == 2 or not body[2]
+        require(flat, f"{field}.body", body, "x and y, on these blocks")
+        on = [self._moving(name, f"{field}.blocks") for name in load.blocks or ()]
+        once = len(set(on)) == len(on)
+        require(once, f"{field}.blocks", load.blocks, "each block once")
+        blocks = tuple(on) if on else tuple(range(self._count))
+        return Load(force=np.array(body[:2], dtype=float), blocks=blocks, per_weight=True)
+
+    def _patch(
+        self, patch: tuple[float, float], load: LoadEntry, force: np.ndarray, field: str
+    ) -> list[Load]:
+        low, high = patch
+        require(low < high, f"{field}.patch", patch, "two places, the left one first")
+        require(load.point is None, f"{field}.point", load.point, "left out beside patch")
+        polygons = [[np.asarray(each) for each in body.polygons] for body in self._bodies]
+        found = shares(low, high, polygons)
+        if found is None:
+            raise InputError(f"{field}.patch", patch, "above blocks all along")
+        return [
+            Load(force=share * force, blocks=(int(self._place[index]),), point=point)
+            for index, share, point in found
+            if not self._bodies[index].fixed
+        ]
+
+    def _moving(self, name: Id, field: str) -> int:
+        place = self._names(name, field)
+        require(not self._bodies[place].fixed, field, name, "a block that is not fixed")
+        return int(self._place[place])
+
+
+def _keys(load: LoadEntry) -> list[str]:
+    names = ("body", "blocks", "block", "point", "force", "patch")
+    return [name for name in names if getattr(load, name) is not None]
