@@ -40,6 +40,28 @@ def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> N
     assert (tmp_path / "random_arches.png").stat().st_size > 0
 
 
+def test_pulses_overturn_a_block_where_housner_says(tmp_path: Path) -> None:
+    module = study("shaking")
+    result = module.main(tmp_path, quick=True)
+    assert result.worst < 0.01
+    assert result.fall.time == pytest.approx(result.fall.time_known, rel=2e-3)
+    assert result.fall.kept == pytest.approx(result.fall.kept_known, abs=1e-2)
+    for row in result.maps["block"]:
+        falls = row["amplitude_g"] > module.overturning(row["duration_s"])
+        assert row["verdict"] == ("collapses" if falls else "stands"), row
+    arch = {(row["amplitude_g"], row["duration_s"]): row for row in result.maps["arch"]}
+    assert [arch[each]["verdict"] for each in ((0.2, 1.0), (2.0, 1.0))] == [
+        "stands",
+        "collapses",
+    ]
+    # Below the acceleration of its static limit the arch does not move.
+    assert all(arch[0.2, long]["largest_rotation_deg"] < 1e-9 for long in (0.1, 1.0))
+    drawn = matplotlib.image.imread(tmp_path / "shaking.png")[:, :, :3].reshape(-1, 3)
+    for colour in ("stands", "collapses"):
+        wanted = matplotlib.colors.to_rgb(module.COLOURS[colour])
+        assert (np.abs(drawn - wanted).max(axis=1) < 0.02).sum() > 40
+
+
 def test_random_assemblies_fall_at_the_load_of_the_linear_programme(tmp_path: Path) -> None:
     module = study("random_assemblies")
     result = module.main(tmp_path, quick=True)
