@@ -87,7 +87,6 @@ def moving_run(
     repeat: Callable[[World], None],
     *,
     until: float | None = None,
-    moves: bool = False,
     progress: Progress = silent,
 ) -> Motion:
     """Let an arch go that the onset test has held, and record it.
@@ -102,35 +101,27 @@ def moving_run(
     until : float, optional
         Time to record for [sqrt(r/g)], or until what has collapsed lies still; by default
         the run stops as soon as its verdict is certain.
-    moves : bool
-        Whether it is known to move: a recording then is of the engine's own steps from the
-        first, as longer ones would delay it by half of theirs.
     progress : Progress, optional
 
     Returns
     -------
     Motion
     """
-    steps = 1 if moves and until is not None else None
-    motion = _released(simulation, held, until, steps, progress)
+    motion = _released(simulation, held, until, progress)
     for _ in range(simulation.settings.repeats):
         if motion.overlap <= OVERLAP:
             break
         simulation = simulation.finer(FINER)
         again = simulation.world()
         repeat(again)
-        motion = _released(simulation, again, until, steps, progress)
+        motion = _released(simulation, again, until, progress)
     return motion
 
 
 def _released(
-    simulation: Simulation,
-    world: World,
-    until: float | None,
-    steps: int | None,
-    progress: Progress,
+    simulation: Simulation, world: World, until: float | None, progress: Progress
 ) -> Motion:
-    """Record one release, as far as its blocks do not overlap, by so many steps at once."""
+    """Record one release, as far as its blocks do not overlap."""
     assembly, step, rest = (
         simulation.assembly,
         simulation.settings.step,
@@ -145,9 +136,7 @@ def _released(
         # Before anything moves a verdict needs no frames, and some engines longer steps.
         idle = until is None and len(moved) > 1 and moved[-1] < UNMOVED
         frames = SPARSE if idle else 1
-        at_once = steps or frames * stride
-        for _ in range(0, frames * stride, at_once):
-            world.advance(at_once)
+        world.advance(frames * stride)
         taken += frames * stride
         times.append(taken * step)
         poses.append(world.poses())

@@ -46,14 +46,8 @@ class Held:
 
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
         """Let the blocks go; see `moving_run`."""
-        return moving_run(
-            self.simulation,
-            self.world,
-            self.onset.repeat,
-            until=until,
-            moves=self.onset.verdict is Verdict.COLLAPSES,
-            progress=progress,
-        )
+        repeat = self.onset.repeat
+        return moving_run(self.simulation, self.world, repeat, until=until, progress=progress)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
