@@ -17,8 +17,8 @@ from blocksim.common.checks import require
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.progress import Progress as Report
 from blocksim.report.answers import ratio, signed
+from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.chart import Point, on_front
-from blocksim.studies.validate import Unasked, Validation, disagreements, numbered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

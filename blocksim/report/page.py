@@ -16,16 +16,9 @@ from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import ratio
 from blocksim.report.inlinemap import inline_map
-from blocksim.report.motion import Drawing, drawing
-from blocksim.studies.validate import (
-    ASIDE,
-    ERROR_BOUND,
-    TOLS,
-    Unasked,
-    Validation,
-    disagreements,
-    numbered,
-)
+from blocksim.report.motion import ArchDrawing, drawing
+from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS
 from blocksim.view import style
 
 STATES = {
@@ -47,7 +40,7 @@ class Result:
     found: str
     bracket: str
     error: str
-    drawing: Drawing | None
+    drawing: ArchDrawing | None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,16 +17,8 @@ import blocksim
 from blocksim.common.files import AnyPath, json_text, make_folder, write_whole
 from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
-from blocksim.studies.validate import (
-    ASIDE,
-    ERROR_BOUND,
-    TOLS,
-    Unasked,
-    Validation,
-    disagreements,
-    installed,
-    numbered,
-)
+from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS, installed
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
 
