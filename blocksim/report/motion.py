@@ -17,7 +17,7 @@ from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState, classify
 from blocksim.evidence.recording import Recording
-from blocksim.view.drawing import HINGES
+from blocksim.view.drawing import HINGES, state_of_any
 from blocksim.view.stage import Stage
 
 SHOWN = 0.13
@@ -208,7 +208,9 @@ def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
     return (drawn.round(2) + 0.0).tolist()
 
 
-def marks_of(assembly: Assembly, states: Sequence[JointState]) -> dict[int, tuple[Mark, ...]]:
+def marks_of(
+    assembly: Assembly, states: Sequence[JointState], *, is_arch: bool = True
+) -> dict[int, tuple[Mark, ...]]:
     """Collect the marks of active joints by block, `SUPPORT` for the footings."""
     found: dict[int, list[Mark]] = {
         block: [] for block in (*range(len(assembly.blocks)), SUPPORT)
@@ -220,11 +222,12 @@ def marks_of(assembly: Assembly, states: Sequence[JointState]) -> dict[int, tupl
         end = HINGES.get(state)
         hinge = None if end is None else place_of(ends[joint, end])
         line = points(ends[joint])
+        look = (state if is_arch else state_of_any(state)).value
         # The dot is drawn with the later of the two blocks, in front of both.
         owner = max(int(before[joint]), int(after[joint]))
         for block in (int(before[joint]), int(after[joint])):
             dot = hinge if block == owner else None
-            found[block].append(Mark(state=state.value, line=line, hinge=dot))
+            found[block].append(Mark(state=look, line=line, hinge=dot))
     return {block: tuple(marks) for block, marks in found.items()}
 
 

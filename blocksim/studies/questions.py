@@ -7,7 +7,7 @@ and supports that spread are followed by `direct`.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from blocksim.ask.bracket import bracket
@@ -186,7 +186,11 @@ def _exactly(row: StructureRow, family: Family, value: float) -> StructureRow:
     sense = 1 if family.stands == "low" else -1
     beyond = value * (1 + sense * BEYOND) if value else family.low
     seen = check(family.at(beyond), method="limit")
-    hinges = _opening(seen)
+    drawn, hinges = _drawn(seen), _opening(seen)
+    if family.spreading is not None:
+        # On blocks that have moved, the joints that are open already are those that matter.
+        states = family.spreading.path.frames[-1].states
+        drawn, hinges = replace(drawn, states=states), _open(states)
     digits = None
     misses: list[str] = []
     if error is None or not abs(error) <= NEAR:
@@ -204,7 +208,7 @@ def _exactly(row: StructureRow, family: Family, value: float) -> StructureRow:
         digits=digits,
         hinges=hinges,
         miss="; ".join(misses),
-        drawn=_drawn(seen),
+        drawn=drawn,
     )
 
 
@@ -266,9 +270,11 @@ def _opening(seen: ProblemCheck) -> tuple[int, ...]:
     """Return the numbers of the joints that take part as it falls."""
     if seen.verdict is not Verdict.COLLAPSES:
         return ()
-    return tuple(
-        at for at, joint in enumerate(seen.joints) if joint.state is not JointState.CLOSED
-    )
+    return _open([joint.state for joint in seen.joints])
+
+
+def _open(states: Sequence[JointState]) -> tuple[int, ...]:
+    return tuple(at for at, state in enumerate(states) if state is not JointState.CLOSED)
 
 
 def _other_hinges(row: StructureRow, hinges: tuple[int, ...]) -> list[str]:
