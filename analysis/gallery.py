@@ -138,7 +138,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
         row, problem, forces, fall = shown(name)
         rows.append(row)
         seen.append((name, problem, forces, fall))
-        verdict = f"stands, by direct and limit ({ASIDE:.0%} inside its limit)"
+        verdict = f"stands, by direct and limit ({100 * ASIDE:g} % inside its limit)"
         picture = problem_figure(problem, verdict=verdict, forces=forces)
         with (out / f"{name}.png").open("wb") as file:
             save_figure(picture, file, "png")
