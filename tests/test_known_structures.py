@@ -104,6 +104,35 @@ def test_a_structure_is_asked_by_its_name(tmp_path: Path) -> None:
         load_structure("oppenheim_8")
 
 
+def test_only_arches_have_an_intrados() -> None:
+    """A column turns about the right-hand end of its base; an arch says which edge stays."""
+    told = json.loads(within("check", "column_six_drums", "--tilt", "16", "--json").stdout)
+    base = told["joints"][0]
+    assert base["state"] == "hinge"
+    assert base["hinge"] == pytest.approx(max(base["ends"]))
+    assert {joint["state"] for joint in told["joints"][1:]} == {"closed"}
+    assert {joint["hinge"] and 1 for joint in told["joints"][1:]} == {None}
+    lines = within("check", "column_six_drums", "--tilt", "16").stdout
+    assert re.search(r"joints +floor-drum 1 hinge\n", lines)
+    arch = json.loads(within("check", "oppenheim_7", "--load", "0.372", "--json").stdout)
+    states = [joint["state"] for joint in arch["joints"] if joint["state"] != "closed"]
+    assert states == ["hinge-intrados", "hinge-extrados"] * 2
+    assert arch["joints"][3]["hinge"] == arch["joints"][3]["ends"][1]
+
+
+def test_events_of_spreading_are_told_in_json() -> None:
+    found = json.loads(
+        within("bracket", "spread_90_12_20", "--over", "spread", "--json").stdout
+    )
+    first, last = found["events"]
+    assert (first["value"], first["what"]) == (0.0, "hinges")
+    assert [joint["a"] for joint in first["joints"]] == ["4", "10", "16"]
+    assert last["what"] == "collapse"
+    assert last["value"] == pytest.approx(found["limit"]) == pytest.approx(0.0166808, rel=1e-5)
+    other = json.loads(within("bracket", "oppenheim_7", "--over", "load", "--json").stdout)
+    assert other["events"] is None
+
+
 QUICK = ("oppenheim_7", "box2d_tilted_stack", "gable", "catenary")
 
 
