@@ -48,7 +48,7 @@ from blocksim.view.drawing import clipped, save_figure
 from blocksim.view.film import BEFORE, FOOT, HEAD, TALL, Film
 from blocksim.view.structure import problem_figure
 from blocksim.view.style import FONT, GROUND, INK, LIVE, QUIET, STONE
-from blocksim.view.video import write_film
+from blocksim.view.video import DRAWN, to_bytes, write_film
 
 SHOWN = {
     "pointed_e0_25": ("Pointed arch", "least thickness {:.4f} m"),
@@ -372,9 +372,12 @@ def _few_colours(figure: Figure, file: BinaryIO) -> None:
     whole = io.BytesIO()
     save_figure(figure, whole, "png")
     picture = Image.open(whole).convert("RGB")
-    picture.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-        file, "PNG", optimize=True
-    )
+    # Colours that say something are few pixels among many of stone and ground: they are given.
+    given = [part for name in dict.fromkeys((*DRAWN, LIVE)) for part in to_bytes(name)]
+    rest = picture.quantize(COLOURS - len(given) // 3).getpalette() or []
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([*given, *rest][: 3 * COLOURS])
+    picture.quantize(palette=palette, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
 
 
 def table(result: Result) -> str:
