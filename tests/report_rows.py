@@ -12,7 +12,7 @@ from blocksim.arch.modes import Mode
 from blocksim.engines.base import Settings
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
-from blocksim.studies.validate import Validation
+from blocksim.studies.agreement import Validation
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
 

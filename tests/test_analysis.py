@@ -12,6 +12,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+import av
 import matplotlib.colors
 import matplotlib.image
 import numpy as np
@@ -22,7 +23,7 @@ from blocksim import Arch
 from blocksim.arch import limit, theory
 from blocksim.report.chart import read_points
 from blocksim.studies.chart import cases
-from blocksim.view.style import MECHANISM
+from blocksim.view.style import LIVE, MECHANISM, STONE, THRUST
 
 STUDIES = Path(__file__).parent.parent / "analysis"
 
@@ -425,3 +426,73 @@ def test_overlap_of_rubble_would_be_seen() -> None:
         other[[0, 1, 3]] = turned
         found = module.overlap_of(cube.at(one), cube.at(other), 0.0)
         assert found == pytest.approx(deep, abs=1e-12)
+
+
+@pytest.mark.long
+def test_the_gallery_shows_what_stands_and_falls(tmp_path: Path) -> None:
+    module = study("gallery")
+    result = module.main(tmp_path, quick=True)
+    assert [row.structure for row in result.rows] == ["oppenheim_7", "gable"]
+    for row in result.rows:
+        assert (row.stood, row.fell) == ("stands", "collapses")
+        assert row.moved > 0.3
+        assert row.overlap < 0.01
+        assert row.gain < 1e-3
+    assert set(result.engines) == {"direct", "pymunk"}
+    # The arch falls by nearly its rise and the piers' height.
+    assert min(result.engines.values()) > 1
+    written = {path.name for path in tmp_path.iterdir()}
+    films = {"oppenheim_7.mp4", "gable.mp4", "engines.mp4"}
+    pictures = {"oppenheim_7.png", "gable.png", "gallery.png", "engines.png"}
+    assert written == films | pictures | {"gallery.csv"}
+    # Two films beside each other, and as the first one, then the other, has ended they rest.
+    with av.open(str(tmp_path / "engines.mp4")) as container:
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+    assert frames[0].shape[1] == 2 * 320
+    assert frames[0].shape[0] == 180
+    for half in (slice(0, 320), slice(320, 640)):
+        moved = np.abs(frames[0][:, half].astype(int) - frames[-1][:, half]).max(axis=2) > 60
+        assert moved.mean() > 0.02
+    # Forces above, blocks below: the colours of each are where they belong.
+    sheet = matplotlib.image.imread(tmp_path / "gallery.png")[..., :3]
+    top, bottom = np.array_split(sheet, 2)
+    tones = {
+        name: np.array(matplotlib.colors.to_rgb(tone))
+        for name, tone in (("force", THRUST), ("stone", STONE), ("push", LIVE))
+    }
+
+    def share(part: np.ndarray, tone: str) -> float:
+        return float((np.abs(part - tones[tone]).max(axis=2) < 0.06).mean())
+
+    assert share(top, "force") > 1e-3 > share(bottom, "force")
+    assert share(top, "push") > 1e-4 > share(bottom, "push")
+    assert min(share(top, "stone"), share(bottom, "stone")) > 0.02
+
+
+def test_frames_of_the_gallery_hold_all_blocks() -> None:
+    """Standing and falling, in one frame, of the shape asked for."""
+    module = study("gallery")
+    _, problem, forces, fall = module.shown("gable")
+    frame = module._falling(fall)
+    assert 0.2 < float(fall.displacement[frame]) < 0.45
+    low, high = module._shaped(module._box(fall, (fall.poses[0], fall.poses[frame])), 1.2)
+    assert (high - low)[1] / (high - low)[0] == pytest.approx(1.2)
+    for pose in (fall.poses[0], fall.poses[frame]):
+        for parts in module._placed(fall, pose):
+            for part in parts:
+                assert (part > low).all()
+                assert (part < high).all()
+    rest = module._placed(fall, fall.poses[0])
+    built = [block.vertices for block in problem.assembly.blocks]
+    np.testing.assert_allclose([parts[0] for parts in rest], built, atol=1e-12)
+    # Forces hold what stands above; below nothing holds it any more.
+    axes = module.sheet([("gable", problem, forces, fall)]).axes
+    drawn = [{str(each.get_gid()) for each in axis.get_children()} for axis in axes]
+    assert {f"force-{joint}" for joint in range(3)} <= drawn[0]
+    assert not any(name.startswith("force") for name in drawn[1])
+    blocks = [
+        [each.get_xy()[:-1] for each in axis.patches if each.get_zorder() == 1] for axis in axes
+    ]
+    np.testing.assert_allclose(blocks[0], built, atol=1e-12)
+    lowered = np.array(blocks[0])[..., 1].max() - np.array(blocks[1])[..., 1].max()
+    assert lowered > 0.2 * problem.assembly.size

@@ -10,7 +10,9 @@ from matplotlib.colors import to_rgb
 from report_rows import ROW, rows
 
 from blocksim.arch.modes import Mode
+from blocksim.kinds.known import load_known
 from blocksim.report.tables import write_results
+from blocksim.studies.structures import validate_structures
 from blocksim.view.style import MODES
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -30,7 +32,9 @@ LONG = replace(
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
-    write_results([*rows(), LONG, replace(LONG, engine="pybullet")], folder)
+    known = [load_known("oppenheim_7"), load_known("box2d_tilted_stack")]
+    built = validate_structures(known, ("direct",), workers=1)
+    write_results([*rows(), LONG, replace(LONG, engine="pybullet")], folder, (), built)
     return (folder / "report.html").as_uri()
 
 
@@ -106,6 +110,34 @@ def test_it_fits_the_window(page, width: int, scheme: str) -> None:
         assert button.bounding_box()["height"] >= 24
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_structure_moves_and_can_be_seen(page, scheme: str, complaints: list[str]) -> None:
+    page.emulate_media(color_scheme=scheme)
+    figure = page.locator("#structure-1 .motion")
+    piece = figure.locator(".piece").nth(5)
+    moved = piece.get_attribute("transform")
+    slider = figure.locator("input")
+    slider.fill("0")
+    assert piece.get_attribute("transform").startswith("translate(0 0) rotate(0 ")
+    slider.fill("1")
+    assert piece.get_attribute("transform") == moved
+    # Stone, support and the arrow of the load all stand out from the card.
+    shares = [*lightness(page, "#structure-1 .stone")[:1]]
+    shares += lightness(page, "#structure-1 .footing")[:1]
+    card = page.evaluate("getComputedStyle(document.querySelector('article')).backgroundColor")
+    ground = sum(map(int, card[4:-1].split(","))) / 765
+    assert min(abs(share - ground) for share in shares) > 0.1
+    # Nothing drawn is cut off: the svg holds all its blocks and its arrow.
+    over = figure.evaluate("""(figure) => {
+      const frame = figure.querySelector("svg").getBoundingClientRect();
+      return [...figure.querySelectorAll(".piece, .arrow, .footing")].filter((drawn) => {
+        const box = drawn.getBoundingClientRect();
+        return box.left < frame.left || box.right > frame.right
+          || box.top < frame.top || box.bottom > frame.bottom; }).length; }""")
+    assert over == 0
+    assert complaints == []
+
+
 def test_it_is_light_on_paper(page) -> None:
     page.emulate_media(media="print", color_scheme="dark")
     look = "getComputedStyle(document.body).backgroundColor"
@@ -116,18 +148,21 @@ def test_it_is_light_on_paper(page) -> None:
 @pytest.mark.parametrize("width", [1280, 1440])
 def test_no_column_is_clipped(page, width: int) -> None:
     page.set_viewport_size({"width": width, "height": 900})
-    frame = page.locator(".wide").nth(1).bounding_box()
-    last = page.locator("thead th").last
-    assert last.inner_text() == "agrees"
-    box = last.bounding_box()
-    assert box["x"] + box["width"] <= frame["x"] + frame["width"]
+    tables = page.locator(".wide:has(table)").all()
+    assert len(tables) == 2  # of arches, and of structures
+    for table in tables:
+        frame = table.bounding_box()
+        last = table.locator("thead th").last
+        assert last.inner_text() == "agrees"
+        box = last.bounding_box()
+        assert box["x"] + box["width"] <= frame["x"] + frame["width"]
     assert page.locator(".sideways:visible").count() == 0
 
 
 def test_a_phone_is_told_what_scrolls(page) -> None:
     page.set_viewport_size({"width": 375, "height": 812})
     hints = page.locator(".sideways")
-    for index in range(2):
+    for index in range(3):
         playwright.expect(hints.nth(index)).to_be_visible()
         assert "sideways" in hints.nth(index).inner_text()
     page.emulate_media(media="print")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import tomllib
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, TypeVar
 
@@ -14,7 +13,7 @@ from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.modes import Mode
 from blocksim.common.errors import MISSING, InputError
-from blocksim.common.files import AnyPath, require_file
+from blocksim.common.files import AnyPath, require_file, shipped_files
 from blocksim.evidence.verdict import Verdict
 
 LARGEST_FILE = 64 * 1024
@@ -162,10 +161,7 @@ class Scenario:
 
 def shipped() -> dict[str, Path]:
     """Scenarios that come with blocksim, by name."""
-    # In a wheel they are package data, in a checkout they are beside the package.
-    inside = Path(str(files("blocksim") / "_scenarios"))
-    folder = inside if inside.is_dir() else Path(__file__).parents[2] / "scenarios"
-    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    return shipped_files("*.toml")
 
 
 def load_scenario(name: AnyPath) -> Scenario:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from blocksim.ask.families import Family
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.ask.search import Answer, Bisection
-from blocksim.ask.spread import Spreading
+from blocksim.ask.spread import Happening, Spreading
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
@@ -83,6 +83,8 @@ class Bracket:
         Values tried, and those without an answer.
     reason : str
     wall_s : float
+    events : tuple of Happening or None
+        Over the motion of supports, what happens on the way, by limit analysis.
     """
 
     method: str
@@ -97,6 +99,7 @@ class Bracket:
     undecided: int
     reason: str
     wall_s: float
+    events: tuple[Happening, ...] | None = None
 
 
 def bracket(
@@ -188,6 +191,7 @@ def bracket(
         undecided=found.undecided,
         reason=found.reason + said + given_words(settings) + chosen_words(method, chosen),
         wall_s=time.perf_counter() - started,
+        events=None if family.spreading is None else family.spreading.events,
     )
 
 

@@ -16,7 +16,7 @@ from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.direct import UNSOLVED, rule
 from blocksim.engines.moving import OnMovingSupports
-from blocksim.limit.spreading import Event, Path, follow, lying
+from blocksim.limit.spreading import Path, follow, lying
 
 SIDES = (-1.0, 1.0)
 """Ways of the left and the right support where a file does not say them."""
@@ -28,6 +28,34 @@ FAST = 30.0
 """Speed of blocks, over that of their supports, from which on they fall."""
 STARTS = 1e-5
 """Acceleration from which on blocks move on supports that have stopped [g]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpenJoint:
+    """A joint that is open at an end or both, by the bodies on its two sides."""
+
+    a: str
+    b: str
+    state: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Happening:
+    """Something that happens as supports move.
+
+    Parameters
+    ----------
+    value : float
+        How far the supports are [m].
+    what : str
+        As of `blocksim.limit.spreading.Event`.
+    joints : tuple of OpenJoint
+        Those that are open after it.
+    """
+
+    value: float
+    what: str
+    joints: tuple[OpenJoint, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,21 +139,34 @@ class Spreading:
     @property
     def words(self) -> str:
         """Say what happens on the way."""
-        names = self._names
-        return "".join(f"; {_event(event, names)}" for event in self.path.events)
+        return "".join(f"; {_words(event)}" for event in self.events)
 
     @property
-    def _names(self) -> list[str]:
+    def events(self) -> tuple[Happening, ...]:
+        """What happens on the way, each with the joints that are open after it."""
         assembly = self.problem.assembly
 
-        def name(joint: int, side: int) -> str:
-            each = assembly.joints[joint]
-            index = (each.before, each.after)[side]
+        def name(index: int, support: int | None) -> str:
             if index != SUPPORT:
                 return assembly.blocks[index].name or str(index)
-            return assembly.supports[each.support or 0].name or "support"
+            return assembly.supports[support or 0].name or "support"
 
-        return [f"{name(at, 0)}-{name(at, 1)}" for at in range(len(assembly.joints))]
+        return tuple(
+            Happening(
+                value=event.value,
+                what=event.what,
+                joints=tuple(
+                    OpenJoint(
+                        a=name(joint.before, joint.support),
+                        b=name(joint.after, joint.support),
+                        state=state.value,
+                    )
+                    for joint, state in zip(assembly.joints, event.after.states, strict=True)
+                    if state is not JointState.CLOSED
+                ),
+            )
+            for event in self.path.events
+        )
 
     def slowly(self, tol: float, highest: float, progress: Progress = silent) -> Slow:
         """Move the supports slowly in `direct`, and stop them at times.
@@ -213,12 +254,8 @@ def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int
     return low, runs
 
 
-def _event(event: Event, names: list[str]) -> str:
-    said = ", ".join(
-        f"{name} {state.value}"
-        for name, state in zip(names, event.after.states, strict=True)
-        if state is not JointState.CLOSED
-    )
+def _words(event: Happening) -> str:
+    said = ", ".join(f"{joint.a}-{joint.b} {joint.state}" for joint in event.joints)
     return f"at {event.value:.6g} m {_WORDS[event.what]}: {said}"
 
 

@@ -110,11 +110,29 @@ class ShakeEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ExpectEntry:
+    """Entry of `expect`: what the source says, for `validate`.
+
+    Either a `verdict` on the structure as it is, or the `value` of `over`, a parameter of
+    `bracket`, at which it changes from standing to falling. `published` is that value with the
+    digits that were printed; `hinges` are the joints that open there, numbered from 0.
+    """
+
+    __pydantic_config__: ClassVar = _FORBID
+
+    over: Name | None = None
+    value: Number | None = None
+    published: Annotated[str, Field(pattern=r"^-?\d+(\.\d+)?$", strict=True)] | None = None
+    hinges: tuple[Annotated[int, Field(ge=0, strict=True)], ...] = ()
+    verdict: Literal["stands", "collapses"] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Around:
     """What a structure file says besides its blocks: friction, weight and loads.
 
     `load` (the factor on `live`) and `size` are what records need to be read back; files may
-    have them, too.
+    have them, too. `expect` and `quick` are for `validate`.
     """
 
     __pydantic_config__: ClassVar = _FORBID
@@ -129,6 +147,8 @@ class Around:
     shake: ShakeEntry | None = None
     load: Number = 0.0
     size: Positive | None = None
+    expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
+    quick: Annotated[bool, Field(strict=True)] = False
 
 
 AROUND = tuple(field.name for field in fields(Around))
@@ -143,7 +163,15 @@ class StructureFile(Around):
     joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None
 
 
-_TABLES = (StructureFile, BlockEntry, JointEntry, LoadEntry, MoveEntry, ShakeEntry)
+_TABLES = (
+    StructureFile,
+    BlockEntry,
+    JointEntry,
+    LoadEntry,
+    MoveEntry,
+    ShakeEntry,
+    ExpectEntry,
+)
 _KEYS = {field.name for table in _TABLES for field in fields(table)}
 _ALLOWED = {
     "friction": '0 or more, or "inf"',

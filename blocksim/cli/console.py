@@ -17,8 +17,10 @@ from blocksim.common.checks import require
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.progress import Progress as Report
 from blocksim.report.answers import ratio, signed
+from blocksim.report.structurewords import found_of, question_of, summary_of_structures
+from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.chart import Point, on_front
-from blocksim.studies.validate import Unasked, Validation, disagreements, numbered
+from blocksim.studies.questions import StructureRow
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -86,6 +88,33 @@ def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) ->
         apart = disagreements(rows)
         lines.append(f"the engines disagree in {len(apart)} places")
         lines += [f"  {each}" for each in apart]
+    return lines + [f"not asked of {each.words}" for each in unasked]
+
+
+def structure_table(rows: list[StructureRow]) -> Table:
+    """Lay out rows on structures for a terminal: a line an answer."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for heading in ("structure", "over", "known", "published", "method", "answer", ""):
+        side = "right" if heading in {"known", "published"} else "left"
+        table.add_column(heading, justify=side, no_wrap=True)
+    for row in rows:
+        wanted = "" if row.expected is None else f"{row.expected:.8g}"
+        known = row.expected_verdict.value if row.expected_verdict else wanted
+        first = row.method == "limit"
+        asked = (row.structure, row.question, known, row.published or "-")
+        said = (row.method, found_of(row), "!" if row.miss else "")
+        table.add_row(*(asked if first else ("", "", "", "")), *said)
+    return table
+
+
+def structure_lines(rows: list[StructureRow], unasked: Sequence[Unasked] = ()) -> list[str]:
+    """Return how many answers on structures agree, and what does not, in words."""
+    lines = [summary_of_structures(rows).removesuffix(".")]
+    lines += [
+        f"  {row.structure}, {question_of(row)}, {row.method}: {row.miss} ({row.note})"
+        for row in rows
+        if row.miss
+    ]
     return lines + [f"not asked of {each.words}" for each in unasked]
 
 

@@ -30,7 +30,12 @@ from blocksim.common.files import require_place
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.shaken import rocking_of
 from blocksim.kinds import KINDS
-from blocksim.kinds.files import changed, load_structure, structure_of
+from blocksim.kinds.files import (
+    changed,
+    load_structure,
+    shipped_structures,
+    structure_of,
+)
 from blocksim.report.structures import (
     bracket_lines,
     bracket_record,
@@ -64,7 +69,7 @@ class Loading:
 
 def is_structure(scene: str | None) -> bool:
     """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
-    if scene in KINDS:
+    if scene in KINDS or scene in shipped_structures():
         return True
     if scene is None or not scene.endswith((".json", ".toml")):
         return False

@@ -19,6 +19,8 @@ from blocksim.cli.console import (
     progress,
     say,
     show,
+    structure_lines,
+    structure_table,
     validation_lines,
     validation_table,
 )
@@ -35,6 +37,11 @@ from blocksim.engines import ENGINES
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import parameters_of
 from blocksim.studies.chart import cases, measure
+from blocksim.studies.structures import (
+    structures,
+    unasked_structures,
+    validate_structures,
+)
 from blocksim.studies.validate import USUAL, scenarios, unasked
 from blocksim.studies.validate import validate as run_validation
 
@@ -57,7 +64,10 @@ def validate(
     ] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes.")] = 2,
 ) -> None:
-    """Simulate published arches and hold them against the analytical map."""
+    """Simulate published arches and hold them against the map, and structures their sources.
+
+    Exit code 0 where all agrees, 1 where something does not.
+    """
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.report.tables import write_results
 
@@ -67,12 +77,18 @@ def validate(
     make_folder(out)
     chosen = scenarios(quick=quick)
     left_out = unasked(chosen, engines)
+    built = structures(quick=quick)
+    built_left_out = unasked_structures(built, engines)
     with progress() as report:
         rows = run_validation(chosen, engines, workers=workers, progress=report)
-    paths = write_results(rows, out, left_out)
+        answers = validate_structures(built, engines, workers=workers, progress=report)
+    paths = write_results(rows, out, left_out, answers, built_left_out)
     show(validation_table(rows))
     say("\n".join(validation_lines(rows, left_out)))
+    show(structure_table(answers))
+    say("\n".join(structure_lines(answers, built_left_out)))
     say("wrote " + ", ".join(str(path) for path in paths))
+    raise typer.Exit(int(any(row.miss for row in (*rows, *answers))))
 
 
 @app.command()
@@ -151,7 +167,7 @@ def draw_map(
 
 @app.command(name="scenarios")
 def list_scenarios() -> None:
-    """List the scenarios that come with blocksim."""
+    """List the scenarios and structures that come with blocksim."""
     table = Table(box=None, header_style="bold", pad_edge=False)
     for heading in ("name", "alpha", "mu", "n", "eta", "title", "source"):
         table.add_column(heading, justify="right" if heading in NUMBERS else "left")
@@ -161,6 +177,19 @@ def list_scenarios() -> None:
         numbers = f"{math.degrees(each.half_angle):g}", f"{each.mu:.4g}", str(each.voussoirs)
         table.add_row(name, *numbers, eta, each.title, each.source)
     show(table)
+    say("")
+    built = Table(box=None, header_style="bold", pad_edge=False)
+    for heading in ("structure", "blocks", "mu", "known", "title", "source"):
+        built.add_column(heading, justify="right" if heading in {"blocks", "mu"} else "left")
+    for known in structures(quick=False):
+        told = [
+            f"{one.verdict}" if one.verdict else f"--over {one.over} {one.value:.6g}"
+            for one in known.expect
+        ]
+        problem = known.problem
+        size = str(len(problem.assembly.blocks)), f"{problem.mu:.4g}"
+        built.add_row(known.name, *size, ", ".join(told), problem.title, problem.source)
+    show(built)
 
 
 @app.command(name="kinds")

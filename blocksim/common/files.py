@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable
 from contextlib import suppress
 from errno import EISDIR
+from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import BinaryIO, cast
@@ -16,6 +17,20 @@ from blocksim.common.errors import InputError
 
 AnyPath = str | os.PathLike[str]
 """What every public function takes for a path."""
+
+
+def shipped_files(pattern: str) -> dict[str, Path]:
+    """Return files of `scenarios/` that come with blocksim, by name.
+
+    Parameters
+    ----------
+    pattern : str
+        As of a path below that folder: `*.toml`.
+    """
+    # In a wheel they are package data, in a checkout they are beside the package.
+    inside = Path(str(files("blocksim") / "_scenarios"))
+    folder = inside if inside.is_dir() else Path(__file__).parents[2] / "scenarios"
+    return {path.stem: path for path in sorted(folder.glob(pattern))}
 
 
 def json_text(document: object, *, indent: int | None = None) -> str:

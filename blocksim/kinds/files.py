@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -24,12 +25,18 @@ from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_file
+from blocksim.common.files import require_file, shipped_files
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, kind_of
 
 LARGEST_FILE = 50_000_000
 """Bytes; a larger file is not read."""
+WRITTEN = {".json": "JSON", ".toml": "TOML"}
+
+
+def shipped_structures() -> dict[str, Path]:
+    """Structures that come with blocksim, by name."""
+    return shipped_files("structures/*.toml")
 
 
 def load_structure(
@@ -40,7 +47,7 @@ def load_structure(
     Parameters
     ----------
     path : Path or str
-        Ends in .json or .toml.
+        Ends in .json or .toml, or the name of a shipped one.
     changes : mapping of str to object
         Parameters of its kind instead of those it says; `arch.thickness`: of its arch.
 
@@ -49,19 +56,33 @@ def load_structure(
     InputError
         In one line: file, entry, value, and what would be accepted.
     """
+    with named_file(path) as data:
+        return structure_of(changed(data, changes) if changes else data)
+
+
+@contextmanager
+def named_file(path: Path | str) -> Generator[object]:
+    """Give what a structure file says; what is wrong with it is said with the file's name.
+
+    Raises
+    ------
+    InputError
+        In one line, also what is raised while it is used.
+    """
     path = Path(path)
-    allowed = "an existing structure file, .json or .toml"
-    require(path.suffix in {".json", ".toml"}, "structure", str(path), allowed)
+    if path.suffix not in WRITTEN:
+        path = shipped_structures().get(str(path), path)
+    allowed = "an existing structure file, .json or .toml, or a shipped structure"
+    require(path.suffix in WRITTEN, "structure", str(path), allowed)
     require_file(path, "structure", allowed, LARGEST_FILE)
-    written = "JSON" if path.suffix == ".json" else "TOML"
+    written = WRITTEN[path.suffix]
     try:
         text = path.read_text(encoding="utf-8")
-        data: object = (
+        yield (
             json.loads(text, object_pairs_hook=_once)
             if written == "JSON"
             else tomllib.loads(text)
         )
-        return structure_of(changed(data, changes) if changes else data)
     except InputError as error:
         raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
     except (ValueError, RecursionError) as error:

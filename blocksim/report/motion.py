@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from blocksim.arch.circular import arch_of
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState, classify
 from blocksim.evidence.recording import Recording
-from blocksim.view.drawing import HINGES
+from blocksim.view.drawing import HINGES, state_of_any
 from blocksim.view.stage import Stage
 
 SHOWN = 0.13
@@ -54,38 +55,70 @@ class Mark:
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """A voussoir: its outline at rest, the centre it turns about, its marks."""
+    """A block: its outlines at rest, the centre it turns about, its marks."""
 
-    outline: str
+    outlines: tuple[str, ...]
     centre: tuple[float, float]
     marks: tuple[Mark, ...]
     moved: str
 
 
 @dataclass(frozen=True, kw_only=True)
+class Arrow:
+    """A force: what it is (a class of the page's style), its shaft and its head."""
+
+    what: str
+    shaft: str
+    head: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Drawing:
-    """Everything a page needs to draw an arch and to move it.
+    """Everything a page needs to draw blocks and to move them.
 
     Parameters
     ----------
     box : str
         The drawing's viewBox.
-    rest : str
-        Outline of the arch at rest.
+    rest : tuple of str
+        Outlines at rest.
     pieces : tuple of Piece
     footings : tuple of str
     supports : tuple of Mark
         Active joints' faces that stay.
     thrust : tuple of str
         Line of thrust at rest.
-    ground : float
-        Level of the ground.
+    arrows : tuple of Arrow
+        Forces besides gravity, and gravity where it does not pull straight down.
+    ground : float or None
+        Level of the ground, where there is one.
     dot : float
         Radius of the mark of a hinge.
     frames : str
         JSON: for each pose, for each piece, its shift x, y and turn [deg].
     enlarged : float or None
-        How many times larger than recorded the motion is drawn; None where none is.
+        How many times larger than it is the motion is drawn; None where none is.
+    """
+
+    box: str
+    rest: tuple[str, ...]
+    pieces: tuple[Piece, ...]
+    footings: tuple[str, ...]
+    supports: tuple[Mark, ...]
+    thrust: tuple[str, ...]
+    arrows: tuple[Arrow, ...]
+    ground: float | None
+    dot: float
+    frames: str
+    enlarged: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArchDrawing(Drawing):
+    """The drawing of a recording of an arch.
+
+    Parameters
+    ----------
     seconds : float
         Length of the motion, in seconds of the arch.
     eta : float or None
@@ -96,23 +129,13 @@ class Drawing:
         Angle [deg] and state of each joint that takes part.
     """
 
-    box: str
-    rest: str
-    pieces: tuple[Piece, ...]
-    footings: tuple[str, ...]
-    supports: tuple[Mark, ...]
-    thrust: tuple[str, ...]
-    ground: float
-    dot: float
-    frames: str
-    enlarged: float | None
     seconds: float
     eta: float | None
     radius: float
     joints: tuple[tuple[float, str], ...]
 
 
-def drawing(recording: Recording, gravity: float) -> Drawing:
+def drawing(recording: Recording, gravity: float) -> ArchDrawing:
     """Turn a recording into a drawing."""
     stage = Stage(recording)
     assembly = stage.assembly
@@ -127,34 +150,34 @@ def drawing(recording: Recording, gravity: float) -> Drawing:
     )
     outlines = [block.vertices / assembly.size for block in assembly.blocks]
     frames = _frames(recording, enlarged or 0.0)
-    marks = _marks(stage, [joint.state for joint in states])
+    marks = marks_of(assembly, [joint.state for joint in states])
     arrays = assembly.joint_arrays
     rest = np.concatenate([arrays.ends[:, 0], arrays.ends[::-1, 1]])
     corners = np.concatenate([rest, *stage.footings])
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
     low[1] = stage.ground - MARGIN / 4
-    size = (high - low) * UNIT
     last = frames[-1]
     arch = arch_of(recording.problem)
-    return Drawing(
-        box=f"{low[0] * UNIT:.1f} {-high[1] * UNIT:.1f} {size[0]:.1f} {size[1]:.1f}",
-        rest=_points(rest),
+    return ArchDrawing(
+        box=box_of(low, high),
+        rest=(points(rest),),
         pieces=tuple(
             Piece(
-                outline=_points(outline),
-                centre=_place(block.centre / assembly.size),
+                outlines=(points(outline),),
+                centre=place_of(block.centre / assembly.size),
                 marks=marks[index],
-                moved=_transform(last[index], _place(block.centre / assembly.size)),
+                moved=transform(last[index], place_of(block.centre / assembly.size)),
             )
             for index, (block, outline) in enumerate(
                 zip(assembly.blocks, outlines, strict=True)
             )
         ),
-        footings=tuple(_points(footing) for footing in stage.footings),
+        footings=tuple(points(footing) for footing in stage.footings),
         supports=marks[SUPPORT],
-        thrust=tuple(_points(piece[::8]) for piece in stage.thrust),
+        thrust=tuple(points(piece[::8]) for piece in stage.thrust),
+        arrows=(),
         ground=round(-stage.ground * UNIT, 2),
-        dot=round(DOT * float(size.max()), 1),
+        dot=dot_of(low, high),
         frames=json.dumps(frames, separators=(",", ":")),
         enlarged=enlarged,
         seconds=float(recording.seconds(gravity)[-1]),
@@ -185,9 +208,10 @@ def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
     return (drawn.round(2) + 0.0).tolist()
 
 
-def _marks(stage: Stage, states: list[JointState]) -> dict[int, tuple[Mark, ...]]:
+def marks_of(
+    assembly: Assembly, states: Sequence[JointState], *, is_arch: bool = True
+) -> dict[int, tuple[Mark, ...]]:
     """Collect the marks of active joints by block, `SUPPORT` for the footings."""
-    assembly = stage.assembly
     found: dict[int, list[Mark]] = {
         block: [] for block in (*range(len(assembly.blocks)), SUPPORT)
     }
@@ -196,24 +220,39 @@ def _marks(stage: Stage, states: list[JointState]) -> dict[int, tuple[Mark, ...]
         if state is JointState.CLOSED:
             continue
         end = HINGES.get(state)
-        hinge = None if end is None else _place(ends[joint, end])
-        line = _points(ends[joint])
+        hinge = None if end is None else place_of(ends[joint, end])
+        line = points(ends[joint])
+        look = (state if is_arch else state_of_any(state)).value
         # The dot is drawn with the later of the two blocks, in front of both.
         owner = max(int(before[joint]), int(after[joint]))
         for block in (int(before[joint]), int(after[joint])):
             dot = hinge if block == owner else None
-            found[block].append(Mark(state=state.value, line=line, hinge=dot))
+            found[block].append(Mark(state=look, line=line, hinge=dot))
     return {block: tuple(marks) for block, marks in found.items()}
 
 
-def _place(point: Array) -> tuple[float, float]:
+def box_of(low: Array, high: Array) -> str:
+    """Return the viewBox of what is drawn between two corners."""
+    wide, tall = (high - low) * UNIT
+    return f"{low[0] * UNIT:.1f} {-high[1] * UNIT:.1f} {wide:.1f} {tall:.1f}"
+
+
+def dot_of(low: Array, high: Array) -> float:
+    """Return the radius of the mark of a hinge in a drawing between two corners."""
+    return round(DOT * UNIT * float((high - low).max()), 1)
+
+
+def place_of(point: Array) -> tuple[float, float]:
+    """Return where a point is drawn."""
     return round(float(point[0]) * UNIT, 2), round(-float(point[1]) * UNIT, 2)
 
 
-def _points(points: Array) -> str:
-    return " ".join("{:g},{:g}".format(*_place(point)) for point in points)
+def points(line: Array) -> str:
+    """Return points as those of a polyline."""
+    return " ".join("{:g},{:g}".format(*place_of(point)) for point in line)
 
 
-def _transform(pose: list[float], centre: tuple[float, float]) -> str:
+def transform(pose: Sequence[float], centre: tuple[float, float]) -> str:
+    """Say how a piece is moved: shift x, y, and turn about its centre [deg]."""
     x, y, turn = pose
     return f"translate({x:g} {y:g}) rotate({turn:g} {centre[0]:g} {centre[1]:g})"

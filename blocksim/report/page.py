@@ -16,16 +16,12 @@ from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import ratio
 from blocksim.report.inlinemap import inline_map
-from blocksim.report.motion import Drawing, drawing
-from blocksim.studies.validate import (
-    ASIDE,
-    ERROR_BOUND,
-    TOLS,
-    Unasked,
-    Validation,
-    disagreements,
-    numbered,
-)
+from blocksim.report.motion import ArchDrawing, drawing
+from blocksim.report.structurepart import shown_structures
+from blocksim.report.structurewords import summary_of_structures
+from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
+from blocksim.studies.questions import ASIDES, NEAR, SLOWLY, StructureRow
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS
 from blocksim.view import style
 
 STATES = {
@@ -47,7 +43,7 @@ class Result:
     found: str
     bracket: str
     error: str
-    drawing: Drawing | None
+    drawing: ArchDrawing | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +65,8 @@ def report_page(
     map_svg: bytes,
     machine: Mapping[str, str],
     unasked: Sequence[Unasked] = (),
+    structures: Sequence[StructureRow] = (),
+    structures_unasked: Sequence[Unasked] = (),
 ) -> str:
     """Write the page.
 
@@ -81,6 +79,9 @@ def report_page(
     machine : mapping
         What the figures were measured on.
     unasked : sequence of Unasked
+    structures : sequence of StructureRow
+        Of the second part; left out of the page where there are none.
+    structures_unasked : sequence of Unasked
 
     Returns
     -------
@@ -103,6 +104,7 @@ def report_page(
     template = environment.get_template("report.html")
     engines = list(dict.fromkeys(row.engine for row in rows))
     drawn_map, dark = inline_map(map_svg, {n: name for name, n in numbered(rows).items()})
+    shown = shown_structures(structures)
     return template.render(
         cases=_cases(rows),
         unasked=unasked,
@@ -124,6 +126,15 @@ def report_page(
         joint_colours=style.JOINTS,
         thrust_colour=style.THRUST,
         verdict_colours=style.VERDICTS,
+        load_colours={"dead": style.DEAD, "live": style.LIVE, "gravity": style.QUIET},
+        structures=shown,
+        structure_sentence=summary_of_structures(structures),
+        structure_misses=[row for row in structures if row.miss],
+        structure_anchors={each.row.structure: each.anchor for each in shown},
+        structure_unasked=structures_unasked,
+        structure_near=f"{NEAR:g}",
+        structure_asides=_asides(structures),
+        structure_slowly=_percent(SLOWLY),
         mode_styles=style.MODES,
         modes=list(Mode),
     )
@@ -147,6 +158,12 @@ def summary(rows: Sequence[Validation]) -> str:
         f"{undecided or 'none'} {'is' if undecided <= 1 else 'are'} undecided"
     )
     return "; ".join(parts) + "."
+
+
+def _asides(rows: Sequence[StructureRow]) -> str:
+    """Say how far inside and beyond each engine was asked."""
+    engines = dict.fromkeys(row.method for row in rows if row.method in ASIDES)
+    return ", ".join(f"{_percent(ASIDES[engine])} by {engine}" for engine in engines)
 
 
 def _cases(rows: Sequence[Validation]) -> list[Shown]:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
 
+from blocksim.arch.circular import arch_of
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.check import ProblemCheck
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.shaking import shaking_record
+from blocksim.kinds.files import kind_behind
 
 SHOWN = 8
 """Joints and blocks told in a line of text."""
@@ -65,6 +68,7 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
         "undecided": answer.undecided,
         "reason": answer.reason,
         "wall_s": answer.wall_s,
+        "events": answer.events and [asdict(each) for each in answer.events],
     }
 
 
@@ -82,8 +86,9 @@ def check_lines(answer: ProblemCheck) -> list[str]:
     if answer.rest == "can":
         lines.append("  rest    it can rest, and friction may let it move as well")
     named = joint_names(problem.assembly)
+    words = _state_words(problem)
     active = [
-        f"{name} {joint.state.value}"
+        f"{name} {words(joint.state)}"
         for name, joint in zip(named, answer.joints, strict=True)
         if joint.state is not JointState.CLOSED
     ]
@@ -133,6 +138,19 @@ def joint_names(assembly: Assembly) -> list[str]:
     ]
 
 
+def _state_words(problem: Problem) -> Callable[[JointState], str]:
+    """Return what says a joint's state: only an arch has an intrados and an extrados."""
+    kind = kind_behind(problem)
+    if arch_of(problem) is not None or (kind is not None and kind.is_arch):
+        return lambda state: state.value
+    return lambda state: HINGE if state in HINGED else state.value
+
+
+HINGE = "hinge"
+HINGED = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
+"""Which end of a joint stays closed, in the order of its `ends`."""
+
+
 def _name(assembly: Assembly, joint: int, side: int) -> str:
     here = assembly.joints[joint]
     index = (here.before, here.after)[side]
@@ -145,7 +163,7 @@ def _name(assembly: Assembly, joint: int, side: int) -> str:
 
 def _joints(answer: ProblemCheck) -> list[dict[str, object]]:
     problem = answer.problem
-    assembly, forces = problem.assembly, answer.forces
+    assembly, forces, words = problem.assembly, answer.forces, _state_words(problem)
     told: list[dict[str, object]] = []
     for k, joint in enumerate(assembly.joints):
         total = None if forces is None else forces[k].sum(axis=0) * problem.unit_force
@@ -154,12 +172,14 @@ def _joints(answer: ProblemCheck) -> list[dict[str, object]]:
             if joint.is_corner
             else [joint.inner.tolist(), joint.outer.tolist()]
         )
+        end = HINGED.get(answer.joints[k].state)
         told.append(
             {
                 "a": _name(assembly, k, 0),
                 "b": _name(assembly, k, 1),
                 "ends": ends[:1] if joint.is_corner else ends,
-                "state": answer.joints[k].state.value,
+                "state": words(answer.joints[k].state),
+                "hinge": None if end is None else ends[min(end, len(ends) - 1)],
                 "normal_force": None if total is None else float(total[0]),
                 "friction_force": None if total is None else float(total[1]),
             }

@@ -17,16 +17,9 @@ import blocksim
 from blocksim.common.files import AnyPath, json_text, make_folder, write_whole
 from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
-from blocksim.studies.validate import (
-    ASIDE,
-    ERROR_BOUND,
-    TOLS,
-    Unasked,
-    Validation,
-    disagreements,
-    installed,
-    numbered,
-)
+from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
+from blocksim.studies.questions import ASIDES, NEAR, SLOWLY, StructureRow
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS, installed
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
 
@@ -41,6 +34,15 @@ def as_record(row: Validation) -> dict[str, object]:
     record = {key: value for key, value in fields.items() if key not in left_out}
     record["modes_published"] = "/".join(row.modes_published)
     return {"scenario": row.scenario, "half_angle_deg": math.degrees(row.half_angle), **record}
+
+
+def structure_record(row: StructureRow) -> dict[str, object]:
+    """Return a row on a structure, its fields those of `StructureRow`, without the drawing."""
+    fields = asdict(replace(row, drawn=None))
+    record = {key: value for key, value in fields.items() if key != "drawn"}
+    for key in ("expected_hinges", "hinges"):
+        record[key] = " ".join(map(str, record[key]))
+    return record
 
 
 def machine() -> dict[str, str]:
@@ -65,7 +67,11 @@ def processor() -> str:
 
 
 def write_results(
-    rows: Sequence[Validation], folder: AnyPath, unasked: Sequence[Unasked] = ()
+    rows: Sequence[Validation],
+    folder: AnyPath,
+    unasked: Sequence[Unasked] = (),
+    structures: Sequence[StructureRow] = (),
+    structures_unasked: Sequence[Unasked] = (),
 ) -> list[Path]:
     """Write report.html, validate.json, validate.csv, map.png and map.svg into a folder.
 
@@ -75,6 +81,9 @@ def write_results(
     folder : str or path
     unasked : sequence of Unasked
         What was not asked, and why; said in the page and in the JSON.
+    structures : sequence of StructureRow
+        Of the second part; where there are some, structures.csv is written, too.
+    structures_unasked : sequence of Unasked
 
     Raises
     ------
@@ -84,6 +93,7 @@ def write_results(
     folder = Path(folder)
     make_folder(folder)
     records = [as_record(row) for row in rows]
+    built = [structure_record(row) for row in structures]
     settings = {"tol": TOLS, "error_bound": ERROR_BOUND, "aside": ASIDE}
     document = {
         "machine": machine(),
@@ -91,20 +101,34 @@ def write_results(
         "rows": records,
         "disagreements": disagreements(rows),
         "not_asked": [asdict(each) for each in unasked],
+        "structures": {
+            "settings": {"aside": ASIDES, "near": NEAR, "slowly": SLOWLY},
+            "rows": built,
+            "not_asked": [asdict(each) for each in structures_unasked],
+        },
     }
+    figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
+    drawn = pictures("map", figure)
+    page = report_page(
+        rows, drawn["map.svg"], machine(), unasked, structures, structures_unasked
+    )
+    contents = {
+        PAGE: page.encode(),
+        "validate.json": as_json(document),
+        "validate.csv": _sheet(records),
+    }
+    if built:
+        contents["structures.csv"] = _sheet(built)
+    return write_contents(folder, {**contents, **drawn})
+
+
+def _sheet(records: Sequence[dict[str, object]]) -> bytes:
+    """Return records, all with the same keys, as the content of a CSV file."""
     sheet = io.StringIO()
     writer = csv.DictWriter(sheet, fieldnames=list(records[0]), lineterminator="\n")
     writer.writeheader()
-    for record in records:
-        writer.writerow(record)
-    figure = map_figure(_points(rows), title="Simulated arches on the analytical mode map")
-    drawn = pictures("map", figure)
-    contents = {
-        PAGE: report_page(rows, drawn["map.svg"], machine(), unasked).encode(),
-        "validate.json": as_json(document),
-        "validate.csv": sheet.getvalue().encode(),
-    }
-    return write_contents(folder, {**contents, **drawn})
+    writer.writerows(records)
+    return sheet.getvalue().encode()
 
 
 def as_json(document: object) -> bytes:

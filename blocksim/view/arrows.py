@@ -65,7 +65,7 @@ def draw_loads(axes: Axes, problem: Problem, extent: float) -> list[Array]:
         (kind, place, times * force)
         for kind, loads, times in (("dead", problem.dead, 1.0), ("live", problem.live, factor))
         for load in loads
-        for place, force in _forces(problem, load)
+        for place, force in forces_of(problem, load)
     ]
     sizes = [float(np.hypot(*force)) for _, _, force in drawn]
     largest = max(sizes, default=0.0)
@@ -90,7 +90,7 @@ def draw_loads(axes: Axes, problem: Problem, extent: float) -> list[Array]:
     return shown
 
 
-def _forces(problem: Problem, load: Load) -> list[tuple[Array, Array]]:
+def forces_of(problem: Problem, load: Load) -> list[tuple[Array, Array]]:
     """Points [m] and forces [N] of a load, one for each of its blocks."""
     assembly = problem.assembly
     weights = assembly.masses[:, 0] * problem.unit_force

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Protocol
 
 import av
 import numpy as np
@@ -33,6 +33,34 @@ COLOURS, SAMPLES = 255, 9
 """Of a gif: colours, and frames they are chosen from."""
 DRAWN = (*JOINTS.values(), THRUST, INK, QUIET, PAPER, GROUND)
 """Colours that say something, whatever their share of a frame."""
+
+
+class Frames(Protocol):
+    """What a film is made of."""
+
+    @property
+    def width(self) -> int:
+        """Of a frame [pixels]."""
+        ...
+
+    @property
+    def height(self) -> int:
+        """Of a frame [pixels]."""
+        ...
+
+    @property
+    def rate(self) -> int:
+        """Frames in a second."""
+        ...
+
+    @property
+    def count(self) -> int:
+        """Number of frames."""
+        ...
+
+    def frame(self, number: int) -> NDArray[np.uint8]:
+        """Draw a frame, shape (height, width, 4)."""
+        ...
 
 
 def render(
@@ -79,12 +107,27 @@ def render(
     if kind in STILLS:
         write_whole(out, lambda file: film.still(file, kind, at))
     else:
-        write: Callable[[Film, BinaryIO, Progress], None] = {"mp4": _mp4, "gif": _gif}[kind]
-        write_whole(out, lambda file: write(film, file, progress))
+        write_film(film, out, progress)
     return film
 
 
-def _mp4(film: Film, file: BinaryIO, progress: Progress) -> None:
+def write_film(film: Frames, out: AnyPath, progress: Progress = silent) -> None:
+    """Encode frames into a file ending in .mp4 or .gif, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    kinds: dict[str, Callable[[Frames, BinaryIO, Progress], None]] = {
+        "mp4": _mp4,
+        "gif": _gif,
+    }
+    write = kinds[Path(out).suffix.removeprefix(".")]
+    write_whole(out, lambda file: write(film, file, progress))
+
+
+def _mp4(film: Frames, file: BinaryIO, progress: Progress) -> None:
     with av.open(file, "w", format="mp4") as container:
         options = {"crf": QUALITY, "preset": "veryfast"}
         stream = container.add_stream("libx264", rate=film.rate, options=options)
@@ -112,7 +155,7 @@ def _mp4(film: Film, file: BinaryIO, progress: Progress) -> None:
         container.mux(stream.encode(None))
 
 
-def _palette(film: Film) -> Image.Image:
+def _palette(film: Frames) -> Image.Image:
     """Make one palette for all frames, so that colours do not flicker.
 
     Lines are few pixels among many of stone and ground: their colours are given, and only
@@ -135,7 +178,7 @@ def to_bytes(name: str) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def _gif(film: Film, file: BinaryIO, progress: Progress) -> None:
+def _gif(film: Frames, file: BinaryIO, progress: Progress) -> None:
     def picture(number: int) -> Image.Image:
         return Image.fromarray(film.frame(number)[..., :3])
 

@@ -1,0 +1,396 @@
+"""Twelve structures standing and falling, and one collapse by four engines.
+
+Question: does each shipped structure stand on one side of its known limit and fall on the
+other, all the way to the ground, and can it be seen? Each is drawn at rest a little inside its
+limit, with the forces that hold it, and let go a little beyond it by `direct`, to the end. The
+films are of these recordings. One arch is let go in `direct`, pymunk, pybullet and mujoco; the
+last two are seen in perspective.
+
+Expected: all stand and fall as their sources say, no energy is gained, blocks stay solid.
+
+    python -m analysis.gallery OUT [--quick]
+
+Writes for each a picture and a film (NAME.png, NAME.mp4), all of them on one sheet
+(gallery.png), the four engines as a film and as frames (engines.mp4, engines.png).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import BinaryIO
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from numpy.typing import NDArray
+from PIL import Image
+
+from analysis.command import run
+from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.arch.limit import least_thickness
+from blocksim.ask.check import check
+from blocksim.ask.families import family_of
+from blocksim.ask.simulate import simulate
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.engines.ground import ground_level
+from blocksim.evidence.recording import Recording
+from blocksim.kinds.known import load_known
+from blocksim.view.arrows import draw_forces, draw_loads
+from blocksim.view.drawing import clipped, save_figure
+from blocksim.view.film import BEFORE, FOOT, HEAD, TALL, Film
+from blocksim.view.structure import problem_figure
+from blocksim.view.style import FONT, GROUND, INK, LIVE, QUIET, STONE
+from blocksim.view.video import DRAWN, to_bytes, write_film
+
+SHOWN = {
+    "pointed_e0_25": ("Pointed arch", "least thickness {:.4f} m"),
+    "ellipse_b0_5": ("Elliptic arch", "least thickness {:.4f} m"),
+    "semicircle_point_crown": ("Weight on the crown", "load factor {:.4f}"),
+    "oppenheim_7": ("Oppenheim's arch", "push of {:.4f} of its weight"),
+    "jack_arch_load": ("Flat arch on piers", "load factor {:.4f}"),
+    "piers_h1_c1": ("Arch on piers", "least width of piers {:.4f} m"),
+    "two_spans_load_b9": ("Two spans", "load factor {:.4f}"),
+    "gable": ("Two struts", "least friction {:.4f}"),
+    "ferris_tinloi_5": ("Wall of two storeys", "push of {:.4f} of its weight"),
+    "column_six_drums": ("Column of drums", "table tilted by {:.2f}°"),
+    "harmonic_5": ("Overhang", "largest overhang {:.4f} m"),
+    "box2d_arch": ("Box2D's arch", "least friction {:.4f}"),
+}
+"""Structures, what they are called on the sheet, and what limit of theirs is known."""
+QUICK = ("oppenheim_7", "gable")
+ASIDE = 0.02
+"""How far inside and beyond its limit each is shown, relative."""
+LONGEST = 15.0
+"""Time after which a film ends though something moves [sqrt(size/g)]."""
+FALLING, SHARE = 0.45, 0.6
+"""How far a block has gone in the lower picture of the sheet [size], and at most of its way."""
+FRICTION = 1.0
+"""Of joints that are taken not to slip: it leaves their limits as they are, and blocks that
+fall on each other need not stop dead."""
+AROUND = 0.3
+"""How far beyond the blocks the pictures of the sheet reach [size]."""
+TILTED = 1e-9
+"""Gravity across the plane's vertical from which on it is tilted [g]."""
+ENGINES = {"direct": "2d", "pymunk": "2d", "pybullet": "3d", "mujoco": "3d"}
+TIMES = (0.0, 1.6, 2.4, 3.2)
+"""Of the frames of the four engines, in units of sqrt(r/g)."""
+COLOURS = 256
+"""Of a picture."""
+ARCH = 0.93
+"""Thickness of the arch of the four engines, over the least."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A structure as it stood and fell.
+
+    Parameters
+    ----------
+    structure : str
+    limit : float
+        What is known of it.
+    inside, beyond : float
+        Where it was shown.
+    stood, fell : str
+        Verdicts of `direct` there.
+    moved : float
+        How far a block went [size].
+    overlap : float
+        Deepest overlap of blocks [size].
+    gain : float
+        Energy gained over what fell.
+    """
+
+    structure: str
+    limit: float
+    inside: float
+    beyond: float
+    stood: str
+    fell: str
+    moved: float
+    overlap: float
+    gain: float
+
+
+@dataclass(frozen=True)
+class Result:
+    """All structures, and how far each engine's arch went [r]."""
+
+    rows: tuple[Row, ...]
+    engines: dict[str, float]
+
+
+def main(out: Path, *, quick: bool = False) -> Result:
+    """Make pictures, films and the sheet; of two structures and engines in a quick run."""
+    out.mkdir(parents=True, exist_ok=True)
+    height = 180 if quick else 720
+    rows: list[Row] = []
+    seen: list[tuple[str, Problem, Array, Recording]] = []
+    for name in QUICK if quick else SHOWN:
+        row, problem, forces, fall = shown(name)
+        rows.append(row)
+        seen.append((name, problem, forces, fall))
+        verdict = f"stands, by direct and limit ({100 * ASIDE:g} % inside its limit)"
+        picture = problem_figure(problem, verdict=verdict, forces=forces)
+        with (out / f"{name}.png").open("wb") as file:
+            save_figure(picture, file, "png")
+        write_film(Film([fall], height=height), out / f"{name}.mp4")
+    with (out / "gallery.png").open("wb") as file:
+        _few_colours(sheet(seen), file)
+    with (out / "gallery.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, [field.name for field in fields(Row)])
+        writer.writeheader()
+        writer.writerows(asdict(row) for row in rows)
+    return Result(tuple(rows), engines(out, quick=quick))
+
+
+def shown(name: str) -> tuple[Row, Problem, Array, Recording]:
+    """Let a structure stand inside its limit and fall beyond it."""
+    known = load_known(name)
+    expected = next(each for each in known.expect if each.over)
+    rough = math.isinf(known.problem.mu)
+    asked = known.problem.with_friction(FRICTION) if rough else known.problem
+    family = family_of(asked, str(expected.over))
+    limit = float(expected.value or 0)
+    sense = 1 if family.stands == "low" else -1
+    inside, beyond = limit * (1 - sense * ASIDE), limit * (1 + sense * ASIDE)
+    problem = family.at(inside)
+    stood = check(problem, method="direct")
+    fell = check(family.at(beyond), method="direct")
+    fall = simulate(family.at(beyond), method="direct", duration=LONGEST)
+    forces = check(problem, method="limit").forces
+    assert forces is not None  # noqa: S101
+    row = Row(
+        structure=name,
+        limit=limit,
+        inside=inside,
+        beyond=beyond,
+        stood=str(stood.verdict),
+        fell=str(fell.verdict),
+        moved=float(fall.displacement.max()),
+        overlap=fall.quality.penetration or 0.0,
+        gain=fall.quality.gain or 0.0,
+    )
+    return row, problem, forces, fall
+
+
+def sheet(seen: Sequence[tuple[str, Problem, Array, Recording]]) -> Figure:
+    """Draw all structures: above as they stand, below as they fall."""
+    columns = min(4, len(seen))
+    lines = math.ceil(len(seen) / columns)
+    frames = [_falling(fall) for *_, fall in seen]
+    boxes = [
+        _box(fall, (fall.poses[0], fall.poses[frame]))
+        for (*_, fall), frame in zip(seen, frames, strict=True)
+    ]
+    tall = [float((high - low)[1] / (high - low)[0]) for low, high in boxes]
+    heights = [min(1.2, max(tall[at : at + columns])) for at in range(0, len(tall), columns)]
+    wide = 2.9
+    size = (wide * columns, sum(2 * wide * each + 0.75 for each in heights))
+    with mpl.rc_context(FONT):
+        figure = Figure(figsize=size, layout="constrained")
+        ratios = [wide * each + more for each in heights for more in (0.6, 0.15)]
+        axes = figure.subplots(2 * lines, columns, squeeze=False, height_ratios=ratios)
+        for place, (name, problem, forces, fall) in enumerate(seen):
+            line, column = divmod(place, columns)
+            above, below = axes[2 * line, column], axes[2 * line + 1, column]
+            title, words = SHOWN[name]
+            expected = next(each for each in load_known(name).expect if each.over)
+            above.set_title(f"{title}\n", fontsize=11)
+            above.annotate(words.format(expected.value), (0, 1), xytext=(0, 6),
+                           xycoords="axes fraction", textcoords="offset points",
+                           color=QUIET)  # fmt: skip
+            box = _shaped(boxes[place], heights[line])
+            _blocks(above, problem, None, box)
+            extent = 2 * problem.assembly.size
+            draw_forces(above, problem, forces, extent)
+            _actions(above, problem)
+            _blocks(below, fall.problem, _placed(fall, fall.poses[frames[place]]), box)
+        for empty in axes.ravel():
+            empty.axis("off")
+    return figure
+
+
+def _shaped(box: tuple[Array, Array], tall: float) -> tuple[Array, Array]:
+    """Widen a frame, or heighten it upwards, to a height over its width."""
+    (left, bottom), (right, top) = box[0].tolist(), box[1].tolist()
+    wide = max(right - left, (top - bottom) / tall)
+    middle = (left + right) / 2
+    return (
+        np.array([middle - wide / 2, bottom]),
+        np.array([middle + wide / 2, bottom + tall * wide]),
+    )
+
+
+def _falling(fall: Recording) -> int:
+    """Choose a frame of a fall at which it is seen, and not yet over."""
+    moved = np.maximum.accumulate(fall.displacement)
+    return int(np.searchsorted(moved, min(FALLING, SHARE * float(moved[-1]))))
+
+
+def _actions(axes: Axes, problem: Problem) -> None:
+    """Draw a load on a block where it acts; what acts on all blocks as one arrow beside."""
+    if problem.live and not problem.live[0].per_weight:
+        draw_loads(axes, problem, 2 * problem.assembly.size)
+        return
+    pull = problem.gravity[:2]
+    tilted = abs(float(pull[0])) > TILTED
+    way, tone = (
+        (pull, QUIET) if tilted else (problem.live[0].force if problem.live else None, LIVE)
+    )
+    if way is None:
+        return
+    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+    long = AROUND * problem.assembly.size * way / np.hypot(*way)
+    # To the left of the blocks, half way up.
+    left = float(corners[:, 0].min()) - 0.1 * problem.assembly.size
+    tip = np.array([left, float(corners[:, 1].mean()) + min(0.0, float(long[1])) / 2])
+    start = tip - long
+    axes.annotate("", tip, start, annotation_clip=False,
+                  arrowprops={"arrowstyle": "-|>", "color": tone, "lw": 1.6})  # fmt: skip
+
+
+def _box(fall: Recording, poses: Sequence[Array]) -> tuple[Array, Array]:
+    """Frame the blocks at two moments [m]."""
+    corners = np.concatenate(
+        [corner for pose in poses for parts in _placed(fall, pose) for corner in parts]
+    )
+    around = AROUND * fall.assembly.size
+    low, high = corners.min(axis=0) - around, corners.max(axis=0) + around
+    low[1] += around / 2
+    return low, high
+
+
+def _placed(run: Recording, poses: Array) -> list[list[Array]]:
+    """Return the polygons of each block where it is [m]."""
+    size = run.assembly.size
+    placed: list[list[Array]] = []
+    for block, (x, y, turn) in zip(run.assembly.blocks, poses[:, :3].tolist(), strict=True):
+        cos, sin = math.cos(turn), math.sin(turn)
+        spun = np.array([[cos, sin], [-sin, cos]])
+        at = np.array([x, y]) * size
+        placed.append([(part - block.centre) @ spun + at for part in block.polygons])
+    return placed
+
+
+def _blocks(
+    axes: Axes, problem: Problem, placed: list[list[Array]] | None, box: tuple[Array, Array]
+) -> None:
+    """Draw blocks where they are, on what they stand."""
+    low, high = box
+    assembly = problem.assembly
+    for support in assembly.supports:
+        for part in support.polygons:
+            foot = clipped(part, low, high)
+            if len(foot):
+                axes.add_patch(Polygon(foot, fc=GROUND, ec="none", zorder=0.5))
+    polygons = placed or [list(block.polygons) for block in assembly.blocks]
+    for parts in polygons:
+        for part in parts:
+            axes.add_patch(Polygon(part, fc=STONE, ec=INK, lw=0.6, zorder=1))
+    axes.set_aspect("equal")
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    level = ground_level(assembly)
+    if low[1] < level:
+        axes.axhline(level, color=GROUND, lw=1, zorder=0.4)
+
+
+class Tiled:
+    """Films of one collapse on one clock, two beside each other in each line."""
+
+    def __init__(self, films: Sequence[Film]) -> None:
+        self._films = films
+        self._across = min(2, len(films))
+        self.rate = films[0].rate
+        self.count = max(film.count for film in films)
+        self.width = self._across * films[0].width
+        self.height = math.ceil(len(films) / self._across) * films[0].height
+
+    def frame(self, number: int) -> NDArray[np.uint8]:
+        """Draw a frame; a film that has ended shows its last one."""
+        each = [film.frame(min(number, film.count - 1)) for film in self._films]
+        lines = [each[at : at + self._across] for at in range(0, len(each), self._across)]
+        return np.concatenate([np.concatenate(line, axis=1) for line in lines])
+
+
+def engines(out: Path, *, quick: bool) -> dict[str, float]:
+    """Let one arch go in each engine; write a film of all and a picture of its frames."""
+    half, mu, voussoirs = math.radians(90), 0.7, 15
+    least = least_thickness(half, mu, voussoirs).eta
+    assert least is not None  # noqa: S101
+    problem = Arch(half_angle=half, eta=ARCH * least, voussoirs=voussoirs).problem(mu)
+    chosen = [name for name in ENGINES if not quick or name in {"direct", "pymunk"}]
+    runs = {name: simulate(problem, method=name, duration=LONGEST) for name in chosen}
+    # One clock for all: that of the longest.
+    slow = min(Film([each]).slow for each in runs.values())
+    height = 180 if quick else 540
+    films = {
+        name: Film([run], view=ENGINES[name], slow=slow, height=height)  # pyright: ignore
+        for name, run in runs.items()
+    }
+    write_film(Tiled(list(films.values())), out / "engines.mp4")
+    with (out / "engines.png").open("wb") as file:
+        _few_colours(frames_of(films, slow), file)
+    return {name: float(run.displacement.max()) for name, run in runs.items()}
+
+
+def frames_of(films: dict[str, Film], slow: float) -> Figure:
+    """Draw the films at the same times, a line an engine."""
+    with mpl.rc_context(FONT):
+        size = (3.0 * len(TIMES), 1.44 * len(films) + 0.25)
+        figure = Figure(figsize=size, layout="constrained")
+        axes = figure.subplots(len(films), len(TIMES), squeeze=False)
+        for line, (name, film) in zip(axes, films.items(), strict=True):
+            scale = film.height / TALL
+            words, legend = round(HEAD * scale), round(FOOT * scale)
+            for at, panel in zip(TIMES, line, strict=True):
+                seconds = at / math.sqrt(GRAVITY)
+                picture = film.frame(round((BEFORE + seconds * slow) * film.rate))
+                # Without the film's own words: the clock is said once for all.
+                panel.imshow(picture[words : film.height - legend, :, :3])
+                panel.set_xticks([])
+                panel.set_yticks([])
+                panel.spines[:].set_visible(False)
+                if panel in axes[0]:
+                    panel.set_title(f"t = {at:g} √(r/g)", fontsize=10)
+            seen = ", in space" if ENGINES[name] == "3d" else ""
+            line[0].set_ylabel(f"{name}{seen}", fontsize=10)
+    return figure
+
+
+def _few_colours(figure: Figure, file: BinaryIO) -> None:
+    """Write a figure with a palette: a third of the size, and nobody sees it."""
+    whole = io.BytesIO()
+    save_figure(figure, whole, "png")
+    picture = Image.open(whole).convert("RGB")
+    # Colours that say something are few pixels among many of stone and ground: they are given.
+    given = [part for name in dict.fromkeys((*DRAWN, LIVE)) for part in to_bytes(name)]
+    rest = picture.quantize(COLOURS - len(given) // 3).getpalette() or []
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([*given, *rest][: 3 * COLOURS])
+    picture.quantize(palette=palette, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
+
+
+def table(result: Result) -> str:
+    """Return what was seen as a table."""
+    lines = [f"{'structure':24} {'limit':>10}  {'inside':10} {'beyond':10} {'moved':>6} gain"]
+    lines += [
+        f"{row.structure:24} {row.limit:10.6g}  {row.stood:10} {row.fell:10} "
+        f"{row.moved:6.2f} {row.gain:.1e}, overlap {row.overlap:.1e}"
+        for row in result.rows
+    ]
+    went = ", ".join(f"{name} {moved:.2f} r" for name, moved in result.engines.items())
+    return "\n".join([*lines, f"one arch falls by {went}"])
+
+
+if __name__ == "__main__":
+    run(main, table)

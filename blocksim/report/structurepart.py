@@ -1,0 +1,118 @@
+"""The part of the page about structures: rows as a reader sees them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from blocksim.evidence.verdict import Verdict
+from blocksim.report.mechanism import mechanism_drawing
+from blocksim.report.motion import Drawing
+from blocksim.report.structurewords import error_of, found_of, question_of
+from blocksim.studies.questions import StructureRow
+
+QUANTITIES = {"load": "load factor", "mu": "friction", "pier_width": "pier width"}
+"""Parameters in words, where their names are none."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answered:
+    """A row as the page shows it."""
+
+    row: StructureRow
+    found: str
+    error: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """A question about a structure, and every method's answer."""
+
+    question: str
+    known: str
+    published: str
+    hinges: str
+    answers: tuple[Answered, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShownStructure:
+    """A structure with all that was asked about it, and how it falls."""
+
+    number: int
+    anchor: str
+    row: StructureRow
+    asked: tuple[Asked, ...]
+    drawing: Drawing | None
+    caption: str
+    words: str
+
+    @property
+    def lines(self) -> int:
+        """Rows of the table it takes."""
+        return sum(len(each.answers) for each in self.asked)
+
+
+def shown_structures(rows: Sequence[StructureRow]) -> list[ShownStructure]:
+    """Gather rows by structure and question."""
+    names = dict.fromkeys(row.structure for row in rows)
+    return [
+        _shown(number, [row for row in rows if row.structure == name])
+        for number, name in enumerate(names, start=1)
+    ]
+
+
+def _shown(number: int, rows: list[StructureRow]) -> ShownStructure:
+    questions = dict.fromkeys(row.question for row in rows)
+    falls = [row for row in rows if row.drawn is not None and row.drawn.rates is not None]
+    seen = [row for row in falls if row.method != "limit"]
+    # As an engine showed it fall; else as limit analysis says; else as it stands.
+    still = [row for row in rows[::-1] if row.drawn is not None]
+    best = (seen or falls or still or [None])[0]
+    drawn = best.drawn if best else None
+    drawing = None if drawn is None else mechanism_drawing(drawn)
+    caption, words = _told(best) if best else ("", "")
+    return ShownStructure(
+        number=number,
+        anchor=f"structure-{number}",
+        row=rows[0],
+        asked=tuple(
+            _asked([row for row in rows if row.question == question]) for question in questions
+        ),
+        drawing=drawing,
+        caption=caption,
+        words=words,
+    )
+
+
+def _asked(rows: list[StructureRow]) -> Asked:
+    first = rows[0]
+    known = "stands at any" if first.expected == 0 else f"{first.expected or 0:.8g}"
+    if first.expected_verdict is not None:
+        known = first.expected_verdict.value
+    return Asked(
+        question=question_of(first),
+        known=known,
+        published=first.published or "-",
+        hinges=", ".join(map(str, first.expected_hinges)),
+        answers=tuple(
+            Answered(row=row, found=found_of(row), error=error_of(row)) for row in rows
+        ),
+    )
+
+
+def _told(row: StructureRow) -> tuple[str, str]:
+    """Say what is drawn: a caption, and words for those who do not see it."""
+    # The end of what was asked at which it falls, or stands if it does not.
+    at = row.low if row.at_low is Verdict.COLLAPSES else row.high
+    unit = f" {row.unit}" if row.unit else ""
+    place = (
+        "" if at is None else f" at {QUANTITIES.get(row.question, row.question)} {at:.6g}{unit}"
+    )
+    if row.drawn is None or row.drawn.rates is None:
+        return f"at rest{place}, by {row.method}", "Nothing moves."
+    if row.question == "spread":
+        place = " on supports that have moved"
+    joints = ", ".join(map(str, row.hinges))
+    caption = f"how it starts to fall{place}, by {row.method}, enlarged"
+    return caption, f"Joints that take part, numbered from 0: {joints}."

@@ -1,0 +1,141 @@
+"""One arch by one engine against what is known, and where engines differ."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from blocksim.arch.modes import Mode
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.verdict import Verdict
+
+
+@dataclass(frozen=True, kw_only=True)
+class Validation:
+    """One scenario by one engine, against what is known.
+
+    Parameters
+    ----------
+    scenario : str
+    engine : str
+    half_angle, mu : float
+    voussoirs : int
+    weight : str
+    modes_published : tuple of Mode
+        Of the continuous arch: several on a line of the map.
+    eta_published, eta_limit : float or None
+    mode_limit : Mode or None
+    eta_low, eta_high : float or None
+        The bracket.
+    error : float or None
+        Centre of the bracket over `eta_limit`, less 1.
+    mode_observed : Mode or None
+        Of the mechanism it starts with, at the bracket's lower end; where the claim is a
+        verdict, of the arch as it is.
+    mode_in_motion : Mode or None
+        In the moving run 1 % below the bracket, where more than the weakest mode may move.
+    below, above : Verdict or None
+        1 % below and above the bracket, by onset test and moving run; None where not tried.
+    verdict_expected, verdict : Verdict or None
+        Of the arch as the scenario has it, where its claim is that and not the bracket.
+    miss : str
+        What disagrees; empty where nothing does.
+    note : str
+        Why, or what to keep in mind.
+    wall_s : float
+    title, source : str
+        Of the scenario.
+    recording : Recording or None
+        The moving run 1 % below the bracket; None where there was none, or the claim is
+        a verdict.
+    """
+
+    scenario: str
+    engine: str
+    half_angle: float
+    mu: float
+    voussoirs: int
+    weight: str
+    modes_published: tuple[Mode, ...]
+    eta_published: float | None
+    eta_limit: float | None = None
+    mode_limit: Mode | None = None
+    eta_low: float | None = None
+    eta_high: float | None = None
+    error: float | None = None
+    mode_observed: Mode | None = None
+    mode_in_motion: Mode | None = None
+    below: Verdict | None = None
+    above: Verdict | None = None
+    verdict_expected: Verdict | None = None
+    verdict: Verdict | None = None
+    miss: str = ""
+    note: str = ""
+    wall_s: float = 0.0
+    title: str
+    source: str
+    recording: Recording | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unasked:
+    """Scenarios that an engine was not asked about.
+
+    Parameters
+    ----------
+    engine : str
+    scenarios : tuple of str
+        Their names.
+    why : str
+    """
+
+    engine: str
+    scenarios: tuple[str, ...]
+    why: str
+
+    @property
+    def words(self) -> str:
+        """All of it in a line."""
+        return f"{self.engine}: {', '.join(self.scenarios)} ({self.why})"
+
+
+def numbered(rows: Sequence[Validation]) -> dict[str, int]:
+    """Give each scenario its number, whatever the engines."""
+    names = dict.fromkeys(row.scenario for row in rows)
+    return {name: number for number, name in enumerate(names, start=1)}
+
+
+def disagreements(rows: Sequence[Validation]) -> list[str]:
+    """List where engines differ on the same scenario, each with its likely cause.
+
+    Parameters
+    ----------
+    rows : sequence of Validation
+
+    Returns
+    -------
+    list of str
+        Sentences; modes, verdicts and brackets that exclude each other count.
+    """
+    found: list[str] = []
+    for name in dict.fromkeys(row.scenario for row in rows):
+        first, *others = (row for row in rows if row.scenario == name)
+        for other in others:
+            pair = f"{name}: {first.engine} and {other.engine}"
+            # The note of the engine that differs from `limit` says why.
+            cause = (first.note if first.miss else other.note) or "no cause known"
+            if first.mode_observed is not other.mode_observed:
+                seen = f"{first.mode_observed or 'unnamed'}, {other.mode_observed or 'unnamed'}"
+                found.append(f"{pair} see different modes ({seen}): {cause}")
+            if (first.below, first.above) != (other.below, other.above):
+                found.append(f"{pair} judge 1 % aside differently: {cause}")
+            if _exclusive(first, other) or _exclusive(other, first):
+                found.append(f"{pair} have brackets that exclude each other: {cause}")
+    return found
+
+
+def _exclusive(one: Validation, other: Validation) -> bool:
+    """Tell whether one bracket lies wholly above the other."""
+    return (
+        one.eta_low is not None and other.eta_high is not None and one.eta_low > other.eta_high
+    )

@@ -1,0 +1,293 @@
+"""Questions about a structure whose answer is known, answered by one method at a time.
+
+Limit analysis gives the value; engines are asked a little to both sides of the one expected,
+and supports that spread are followed by `direct`.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from blocksim.ask.bracket import bracket
+from blocksim.ask.check import ProblemCheck, check
+from blocksim.ask.families import Family, family_of
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.entries import ExpectEntry
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Problem
+from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.known import Known
+
+ASIDES = {"direct": 0.001, "pymunk": 0.01, "pybullet": 0.01, "mujoco": 0.01}
+"""How far inside and beyond the value expected each engine is asked, relative."""
+NEAR = 1e-6
+"""A value of limit analysis farther than this from the one expected is a miss, relative."""
+SLOWLY = 0.005
+"""Relative width of the brackets over the motion of supports; a bracket whose centre is
+farther from the value expected is a miss."""
+BEYOND = 1e-6
+"""How far beyond its value limit analysis shows how a structure falls, relative."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Drawn:
+    """A structure as it falls, or stands.
+
+    Parameters
+    ----------
+    problem : Problem
+    rates : (blocks, 3) float or None
+        As of `ProblemCheck.mechanism`; None where it stands.
+    states : tuple of JointState
+    method : str
+        By which it falls.
+    """
+
+    problem: Problem
+    rates: Array | None
+    states: tuple[JointState, ...]
+    method: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StructureRow:
+    """One question about a structure, answered by one method, against what is known.
+
+    Parameters
+    ----------
+    structure, title, source : str
+    blocks : int
+    mu : float
+    question : str
+        The parameter at which it changes from standing to falling, or `stands`.
+    unit : str
+    expected : float or None
+        The value known.
+    published : str
+        The same with the digits that were printed; empty where none were.
+    expected_verdict : Verdict or None
+        Where the question is whether it stands.
+    expected_hinges : tuple of int
+        Joints that open as it falls, from the left; empty where nothing is said.
+    method : str
+    value : float or None
+        By limit analysis. By an engine the centre of the bracket, of supports that spread.
+    error : float or None
+        `value` over `expected`, less 1; the difference where 0 is expected.
+    digits : bool or None
+        Whether `value` rounds to what was published; None where nothing was.
+    low, high : float or None
+        The values an engine was asked at.
+    at_low, at_high : Verdict or None
+        What it said there.
+    verdict : Verdict or None
+        Where the question is whether it stands.
+    hinges : tuple of int
+        Joints that open, just beyond the value.
+    miss : str
+        What disagrees; empty where nothing does.
+    note : str
+        Why, or what to keep in mind.
+    wall_s : float
+    drawn : Drawn or None
+        How it falls.
+    """
+
+    structure: str
+    title: str
+    source: str
+    blocks: int
+    mu: float
+    question: str
+    unit: str = ""
+    expected: float | None = None
+    published: str = ""
+    expected_verdict: Verdict | None = None
+    expected_hinges: tuple[int, ...] = ()
+    method: str = "limit"
+    value: float | None = None
+    error: float | None = None
+    digits: bool | None = None
+    low: float | None = None
+    high: float | None = None
+    at_low: Verdict | None = None
+    at_high: Verdict | None = None
+    verdict: Verdict | None = None
+    hinges: tuple[int, ...] = ()
+    miss: str = ""
+    note: str = ""
+    wall_s: float = 0.0
+    drawn: Drawn | None = None
+
+
+Question = Callable[[StructureRow, Known, ExpectEntry], StructureRow]
+"""Answers a row whose method is set, and says what is expected."""
+
+
+def answer(known: Known, expected: ExpectEntry, method: str) -> StructureRow:
+    """Answer one question by one method, and compare."""
+    started = time.perf_counter()
+    problem = known.problem
+    row = StructureRow(
+        structure=known.name,
+        title=problem.title,
+        source=problem.source,
+        blocks=len(problem.assembly.blocks),
+        mu=problem.mu,
+        question="",
+        published=expected.published or "",
+        expected_hinges=expected.hinges,
+        method=method,
+    )
+    ask = next(ask for key, ask in QUESTIONS.items() if getattr(expected, key) is not None)
+    row = ask(row, known, expected)
+    return replace(row, wall_s=time.perf_counter() - started)
+
+
+def _judged(row: StructureRow, known: Known, expected: ExpectEntry) -> StructureRow:
+    """Ask whether it stands as it is."""
+    wanted = Verdict(expected.verdict)
+    seen = check(known.problem, method=row.method)
+    right = seen.verdict is wanted
+    return replace(
+        row,
+        question="stands",
+        expected_verdict=wanted,
+        verdict=seen.verdict,
+        hinges=_opening(seen),
+        miss="" if right else f"{seen.verdict}, expected is {wanted}",
+        note="" if right else seen.reason,
+        drawn=_drawn(seen),
+    )
+
+
+def _valued(row: StructureRow, known: Known, expected: ExpectEntry) -> StructureRow:
+    """Ask for the value of a parameter at which it changes from standing to falling."""
+    family = family_of(known.problem, expected.over or "")
+    value = expected.value or 0.0
+    row = replace(row, question=family.name, unit=family.unit, expected=value)
+    if row.method == "limit":
+        return _exactly(row, family, value)
+    if family.spreading is not None:
+        return _slowly(row, family, value)
+    return _aside(row, family, value)
+
+
+QUESTIONS: dict[str, Question] = {"verdict": _judged, "over": _valued}
+"""What answers an expectation, by the key it has; another question is one more of them."""
+
+
+def _exactly(row: StructureRow, family: Family, value: float) -> StructureRow:
+    """Take the value from limit analysis, and how it falls just beyond it."""
+    found = family.exact()
+    error = None if found is None else found / value - 1 if value else found
+    sense = 1 if family.stands == "low" else -1
+    beyond = value * (1 + sense * BEYOND) if value else family.low
+    seen = check(family.at(beyond), method="limit")
+    drawn, hinges = _drawn(seen), _opening(seen)
+    if family.spreading is not None:
+        # On blocks that have moved, the joints that are open already are those that matter.
+        states = family.spreading.path.frames[-1].states
+        drawn, hinges = replace(drawn, states=states), _open(states)
+    digits = None
+    misses: list[str] = []
+    if error is None or not abs(error) <= NEAR:
+        misses.append("no value" if error is None else f"value off by {error:+.1e}")
+    if row.published and found is not None:
+        places = len(row.published.partition(".")[2])
+        digits = f"{found:.{places}f}" == row.published
+        if not digits:
+            misses.append(f"published is {row.published}")
+    misses += _other_hinges(row, hinges)
+    return replace(
+        row,
+        value=found,
+        error=error,
+        digits=digits,
+        hinges=hinges,
+        miss="; ".join(misses),
+        drawn=drawn,
+    )
+
+
+def _aside(row: StructureRow, family: Family, value: float) -> StructureRow:
+    """Ask an engine a little to both sides of the value expected."""
+    aside = ASIDES[row.method]
+    # Where it stands down to nothing there is one side only: the smallest that can be built.
+    low, high = (value * (1 - aside), value * (1 + aside)) if value else (None, family.low)
+    inside, beyond = (low, high) if family.stands == "low" else (high, low)
+    seen = {
+        at: check(family.at(at), method=row.method) for at in (inside, beyond) if at is not None
+    }
+    misses = [
+        f"{seen[at].verdict} at {at:.9g}"
+        for at, wanted in ((inside, Verdict.STANDS), (beyond, Verdict.COLLAPSES))
+        if at is not None and seen[at].verdict is not wanted
+    ]
+    notes = [seen[at].reason for at in seen if f"{seen[at].verdict} at {at:.9g}" in misses]
+    last = seen[beyond if beyond is not None else high]
+    hinges = _opening(last)
+    misses += _other_hinges(row, hinges)
+    if inside is not None and seen[inside].rest == "can":
+        notes.append("where it stands friction allows it to move as well")
+    return replace(
+        row,
+        low=low,
+        high=high,
+        at_low=None if low is None else seen[low].verdict,
+        at_high=seen[high].verdict,
+        hinges=hinges,
+        miss="; ".join(misses),
+        note="; ".join(notes),
+        drawn=_drawn(last),
+    )
+
+
+def _slowly(row: StructureRow, family: Family, value: float) -> StructureRow:
+    """Move the supports slowly."""
+    seen = bracket(family, method=row.method, tol=SLOWLY)
+    low, high = seen.low, seen.high
+    middle = None if low is None or high is None else (low + high) / 2
+    error = None if middle is None else middle / value - 1
+    right = error is not None and abs(error) <= SLOWLY and seen.confirmed
+    off = "no bracket" if error is None else f"off by {error:+.2%}"
+    return replace(
+        row,
+        value=middle,
+        error=error,
+        low=low,
+        high=high,
+        at_low=None if low is None else Verdict.STANDS,
+        at_high=None if high is None else Verdict.COLLAPSES,
+        miss="" if right else off,
+        note="" if right else seen.reason,
+    )
+
+
+def _opening(seen: ProblemCheck) -> tuple[int, ...]:
+    """Return the numbers of the joints that take part as it falls."""
+    if seen.verdict is not Verdict.COLLAPSES:
+        return ()
+    return _open([joint.state for joint in seen.joints])
+
+
+def _open(states: Sequence[JointState]) -> tuple[int, ...]:
+    return tuple(at for at, state in enumerate(states) if state is not JointState.CLOSED)
+
+
+def _other_hinges(row: StructureRow, hinges: tuple[int, ...]) -> list[str]:
+    if not row.expected_hinges or hinges == row.expected_hinges:
+        return []
+    return [f"opens at joints {', '.join(map(str, hinges)) or 'none'}"]
+
+
+def _drawn(seen: ProblemCheck) -> Drawn:
+    falls = seen.verdict is Verdict.COLLAPSES
+    return Drawn(
+        problem=seen.problem,
+        rates=seen.mechanism if falls else None,
+        states=tuple(joint.state for joint in seen.joints),
+        method=seen.method,
+    )

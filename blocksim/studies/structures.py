@@ -1,0 +1,125 @@
+"""The second part of `validate`: shipped structures held against their sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from concurrent.futures import as_completed
+from functools import partial
+
+from blocksim.ask.methods import METHODS, choose, missing
+from blocksim.blocks.entries import ExpectEntry
+from blocksim.common.checks import require
+from blocksim.common.errors import InputError
+from blocksim.common.processes import crew
+from blocksim.common.progress import Progress, silent
+from blocksim.kinds.files import shipped_structures
+from blocksim.kinds.known import Known, load_known
+from blocksim.studies.agreement import Unasked
+from blocksim.studies.questions import ASIDES, StructureRow, answer
+
+USUAL = ("direct", "pymunk")
+"""Engines that are asked where none is named."""
+MOST = {"direct": 1000, "pymunk": 40, "pybullet": 40, "mujoco": 40}
+"""Blocks up to which each engine is asked: the others take minutes for more."""
+SPREAD = "spread"
+
+
+def structures(*, quick: bool) -> list[Known]:
+    """Return the shipped structures, or those marked quick."""
+    every = [load_known(name) for name in shipped_structures()]
+    return [known for known in every if known.quick or not quick]
+
+
+def unasked_structures(
+    chosen: Sequence[Known], engines: Iterable[str] | None = None
+) -> list[Unasked]:
+    """Tell what `validate_structures` does not ask, and why; arguments as there."""
+    found: list[Unasked] = []
+    for engine in USUAL if engines is None else engines:
+        reasons: dict[str, list[str]] = {}
+        for known in chosen:
+            for expected in known.expect:
+                why = _refused(known, expected, engine)
+                if why and known.name not in reasons.setdefault(why, []):
+                    reasons[why].append(known.name)
+        found += [
+            Unasked(engine=engine, scenarios=tuple(names), why=why)
+            for why, names in reasons.items()
+        ]
+    return found
+
+
+def validate_structures(
+    chosen: Sequence[Known],
+    engines: Iterable[str] | None = None,
+    *,
+    workers: int = 2,
+    progress: Progress = silent,
+) -> list[StructureRow]:
+    """Ask limit analysis and engines about structures and compare.
+
+    Parameters
+    ----------
+    chosen : sequence of Known
+    engines : iterable of str, optional
+        `USUAL`, as far as they are installed, if left out. `unasked_structures` tells what
+        each is not asked.
+    workers : int
+        Processes; 1 runs in this one.
+    progress : Progress, optional
+
+    Returns
+    -------
+    list of StructureRow
+        In the order of structures, what is known of them, then methods, `limit` first.
+
+    Raises
+    ------
+    InputError
+        If there is no such engine.
+    """
+    names = tuple(dict.fromkeys(USUAL if engines is None else engines))
+    for name in names:
+        require(name in ASIDES, "methods", name, f"one or more of {', '.join(ASIDES)}")
+    ask = partial(answers, engines=names)
+    if workers == 1:
+        rows: list[list[StructureRow]] = []
+        for done, known in enumerate(chosen):
+            progress(done / len(chosen), known.name)
+            rows.append(ask(known))
+    else:
+        with crew(workers) as executor:
+            futures = {executor.submit(ask, known): known for known in chosen}
+            for done, future in enumerate(as_completed(futures)):
+                progress((done + 1) / len(chosen), futures[future].name)
+            rows = [future.result() for future in futures]
+    return [row for each in rows for row in each]
+
+
+def answers(known: Known, engines: Sequence[str]) -> list[StructureRow]:
+    """Answer all that is asked of one structure."""
+    return [
+        answer(known, expected, method)
+        for expected in known.expect
+        for method in ("limit", *engines)
+        if not _refused(known, expected, method)
+    ]
+
+
+def _refused(known: Known, expected: ExpectEntry, method: str) -> str:
+    """Say why a method is not asked; nothing where it is."""
+    if method == "limit":
+        return ""
+    remedy = missing(METHODS[method])
+    if remedy:
+        return f"not here: {remedy}"
+    if expected.over == SPREAD and method != "direct":
+        return "it moves no supports"
+    blocks = len(known.problem.assembly.blocks)
+    if blocks > MOST[method]:
+        return f"more than {MOST[method]} blocks"
+    try:
+        choose(method, problem=known.problem)
+    except InputError as error:
+        return error.allowed
+    return ""

@@ -1,0 +1,311 @@
+"""Shipped structures: what sources say, asked by name, compared, shown in the report."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from report_rows import ROW
+from running import blocksim
+from running import inside as within
+from structure_cases import case
+from test_report import MAP, Page
+
+from blocksim.arch.scenario import shipped
+from blocksim.ask.families import families_of
+from blocksim.blocks.joints import JointState
+from blocksim.common.errors import InputError
+from blocksim.evidence.verdict import Verdict
+from blocksim.kinds import KINDS
+from blocksim.kinds.files import load_structure, shipped_structures
+from blocksim.kinds.known import load_known
+from blocksim.report.page import report_page
+from blocksim.report.tables import write_results
+from blocksim.studies import questions
+from blocksim.studies.questions import StructureRow, answer
+from blocksim.studies.structures import (
+    structures,
+    unasked_structures,
+    validate_structures,
+)
+
+CASES = {"gable": "gable_least_friction"}
+"""Shipped structures that the corpus calls otherwise."""
+PRINTED = {
+    "oppenheim_7": "0.37",
+    "semicircle_vertical_joints": "0.1095",
+    "ferris_tinloi_3": "0.40369",
+    "ferris_tinloi_5": "0.23964",
+}
+CLOSED_FORM = {
+    "column_six_drums": math.degrees(math.atan(1 / 3.6)),
+    "harmonic_5": (1 + 1 / 2 + 1 / 3 + 1 / 4 + 1 / 5) / 2,
+    "gable": 6 / 13,
+}
+
+
+def known_value(name: str, over: str) -> float:
+    """Of the corpus."""
+    expected = case(CASES.get(name, name))["expected"]
+    if over == "spread":
+        return expected["of_span"]
+    return expected["least_mu"] if name == "box2d_arch" else expected["value"]
+
+
+@pytest.mark.parametrize("name", shipped_structures())
+def test_files_say_what_the_corpus_says(name: str) -> None:
+    known = load_known(name)
+    assert known.problem.title
+    assert known.problem.source
+    assert known.expect
+    for each in known.expect:
+        if each.verdict is not None:
+            stands = case(name)["expected"]["value"]
+            assert each.verdict == ("stands" if stands else "collapses")
+            continue
+        assert each.over in families_of(known.problem)
+        assert each.value == known_value(name, str(each.over))
+        if name in CLOSED_FORM:
+            assert each.value == pytest.approx(CLOSED_FORM[name], rel=1e-12)
+        assert each.published == PRINTED.get(name)
+
+
+def test_every_kind_of_question_is_there_and_names_are_free() -> None:
+    every = structures(quick=False)
+    asked = {each.over or each.verdict for known in every for each in known.expect}
+    assert asked >= {"thickness", "load", "tilt", "mu", "spread", "overhang", "pier_width"}
+    assert asked >= {"stands", "collapses"}
+    names = {known.name for known in every}
+    assert 12 <= len(names) <= 22
+    assert not names & (set(shipped()) | set(KINDS))
+    assert len(structures(quick=True)) == len(every) - 2
+
+
+def test_a_structure_is_asked_by_its_name(tmp_path: Path) -> None:
+    answer = json.loads(blocksim("check", "oppenheim_7", "--load", "0.372", "--json").stdout)
+    assert answer["verdict"] == "collapses"
+    assert answer["load_factor"] == pytest.approx(0.3705338738135736, rel=1e-9)
+    moves = [at for at, each in enumerate(answer["joints"]) if each["state"] != "closed"]
+    assert moves == [0, 3, 5, 7]
+    found = json.loads(within("bracket", "gable", "--over", "mu", "--json").stdout)
+    assert found["limit"] == pytest.approx(6 / 13, rel=1e-9)
+    picture = tmp_path / "pointed.svg"
+    assert within("render", "pointed_e0_25", "--out", str(picture)).returncode == 0
+    assert "A pointed arch of two arcs" in re.sub(r"<!-- (.*?) -->", r"\1", picture.read_text())
+    listed = within("scenarios").stdout
+    assert "oppenheim_7" in listed
+    assert "--over load 0.370534" in listed
+    with pytest.raises(InputError, match="or a shipped structure"):
+        load_structure("oppenheim_8")
+
+
+def test_only_arches_have_an_intrados() -> None:
+    """A column turns about the right-hand end of its base; an arch says which edge stays."""
+    told = json.loads(within("check", "column_six_drums", "--tilt", "16", "--json").stdout)
+    base = told["joints"][0]
+    assert base["state"] == "hinge"
+    assert base["hinge"] == pytest.approx(max(base["ends"]))
+    assert {joint["state"] for joint in told["joints"][1:]} == {"closed"}
+    assert {joint["hinge"] and 1 for joint in told["joints"][1:]} == {None}
+    lines = within("check", "column_six_drums", "--tilt", "16").stdout
+    assert re.search(r"joints +floor-drum 1 hinge\n", lines)
+    arch = json.loads(within("check", "oppenheim_7", "--load", "0.372", "--json").stdout)
+    states = [joint["state"] for joint in arch["joints"] if joint["state"] != "closed"]
+    assert states == ["hinge-intrados", "hinge-extrados"] * 2
+    assert arch["joints"][3]["hinge"] == arch["joints"][3]["ends"][1]
+
+
+def test_events_of_spreading_are_told_in_json() -> None:
+    found = json.loads(
+        within("bracket", "spread_90_12_20", "--over", "spread", "--json").stdout
+    )
+    first, last = found["events"]
+    assert (first["value"], first["what"]) == (0.0, "hinges")
+    assert [joint["a"] for joint in first["joints"]] == ["4", "10", "16"]
+    assert last["what"] == "collapse"
+    assert last["value"] == pytest.approx(found["limit"]) == pytest.approx(0.0166808, rel=1e-5)
+    other = json.loads(within("bracket", "oppenheim_7", "--over", "load", "--json").stdout)
+    assert other["events"] is None
+
+
+QUICK = ("oppenheim_7", "box2d_tilted_stack", "gable", "catenary")
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[StructureRow]:
+    return validate_structures([load_known(name) for name in QUICK], workers=1)
+
+
+def test_answers_agree_with_their_sources(rows: list[StructureRow]) -> None:
+    assert [row.miss for row in rows] == [""] * len(rows)
+    by = {(row.structure, row.method): row for row in rows}
+    assert len(rows) == len(by) == 11  # pymunk is not asked about the catenary
+    limit, direct = by["oppenheim_7", "limit"], by["oppenheim_7", "direct"]
+    assert limit.value == pytest.approx(0.3705338738135736, rel=1e-9)
+    assert limit.digits
+    assert limit.hinges == direct.hinges == (0, 3, 5, 7)
+    assert (direct.low, direct.high) == pytest.approx((0.3701633, 0.3709044), rel=1e-6)
+    assert (direct.at_low, direct.at_high) == (Verdict.STANDS, Verdict.COLLAPSES)
+    gable = by["gable", "pymunk"]
+    assert (gable.at_low, gable.at_high) == (Verdict.COLLAPSES, Verdict.STANDS)
+    assert by["box2d_tilted_stack", "pymunk"].verdict is Verdict.COLLAPSES
+    thin = by["catenary", "direct"]
+    assert (thin.low, thin.at_high) == (None, Verdict.STANDS)
+    assert thin.high is not None
+    assert thin.high < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "method", "said"),
+    [
+        ("oppenheim_7", {"value": 0.3706}, "limit", "value off by -1.8e-04"),
+        ("oppenheim_7", {"published": "0.38"}, "limit", "published is 0.38"),
+        ("oppenheim_7", {"hinges": (0, 3, 5, 6)}, "limit", "opens at joints 0, 3, 5, 7"),
+        ("oppenheim_7", {"value": 0.372}, "direct", "collapses at 0.371628"),
+        ("gable", {"value": 0.47}, "direct", "stands at 0.46953"),
+        (
+            "box2d_tilted_stack",
+            {"verdict": "stands"},
+            "direct",
+            "collapses, expected is stands",
+        ),
+    ],
+)
+def test_what_is_wrong_is_a_miss(
+    name: str, changes: dict[str, object], method: str, said: str
+) -> None:
+    known = load_known(name)
+    row = answer(known, replace(known.expect[0], **changes), method)
+    assert said in row.miss
+
+
+def test_spreading_supports_open_the_joints_known() -> None:
+    """Intrados six joints from the crown on both sides, extrados at the crown."""
+    known = load_known("spread_90_12_20")
+    row = answer(known, known.expect[0], "limit")
+    assert (row.miss, row.hinges) == ("", (4, 10, 16))
+    assert row.value == pytest.approx(case("spread_90_12_20")["expected"]["of_span"], rel=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["spread_90_12_20", "spread_90_15_20"])
+def test_spreading_by_direct(name: str) -> None:
+    known = load_known(name)
+    row = answer(known, known.expect[0], "direct")
+    assert row.miss == ""
+    assert row.low is not None
+    assert row.high is not None
+    assert row.low * 0.99 < case(name)["expected"]["of_span"] < row.high * 1.01
+
+
+def test_what_is_not_asked_is_said() -> None:
+    chosen = [load_known(name) for name in ("catenary", "spread_90_12_20", "gable")]
+    told = [each.words for each in unasked_structures(chosen)]
+    assert told == [
+        "pymunk: catenary (more than 40 blocks)",
+        "pymunk: spread_90_12_20 (it moves no supports)",
+    ]
+    with pytest.raises(InputError, match="one or more of direct"):
+        validate_structures(chosen, ("limit",))
+
+
+@pytest.fixture(scope="module")
+def page(rows: list[StructureRow]) -> str:
+    # `rows` have no misses: one is made up, and one name is hostile.
+    made = [
+        replace(row, title="<b>bold</b>", miss="collapses at 0.3", note="slack")
+        if (row.structure, row.method) == ("gable", "pymunk")
+        else replace(row, title="<b>bold</b>")
+        if row.structure == "gable"
+        else row
+        for row in rows
+    ]
+    return report_page([ROW], MAP, {"blocksim": "0.1"}, (), made)
+
+
+def test_the_page_has_a_part_on_structures(page: str) -> None:
+    read = Page(page)
+    words = " ".join(" ".join(read.words).split())
+    assert "10 of 11 answers on 4 other structures agree with their sources." in words
+    assert "gable , pymunk: collapses at 0.3 . Slack." in words
+    assert "<b>bold</b>" in words
+    assert "0.37053387, which rounds to 0.37, joints 0, 3, 5, 7" in words
+    assert "load factor at collapse: 0.37053387, published as 0.37, opening at" in words
+    assert "how it starts to fall at load factor 0.370904, by direct, enlarged" in words
+    # Two more pictures of structures than of arches move, but not the catenary, which stands.
+    part = page[page.index('<section id="structures">') : page.index('<section id="how">')]
+    assert part.count("<svg") == 4
+    assert part.count('type="range"') == 3
+    body = part[part.index('<tbody id="row-structure-1">') : part.index("</table>")]
+    lines = re.findall(r"<tr>.*?</tr>", body, re.DOTALL)
+    # Cells that methods share span their rows.
+    assert [len(re.findall("<t[dh]", line)) for line in lines] == [9, 4, 4] * 3 + [9, 4]
+    assert body.count(">yes<") == 10
+    assert body.count(">no<") == 1
+    assert 'id="structures"' not in report_page([ROW], MAP, {"blocksim": "0.1"})
+
+
+def test_pictures_are_of_the_mechanism(page: str, rows: list[StructureRow]) -> None:
+    start = page.index('<article id="structure-1">')
+    card = page[start : page.index("</article>", start)]
+    assert card.count('class="stone"') == card.count('class="rest"') == 7
+    assert card.count('class="hinge hinge-intrados"') == 4
+    assert card.count('class="arrow live"') == 1
+    frames = json.loads(Page(card).all("figure")[0]["data-frames"] or "")
+    assert len(frames) == 2
+    assert not any(any(pose) for pose in frames[0])
+    row = next(row for row in rows if row.structure == "oppenheim_7" and row.method == "direct")
+    assert row.drawn is not None
+    assert row.drawn.rates is not None
+    # Blocks turn as in the mechanism: one way, the other way, and back, seen from y downwards.
+    turns = [pose[2] for pose in frames[1]]
+    assert [math.copysign(1, -turn) for turn in turns] == [
+        math.copysign(1, rate) for rate in row.drawn.rates[:, 2]
+    ]
+    assert [turn < 0 for turn in turns] == [False, False, False, True, True, False, False]
+    hinges = [state for state in row.drawn.states if state is not JointState.CLOSED]
+    assert len(hinges) == 4
+
+
+def test_rows_are_written(tmp_path: Path, rows: list[StructureRow]) -> None:
+    write_results([ROW], tmp_path, (), rows, unasked_structures([load_known("catenary")]))
+    document = json.loads((tmp_path / "validate.json").read_text(), parse_constant=pytest.fail)
+    part = document["structures"]
+    assert [row["structure"] for row in part["rows"][::3]] == list(QUICK)
+    assert part["rows"][0]["value"] == pytest.approx(0.3705338738135736)
+    assert part["settings"]["aside"]["direct"] == questions.ASIDES["direct"] == 0.001
+    assert part["not_asked"][0]["scenarios"] == ["catenary"]
+    assert "drawn" not in part["rows"][0]
+    with (tmp_path / "structures.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    assert lines[1]["hinges"] == "0 3 5 7"
+    assert lines[1]["at_high"] == "collapses"
+    assert lines[0]["published"] == "0.37"
+    assert set(lines[0]) == set(part["rows"][0])
+
+
+@pytest.mark.parametrize(
+    ("arch", "structure", "code"), [("", "", 0), ("x", "", 1), ("", "x", 1)]
+)
+def test_the_exit_code_counts_both_parts(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    rows: list[StructureRow],
+    arch: str,
+    structure: str,
+    code: int,
+) -> None:
+    at = "blocksim.cli.studies."
+    monkeypatch.setattr(f"{at}run_validation", lambda *_, **__: [replace(ROW, miss=arch)])
+    told = [replace(rows[0], miss=structure), *rows[1:]]
+    monkeypatch.setattr(f"{at}validate_structures", lambda *_, **__: told)
+    done = within("validate", "--quick", "--out", str(tmp_path))
+    assert done.returncode == code
+    agree = "10 of 11" if structure else "All 11"
+    assert f"{agree} answers on 4 other structures agree with their sources" in done.stdout
+    assert "stands at 0.370163, falls at 0.370904" in done.stdout
