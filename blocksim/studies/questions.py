@@ -22,6 +22,8 @@ from blocksim.kinds.known import Known
 
 ASIDES = {"direct": 0.001, "pymunk": 0.01, "pybullet": 0.01, "mujoco": 0.01}
 """How far inside and beyond the value expected each engine is asked, relative."""
+SHAKEN = 0.01
+"""The same on ground that shakes, for any engine."""
 NEAR = 1e-6
 """A value of limit analysis farther than this from the one expected is a miss, relative."""
 SLOWLY = 0.005
@@ -166,13 +168,13 @@ def _judged(row: StructureRow, known: Known, expected: ExpectEntry) -> Structure
 def _valued(row: StructureRow, known: Known, expected: ExpectEntry) -> StructureRow:
     """Ask for the value of a parameter at which it changes from standing to falling."""
     family = family_of(known.problem, expected.over or "")
-    value = expected.value or 0.0
+    value, still = expected.value or 0.0, known.problem.shaking is None
     row = replace(row, question=family.name, unit=family.unit, expected=value)
     if row.method == "limit":
         return _exactly(row, family, value)
     if family.spreading is not None:
         return _slowly(row, family, value)
-    return _aside(row, family, value)
+    return _aside(row, family, value, ASIDES[row.method] if still else SHAKEN)
 
 
 QUESTIONS: dict[str, Question] = {"verdict": _judged, "over": _valued}
@@ -212,9 +214,8 @@ def _exactly(row: StructureRow, family: Family, value: float) -> StructureRow:
     )
 
 
-def _aside(row: StructureRow, family: Family, value: float) -> StructureRow:
+def _aside(row: StructureRow, family: Family, value: float, aside: float) -> StructureRow:
     """Ask an engine a little to both sides of the value expected."""
-    aside = ASIDES[row.method]
     # Where it stands down to nothing there is one side only: the smallest that can be built.
     low, high = (value * (1 - aside), value * (1 + aside)) if value else (None, family.low)
     inside, beyond = (low, high) if family.stands == "low" else (high, low)

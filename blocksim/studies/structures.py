@@ -108,7 +108,7 @@ def answers(known: Known, engines: Sequence[str]) -> list[StructureRow]:
 
 def _refused(known: Known, expected: ExpectEntry, method: str) -> str:
     """Say why a method is not asked; nothing where it is."""
-    if method == "limit":
+    if method == "limit" and known.problem.shaking is None:
         return ""
     remedy = missing(METHODS[method])
     if remedy:
@@ -116,7 +116,7 @@ def _refused(known: Known, expected: ExpectEntry, method: str) -> str:
     if expected.over == SPREAD and method != "direct":
         return "it moves no supports"
     blocks = len(known.problem.assembly.blocks)
-    if blocks > MOST[method]:
+    if blocks > MOST.get(method, blocks):
         return f"more than {MOST[method]} blocks"
     try:
         choose(method, problem=known.problem)
