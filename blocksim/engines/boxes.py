@@ -19,7 +19,7 @@ THINNEST = 2e-4
 """Least thickness of the box on a face [size]."""
 ROD = 1e-4
 """Thickness of the rod in a corner [size]."""
-EDGE = 1e-3
+EDGE = 1e-2
 """The same, of one that stands on its edge [size]."""
 FLAT = 1e-9
 """Distance within which sides lie on each other."""

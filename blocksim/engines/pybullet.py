@@ -39,6 +39,7 @@ from __future__ import annotations
 import math
 import weakref
 from collections import defaultdict
+from dataclasses import replace
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -50,7 +51,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Library, Quality, Settings
-from blocksim.engines.boxes import Box, Frame, edge, plate
+from blocksim.engines.boxes import EDGE, Box, Frame, edge, plate
 from blocksim.engines.energy import Balance
 from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, sides_of
 from blocksim.engines.solids import Solids, prisms
@@ -69,6 +70,11 @@ LOCK = 1e12
 NARROW, MERGED = 0.04, 0.1
 """Depth of a joint there, in units of its length, and Bullet's breaking threshold, in units
 of half a box's diagonal: contacts across the plane are one, those along it are two."""
+PRESSED, SOFT = 1e-7, 10.0
+"""How far the joint with most pressure reaches into itself where pressures are given [size],
+and stiffness of joints times the square of the step in which they are solved [mean mass]."""
+SETTLED = 1e-3
+"""Acceleration from which on blocks that are pressed stay where they have given way to [g]."""
 BREAKING = 0.1
 """Distance at which contact points count as one else, in units of the shortest joint."""
 MOST_BREAKING = 0.02
@@ -80,7 +86,7 @@ SWEEPS = 100
 """Most sweeps of a step, for each pair of blocks."""
 HOLD_SWEEPS = 600
 """Most sweeps of the onset test, for each pair of blocks."""
-LEAST_HOLD = 300_000
+LEAST_HOLD = 600_000
 """The same at least: friction begins from nothing each time."""
 STILL = 1e-5
 NOISE = 1e-6
@@ -131,6 +137,19 @@ def _breaking(assembly: Assembly) -> float:
     return min(MOST_BREAKING, BREAKING * assembly.shortest / reach)
 
 
+def _pressed(sides: tuple[Side, Side], ends: Array, ways: Array) -> tuple[Side, Side]:
+    """Let the shorter side of a joint reach into the other, by a way at each end.
+
+    The other is the one Bullet takes the normal from.
+    """
+    shorter = int(sides[1].length < sides[0].length)
+    side, along = sides[shorter], ends[1] - ends[0]
+    shares = (side.ends - ends[0]) @ along / (along @ along) if along.any() else np.zeros(2)
+    reach = ways[0] + shares * (ways[1] - ways[0])
+    moved = replace(side, ends=side.ends - np.outer(reach, side.inward))
+    return (sides[0], moved) if shorter else (moved, sides[1])
+
+
 class Bodies:
     """Bullet's space with one body for each block.
 
@@ -157,8 +176,9 @@ class Bodies:
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
         self._joints: dict[tuple[int, int], tuple[int, float]] = {}
         self._is_rubble = False
+        self._short, self._held = settings.step, 0
         self._bodies = self._build()
-        bullet.stepSimulation(physicsClientId=self._client)
+        bullet.performCollisionDetection(physicsClientId=self._client)
         self._deepest = self._overlap()
         self._pull()
         self._balance = Balance(problem, self.poses())
@@ -188,10 +208,12 @@ class Bodies:
             physicsClientId=self._client,
         )
 
-    def _build(self) -> list[int]:
-        """Create a body for each block, and one for the support."""
+    def _build(self, pressures: Array | None = None) -> list[int]:
+        """Create a body for each block, and one for the support; see `begin`."""
         assembly, centres = self._assembly, self._assembly.centres / self._assembly.size
         pairs = sides_of(assembly)
+        if pressures is not None:
+            pairs = tuple(map(_pressed, pairs, assembly.joint_arrays.ends, pressures))
         of_body: dict[int, list[tuple[Side, float, float]]] = defaultdict(list)
         for sides in pairs:
             for side, deep, sense in zip(sides, self._depths(sides), (-1.0, 1.0), strict=True):
@@ -219,9 +241,9 @@ class Bodies:
 
     def _depths(self, sides: tuple[Side, Side]) -> tuple[float, float]:
         """Tell how deep both boxes of a joint are, of which the longer is deeper, too."""
-        lengths = [float(np.hypot(*(side.ends[1] - side.ends[0]))) for side in sides]
+        lengths = [side.length for side in sides]
         if self._problem.is_planar:
-            depth = NARROW * (min(lengths) or max(lengths))
+            depth = NARROW * (min(lengths) or EDGE)
             more = depth * LEDGE_SHARE
         else:
             depths = self._assembly.depths
@@ -302,17 +324,51 @@ class Bodies:
         self._weigh(body, index)
         return body
 
+    def begin(self, forces: Array) -> None:
+        """Build anew, of joints that press by themselves as the forces given do.
+
+        Bullet keeps no impulses. So joints are springs whose faces reach into each other by
+        what it takes; they are so soft, for the step in which they are solved, that pressures
+        stay near what is given. Friction is left to Bullet.
+        """
+        pressures = np.maximum(forces[:, :, 0], 0.0)
+        corner = self._assembly.joint_arrays.is_corner
+        pressures[corner] = pressures[corner].sum(axis=1, keepdims=True)
+        stiffness = max(1.0, float(pressures.max())) / PRESSED
+        self._short, self._held = math.sqrt(SOFT / stiffness), 0
+        bullet.resetSimulation(physicsClientId=self._client)
+        self._begin()
+        self._pull()
+        self._joints.clear()
+        self._bodies = self._build(pressures / stiffness)
+        for body, link in self._joints:
+            bullet.changeDynamics(
+                body,
+                link,
+                # A pair's stiffness is half of either's.
+                contactStiffness=2 * stiffness,
+                contactDamping=0,
+                physicsClientId=self._client,
+            )
+
     def hold(self, sweeps: int) -> Array:
-        """Solve the contacts of one step from rest and from nothing; put every block back."""
-        step = self._settings.step
-        self._set(fixedTimeStep=step, numSolverIterations=sweeps, solverResidualThreshold=0)
+        """Solve the contacts of one step from rest, then put every block back.
+
+        Impulses are not kept: the sweeps made so far are made again.
+        """
+        self._held += sweeps
+        step = self._short
+        self._set(fixedTimeStep=step, numSolverIterations=self._held, solverResidualThreshold=0)
         self._step()
         accelerations = self._velocities() / step
         nothing = [0.0, 0.0, 0.0]
+        # Springs that give way by next to nothing make up for what forces given are off.
+        gives = step != self._settings.step and np.abs(accelerations).max() < SETTLED
         for body, place in zip(self._bodies, self._places, strict=True):
-            bullet.resetBasePositionAndOrientation(
-                body, place, self._frame.quaternion, physicsClientId=self._client
-            )
+            if not gives:
+                bullet.resetBasePositionAndOrientation(
+                    body, place, self._frame.quaternion, physicsClientId=self._client
+                )
             bullet.resetBaseVelocity(body, nothing, nothing, physicsClientId=self._client)
         return accelerations
 
@@ -491,6 +547,7 @@ ENGINE = Engine(
     finest=1e-3,
     is_spatial=True,
     most_friction=MOST_FRICTION,
+    takes_forces=True,
     tells_forces=True,
     contacts=4,
     usual_sweeps=10,
