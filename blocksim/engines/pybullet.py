@@ -36,6 +36,7 @@ directions of friction Bullet chooses at rest lie in the plane and across it.
 
 from __future__ import annotations
 
+import itertools
 import math
 import weakref
 from collections import defaultdict
@@ -131,9 +132,28 @@ def _pairs(assembly: Assembly) -> float:
     return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / max(assembly.shortest, SHORTEST))
 
 
-def _breaking(assembly: Assembly) -> float:
+def _share(mu: float) -> float:
+    """Return what two sides have of a friction, each: a pair's is their product."""
+    return math.sqrt(min(float(mu), MOST_FRICTION))
+
+
+def _layers(assembly: Assembly) -> Array:
+    """Return where across the plane joints are, so that no two of a block meet, (joints,)."""
+    taken: dict[int, set[int]] = defaultdict(set)
+    layers = np.zeros(len(assembly.joints))
+    for index, joint in enumerate(assembly.joints):
+        its = [taken[body] for body in (joint.before, joint.after) if body != SUPPORT]
+        layer = next(k for k in itertools.count() if not any(k in each for each in its))
+        for each in its:
+            each.add(layer)
+        layers[index] = layer
+    return layers * 2 * NARROW * max(assembly.joint_arrays.length.max(), EDGE)
+
+
+def _breaking(assembly: Assembly, across: float = 0.0) -> float:
     """Return a breaking threshold that the shortest joint is longer than."""
-    reach = float(assembly.reach.max()) / assembly.size + float(assembly.depths.max()) / 2
+    reach = float(assembly.reach.max()) / assembly.size + across
+    reach += float(assembly.depths.max()) / 2
     return min(MOST_BREAKING, BREAKING * assembly.shortest / reach)
 
 
@@ -174,8 +194,8 @@ class Bodies:
         self._begin()
         self._loaded = problem.is_loaded
         self._places = [frame.place(block.centre / assembly.size) for block in assembly.blocks]
-        self._joints: dict[tuple[int, int], tuple[int, float]] = {}
-        self._is_rubble = False
+        self._joints: dict[tuple[int, ...], list[tuple[int, float]]] = defaultdict(list)
+        self._is_free = self._is_rubble = False
         self._short, self._held = settings.step, 0
         self._bodies = self._build()
         bullet.performCollisionDetection(physicsClientId=self._client)
@@ -210,34 +230,89 @@ class Bodies:
 
     def _build(self, pressures: Array | None = None) -> list[int]:
         """Create a body for each block, and one for the support; see `begin`."""
-        assembly, centres = self._assembly, self._assembly.centres / self._assembly.size
-        pairs = sides_of(assembly)
-        if pressures is not None:
-            pairs = tuple(map(_pressed, pairs, assembly.joint_arrays.ends, pressures))
-        of_body: dict[int, list[tuple[Side, float, float]]] = defaultdict(list)
-        for sides in pairs:
-            for side, deep, sense in zip(sides, self._depths(sides), (-1.0, 1.0), strict=True):
-                of_body[side.body].append((side, deep, sense))
-        links: dict[int, list[tuple[int, int]]] = defaultdict(list)
-        bodies: list[int] = []
-        for index in [*range(len(assembly.blocks)), SUPPORT]:
-            origin = np.zeros(2) if index == SUPPORT else centres[index]
-            boxes = [
-                (edge if side.is_corner else plate)(side, deep, origin, OVERLAP)
-                for side, deep, _ in of_body[index]
-            ]
-            if index == SUPPORT and not boxes:
-                break
-            bodies.append(self._jointed(boxes, self._frame.place(origin), index))
-            for link, (side, _, sense) in enumerate(of_body[index]):
-                self._rub(bodies[-1], float(self._problem.friction[side.joint]), link)
-                self._joints[bodies[-1], link] = side.joint, sense
-                links[side.joint].append((bodies[-1], link))
-        for (one, first), (other, second) in links.values():
+        boxes, bodies = self._boxes(pressures), list[int]()
+        ends: dict[int, list[tuple[int, int, float]]] = defaultdict(list)
+        for index in [*range(len(self._places)), SUPPORT]:
+            body = self._jointed([box for *_, box in boxes[index]], index)
+            for link, (joint, sense, _) in enumerate(boxes[index]):
+                self._rub(body, _share(self._problem.friction[joint]), link)
+                ends[joint].append((body, link, sense))
+            bodies.append(body)
+        self._meet(ends)
+        return bodies[:-1]
+
+    def _boxes(self, pressures: Array | None = None) -> dict[int, list[tuple[int, float, Box]]]:
+        """Return what touches on each body: a joint, 1 if on `after` and else -1, a box."""
+        boxes: dict[int, list[tuple[int, float, Box]]] = defaultdict(list)
+        size, ends = self._assembly.size, self._assembly.joint_arrays.ends
+        for joint, sides in enumerate(sides_of(self._assembly)):
+            deep = self._depths(sides)
+            pair = (
+                sides if pressures is None else _pressed(sides, ends[joint], pressures[joint])
+            )
+            for side, depth, sense in zip(pair, deep, (-1.0, 1.0), strict=True):
+                at_rest = side.body == SUPPORT
+                origin = np.zeros(2) if at_rest else self._assembly.centres[side.body] / size
+                box = (edge if side.is_corner else plate)(side, depth, origin, OVERLAP)
+                boxes[side.body].append((joint, sense, box))
+        return boxes
+
+    def _meet(self, ends: dict[int, list[tuple[int, int, float]]]) -> None:
+        """Let the two sides of each joint touch each other, by body and link."""
+        for joint, ((one, first, sense), (other, second, against)) in ends.items():
+            self._joints[one, other, first, second].append((joint, sense))
+            self._joints[other, one, second, first].append((joint, against))
             bullet.setCollisionFilterPair(
                 one, other, first, second, 1, physicsClientId=self._client
             )
-        return bodies[: len(assembly.blocks)]
+
+    def _let_go(self) -> None:
+        """Build anew for motion, of bodies without links: Bullet keeps their pressures.
+
+        Such a body has one friction, and its boxes cannot be told whom to touch. So they lie
+        in layers: in the plane it does not matter where across it a joint is.
+        """
+        assembly, problem = self._assembly, self._problem
+        self._is_free = True
+        joints, mu = assembly.joint_arrays, _share(problem.mu)
+        between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
+        if not problem.is_planar or (problem.friction[between] != problem.mu).any() or not mu:
+            return
+        bullet.resetSimulation(physicsClientId=self._client)
+        self._joints.clear()
+        layers = _layers(assembly)
+        self._breaking = _breaking(assembly, layers.max())
+        self._begin()
+        boxes, bodies = self._boxes(), list[int]()
+        ends: dict[int, list[tuple[int, int, float]]] = defaultdict(list)
+        alone = [(SUPPORT, [its]) for its in boxes.pop(SUPPORT, [])]
+        for index, its in [*sorted(boxes.items()), *alone]:
+            shape = bullet.createCollisionShapeArray(
+                shapeTypes=[bullet.GEOM_BOX] * len(its),
+                halfExtents=[box.half for *_, box in its],
+                collisionFramePositions=[
+                    [*box.centre[:2], float(layers[joint])] for joint, _, box in its
+                ],
+                collisionFrameOrientations=[box.quaternion for *_, box in its],
+                physicsClientId=self._client,
+            )
+            body = self._solid(shape, self._place(index), index)
+            for joint, sense, _ in its:
+                ends[joint].append((body, -1, sense))
+                if index == SUPPORT:
+                    self._rub(body, _share(problem.friction[joint]) ** 2 / mu)
+            bullet.setCollisionFilterGroupMask(body, -1, 0, 0, physicsClientId=self._client)
+            bodies.append(body)
+        self._meet(ends)
+        self._bodies = bodies[: len(self._places)]
+        bullet.stepSimulation(physicsClientId=self._client)
+        self._pull()
+        self._short, sweeps, self._held = self._settings.step, self._held, 0
+        self.hold(sweeps)
+
+    def _place(self, index: int) -> list[float]:
+        """Return where a body is built."""
+        return self._frame.place(np.zeros(2)) if index == SUPPORT else self._places[index]
 
     def _depths(self, sides: tuple[Side, Side]) -> tuple[float, float]:
         """Tell how deep both boxes of a joint are, of which the longer is deeper, too."""
@@ -251,7 +326,7 @@ class Bodies:
             more = 2 * LEDGE
         return (depth, depth + more) if lengths[1] > lengths[0] else (depth + more, depth)
 
-    def _jointed(self, boxes: list[Box], place: list[float], index: int) -> int:
+    def _jointed(self, boxes: list[Box], index: int) -> int:
         """Create a body with a link for each of its boxes, which touch nothing yet."""
         shapes = [
             bullet.createCollisionShape(
@@ -262,7 +337,7 @@ class Bodies:
         count = len(boxes)
         body: int = bullet.createMultiBody(
             0.0 if index == SUPPORT else float(self._assembly.masses[index, 0]),
-            basePosition=place,
+            basePosition=self._place(index),
             baseOrientation=self._frame.quaternion,
             linkMasses=[0.0] * count,
             linkCollisionShapeIndices=shapes,
@@ -299,12 +374,12 @@ class Bodies:
             physicsClientId=self._client,
         )
 
-    def _rub(self, body: int, mu: float, link: int = -1) -> None:
+    def _rub(self, body: int, share: float, link: int = -1) -> None:
         """Give a body, or a link of it, its share of a friction, and no rebound."""
         bullet.changeDynamics(
             body,
             link,
-            lateralFriction=math.sqrt(min(mu, MOST_FRICTION)),
+            lateralFriction=share,
             restitution=0,
             physicsClientId=self._client,
         )
@@ -320,7 +395,7 @@ class Bodies:
             useMaximalCoordinates=1,
             physicsClientId=self._client,
         )
-        self._rub(body, self._problem.mu)
+        self._rub(body, _share(self._problem.mu))
         self._weigh(body, index)
         return body
 
@@ -341,7 +416,7 @@ class Bodies:
         self._pull()
         self._joints.clear()
         self._bodies = self._build(pressures / stiffness)
-        for body, link in self._joints:
+        for body, _, link, _ in self._joints:
             bullet.changeDynamics(
                 body,
                 link,
@@ -374,6 +449,8 @@ class Bodies:
 
     def advance(self, steps: int) -> None:
         """Let the blocks move, in parts of a step where they move far."""
+        if not self._is_free:
+            self._let_go()
         for _ in range(steps):
             speed = float(displacement(self._velocities(), self._assembly))
             if not self._is_rubble:
@@ -512,15 +589,20 @@ class Bodies:
         found = np.zeros((len(self._assembly.joints), 3))
         # Asked for one pair, Bullet may turn the normal round, and not the friction.
         for contact in bullet.getContactPoints(physicsClientId=self._client):
-            joint, sense = self._joints[contact[1], contact[3]]
             push, friction, along, across, beyond = contact[9:14]
             force = push * np.array(contact[7]) + friction * np.array(along)
             force += across * np.array(beyond)
             # The boxes overlap: the joint is midway.
             place = (np.array(contact[5]) + contact[6]) / 2
+            joint, sense = self._nearest(self._joints[contact[1:5]], place)
             # It acts on the first body.
             found[joint] += sense * self._frame.wrench(place, force)
         return found
+
+    def _nearest(self, joints: list[tuple[int, float]], place: Array) -> tuple[int, float]:
+        """Tell which joint of two blocks a contact belongs to."""
+        point, ends = self._frame.point(place), self._assembly.joint_arrays.ends
+        return min(joints, key=lambda each: np.hypot(*(ends[each[0]] - point).T).min())
 
     def quality(self) -> Quality:
         """Tell how deep blocks have overlapped, as built and once they meet others."""
