@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -94,11 +94,20 @@ class Frame:
 
 @dataclass(frozen=True)
 class Box:
-    """A box in the frame of its body: half extents, centre, orientation."""
+    """A box in the frame of its body: half extents, centre, angle in the plane."""
 
     half: list[float]
     centre: list[float]
-    quaternion: list[float]
+    angle: float
+
+    @property
+    def quaternion(self) -> list[float]:
+        """How it is turned in the plane."""
+        return [0.0, 0.0, math.sin(self.angle / 2), math.cos(self.angle / 2)]
+
+    def turned(self, angle: float) -> Box:
+        """Turn it farther."""
+        return replace(self, angle=self.angle + angle)
 
 
 def plate(side: Side, depth: float, origin: Array, overlap: float) -> Box:
@@ -141,7 +150,7 @@ def _box(size: list[float], centre: Array, angle: float) -> Box:
     return Box(
         half=[each / 2 for each in size],
         centre=[*centre.tolist(), 0.0],
-        quaternion=[0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)],
+        angle=angle,
     )
 
 

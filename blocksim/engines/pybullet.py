@@ -76,6 +76,8 @@ PRESSED, SOFT = 1e-7, 10.0
 and stiffness of joints times the square of the step in which they are solved [mean mass]."""
 SETTLED = 1e-3
 """Acceleration from which on blocks that are pressed stay where they have given way to [g]."""
+TIE = 1e-11
+"""Angle between the boxes of a joint: Bullet takes the normal of the longer one, always."""
 BREAKING = 0.1
 """Distance at which contact points count as one else, in units of the shortest joint."""
 MOST_BREAKING = 0.02
@@ -254,7 +256,8 @@ class Bodies:
                 at_rest = side.body == SUPPORT
                 origin = np.zeros(2) if at_rest else self._assembly.centres[side.body] / size
                 box = (edge if side.is_corner else plate)(side, depth, origin, OVERLAP)
-                boxes[side.body].append((joint, sense, box))
+                turned = box.turned(math.pi + TIE * (sense > 0))
+                boxes[side.body].append((joint, sense, turned))
         return boxes
 
     def _meet(self, ends: dict[int, list[tuple[int, int, float]]]) -> None:
@@ -285,8 +288,8 @@ class Bodies:
         self._begin()
         boxes, bodies = self._boxes(), list[int]()
         ends: dict[int, list[tuple[int, int, float]]] = defaultdict(list)
-        alone = [(SUPPORT, [its]) for its in boxes.pop(SUPPORT, [])]
-        for index, its in [*sorted(boxes.items()), *alone]:
+        blocks = [(index, boxes[index]) for index in range(len(self._places))]
+        for index, its in [*blocks, *((SUPPORT, [each]) for each in boxes[SUPPORT])]:
             shape = bullet.createCollisionShapeArray(
                 shapeTypes=[bullet.GEOM_BOX] * len(its),
                 halfExtents=[box.half for *_, box in its],
@@ -490,19 +493,13 @@ class Bodies:
         assembly = self._assembly
         self._breaking = _breaking(assembly)
         self._begin()
-        self._pull()
         polygons: dict[int, list[Array]] = defaultdict(list)
         for index, polygon in self._solids.moving:
             polygons[index].append(polygon)
         with TemporaryDirectory() as folder:
-            for index, ((place, turn), (shift, spin)) in enumerate(states):
+            for index, ((place, _), _) in enumerate(states):
                 shape = self._prism(folder, polygons[index], float(assembly.depths[index]))
-                body = self._solid(shape, list(place), index)
-                bullet.resetBasePositionAndOrientation(
-                    body, place, turn, physicsClientId=self._client
-                )
-                bullet.resetBaseVelocity(body, shift, spin, physicsClientId=self._client)
-                self._bodies[index] = body
+                self._bodies[index] = self._solid(shape, list(place), index)
             # As deep as it is drawn.
             deep = float(assembly.depths.max())
             for polygon in self._solids.fixed:
@@ -513,6 +510,13 @@ class Bodies:
             bullet.GEOM_PLANE, planeNormal=[0.0, 1.0, 0.0], physicsClientId=self._client
         )
         self._solid(floor, self._frame.place(np.array([0.0, self._solids.level])))
+        bullet.stepSimulation(physicsClientId=self._client)
+        for body, ((place, turn), (shift, spin)) in zip(self._bodies, states, strict=True):
+            bullet.resetBasePositionAndOrientation(
+                body, place, turn, physicsClientId=self._client
+            )
+            bullet.resetBaseVelocity(body, shift, spin, physicsClientId=self._client)
+        self._pull()
 
     def _prism(self, folder: str, polygons: list[Array], depth: float) -> int:
         """Return the shape of a block: of hulls only those from files know their faces."""
