@@ -143,7 +143,7 @@ def test_what_limits_pybullet(tmp_path: Path) -> None:
     result = study("pybullet_settings").main(tmp_path, quick=True)
     as_built = result.accelerations["as built"]
     # Losing contacts or starting apart is not a matter of sweeps.
-    assert as_built["thin"] < 1e-3 < result.accelerations["breaking 0.02"]["thin"]
+    assert as_built["thin"] < 1e-3 < result.accelerations["breaking 2"]["thin"]
     assert as_built["semicircle"] < 3e-3 < result.accelerations["slop 5e-5"]["semicircle"]
     assert result.moved[0.1] < result.moved[0.01] / 30
 

@@ -104,10 +104,6 @@ CLASSICS: Mapping[str, Callable[[float], Problem]] = {
 }
 
 
-LEFT_OPEN = {("pybullet", "card_house", Verdict.COLLAPSES)}
-"""Known limit: friction stays at contacts whose pressure leaves them (README)."""
-
-
 @pytest.mark.parametrize("name", CLASSICS)
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
@@ -119,7 +115,4 @@ def test_stands_inside_and_falls_outside(
     if ENGINES[engine].missing:
         pytest.skip(engine)
     seen = observe(CLASSICS[name](share), engine)
-    if (engine, name, expected) in LEFT_OPEN:
-        assert seen.verdict is Verdict.UNDECIDED
-        return
     assert seen.verdict is expected, seen.reason

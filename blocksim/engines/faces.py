@@ -53,6 +53,11 @@ class Side:
         """Whether it is a corner that rests on the other side."""
         return bool((self.ends[0] == self.ends[1]).all())
 
+    @property
+    def length(self) -> float:
+        """How long it is; 0 for a corner."""
+        return float(np.hypot(*(self.ends[1] - self.ends[0])))
+
 
 def sides_of(assembly: Assembly) -> tuple[tuple[Side, Side], ...]:
     """Return what touches at each joint: the side of `before` and that of `after`."""
