@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from kind_cases import CATENARY, FACTORS, LEAST, PIERS, STACKS
+from running import inside
 from scipy.special import ellipe
 from structure_cases import case, scenes
 
@@ -527,3 +528,10 @@ def test_wrong_parameters_are_named(table: dict[str, Any], said: str, tmp_path: 
             load_structure(path)
         assert str(raised.value).startswith(f"{path}: ")
         assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_every_kind_is_asked_by_its_name_alone(name: str) -> None:
+    asked = inside("check", name, "--mu", "0.7", "--json")
+    assert asked.returncode in {0, 1}, asked.stderr
+    assert json.loads(asked.stdout)["problem"]["title"] == name

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from structure_cases import case, scenes
 
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.kinds.files import structure_of
 from blocksim.limit import collapse
-from tests.structure_cases import case, scenes
 
 ARCH = {"kind": "circular-arch", "friction": 0.8, "thickness": 0.2, "voussoirs": 9}
 

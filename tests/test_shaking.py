@@ -15,7 +15,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from running import inside
 from scipy.integrate import quad, solve_ivp
+from structure_cases import case, scenes
 
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
@@ -29,8 +31,6 @@ from blocksim.evidence.shaken import rocking_of, shake
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.files import structure_of
 from blocksim.many import load_design, read_rows, sweep
-from tests.running import inside
-from tests.structure_cases import case, scenes
 
 G = 9.81
 

@@ -18,6 +18,7 @@ from blocksim.ask.spread import Spreading
 from blocksim.blocks.joints import JointState, joint_motion
 from blocksim.blocks.structure import structure_record
 from blocksim.common.errors import InputError
+from blocksim.evidence.recording import read_recording
 from blocksim.kinds.files import structure_of
 from blocksim.limit.spreading import follow
 
@@ -190,3 +191,34 @@ def test_moves_are_written_back() -> None:
     again = structure_of(structure_record(problem))
     assert again.moves[0].turn == pytest.approx(math.radians(5))
     assert again.moves[0].about == pytest.approx([1, 0])
+
+
+def test_supports_that_move_are_recorded_until_all_has_fallen(tmp_path: Path) -> None:
+    """The supports go on apart, evenly; the arch falls near the way known for it."""
+    out, table = tmp_path / "run.npz", {"kind": "circular-arch", "voussoirs": 8}
+    file = tmp_path / "arch.json"
+    file.write_text(json.dumps({**table, "friction": 0.8, "thickness": 0.13}))
+    done = blocksim("simulate", str(file), "--over", "spread", "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    recording = read_recording(out)
+    assert recording.problem.title == "circular-arch, its supports move"
+    assert recording.poses.shape[1] == 8 + 2
+    apart = recording.poses[:, 9, 0] - recording.poses[:, 8, 0]
+    size = recording.assembly.size
+    assert apart[-1] > apart[0]
+    assert np.diff(apart) == pytest.approx(apart[1] - apart[0], rel=1e-6)
+    crown = recording.poses[:, 3, 1]
+    moved = (apart - apart[0]) * size
+    falls = moved[int(np.argmax(crown < crown[0] - 0.3))]
+    known = Spreading(structure_of(json.loads(file.read_text()))).exact
+    assert known is not None
+    # It takes a while to fall, in which the supports go on.
+    assert known < falls < known + 0.01 * 3
+    for options, said in (
+        (["--over", "tilt"], "--over = 'tilt': must be spread"),
+        (["--over", "spread", "--method", "pymunk"], "--method = 'pymunk': must be direct"),
+        (["--over", "spread", "--seconds", "2"], "--seconds = 2.0: must be left out"),
+    ):
+        ended = blocksim("simulate", str(file), *options, "--out", str(out))
+        assert (ended.returncode, ended.stderr.count("\n")) == (2, 1)
+        assert said in ended.stderr

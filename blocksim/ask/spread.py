@@ -14,8 +14,10 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Move, Problem
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.direct import UNSOLVED, rule
-from blocksim.engines.moving import OnMovingSupports
+from blocksim.engines.direct import ENGINE, UNSOLVED, rule
+from blocksim.engines.moving import DEEP, OnMovingSupports
+from blocksim.evidence.motion import FRAME
+from blocksim.evidence.recording import Recording
 from blocksim.limit.spreading import Path, follow, lying
 
 SIDES = (-1.0, 1.0)
@@ -24,6 +26,11 @@ FARTHEST = 1.0
 """How far supports move at most [size]."""
 SPEED, STEP = 1e-3, 0.05
 """Of the supports [size/sqrt(size/g)], and step of time [sqrt(size/g)], at first."""
+SEEN, AFTER = 0.01, 6.0
+"""Speed of the supports in a recording [size/sqrt(size/g)], and how long it goes on once the
+blocks fall [sqrt(size/g)]."""
+SHALLOW = 0.5
+"""How far below the structure a recording shows the ground, if no support sinks [size]."""
 FAST = 30.0
 """Speed of blocks, over that of their supports, from which on they fall."""
 STARTS = 1e-5
@@ -214,6 +221,37 @@ class Spreading:
             runs=runs,
             values=np.array(values),
             poses=np.array(poses),
+        )
+
+    def recorded(self, progress: Progress = silent) -> Recording:
+        """Move the supports by `direct`, faster than `slowly`, until the blocks have fallen.
+
+        Returns
+        -------
+        Recording
+            Of the blocks and, after them, the supports that move.
+        """
+        settings = rule(self.problem.assembly)
+        level = all(move.direction[1] >= 0 and not move.turn for move in self.problem.moves)
+        deep = SHALLOW if level else DEEP
+        world = OnMovingSupports(self.problem, settings, SEEN, deep)
+        stride = round(FRAME / settings.step)
+        times, poses, left = [0.0], [world.poses()], AFTER
+        while world.value < self.farthest and left > 0 and solved(world):
+            for _ in range(stride):
+                world.advance_once()
+            times.append(times[-1] + stride * settings.step)
+            poses.append(world.poses())
+            left -= FRAME * (world.fastest > FAST * SEEN or left < AFTER)
+            progress(world.value / self.farthest, f"supports at {world.value:.4g} m")
+        return Recording(
+            problem=replace(world.problem, title=f"{self.asked.title}, its supports move"),
+            engine=ENGINE.name,
+            engine_version=ENGINE.version,
+            settings=settings,
+            times=np.array(times),
+            poses=np.array(poses),
+            quality=replace(world.quality(), gain=None),
         )
 
 

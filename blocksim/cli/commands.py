@@ -71,6 +71,7 @@ from blocksim.cli.structures import (
     loaded,
     say_recorded,
     simulate_structure,
+    spread_structure,
     structure,
 )
 from blocksim.common.checks import is_number, require
@@ -225,6 +226,9 @@ def simulate(
     method: Annotated[
         str, typer.Option(help=f"auto, or an engine: {', '.join(ENGINES)}.")
     ] = "auto",
+    over: Annotated[
+        str | None, typer.Option(help="spread: move the supports until it has fallen.")
+    ] = None,
     seconds: Annotated[
         float | None, typer.Option(help="Seconds to record; until decided if left out.")
     ] = None,
@@ -257,7 +261,10 @@ def simulate(
     if seconds is not None:
         ok = is_number(seconds, 0, LONGEST_RECORDING)
         require(ok, "--seconds", seconds, f"above 0 and at most {LONGEST_RECORDING:g}")
-    recording = simulate_structure(problem, method, seconds, settings)
+    if over is not None:
+        recording = spread_structure(problem, over, method, seconds, settings)
+    else:
+        recording = simulate_structure(problem, method, seconds, settings)
     recording.save(out)
     say_recorded(out, recording, size)
 

@@ -13,6 +13,7 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
 from blocksim.ask.simulate import simulate
+from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.cli.console import answer_with, progress, save_picture, say
@@ -203,6 +204,23 @@ def simulate_structure(
             settings=settings_of(settings),
             progress=report,
         )
+
+
+def spread_structure(
+    problem: Problem,
+    over: str,
+    method: str,
+    seconds: float | None,
+    settings: list[str] | None,
+) -> Recording:
+    """Move the supports of a structure until it has fallen, and record it."""
+    require(over == "spread", "--over", over, "spread, or left out: nothing else moves slowly")
+    require(method in {"auto", "direct"}, "--method", method, "direct: others move no supports")
+    require(seconds is None, "--seconds", seconds, "left out: it ends when all has fallen")
+    require(settings is None, "--set", settings, "left out where supports move")
+    require(problem.shaking is None, "--shake", over, "left out where supports move")
+    with named_options(), progress() as report:
+        return Spreading(problem).recorded(report)
 
 
 def draw_structure(

@@ -29,12 +29,17 @@ class OnMovingSupports(Blocks):
     settings : Settings
     speed : float
         Of the parameter of the supports' motion [size/sqrt(size/g)].
+    deep : float
+        How far below the structure the ground lies [size].
     """
 
-    def __init__(self, problem: Problem, settings: Settings, speed: float) -> None:
+    def __init__(
+        self, problem: Problem, settings: Settings, speed: float, deep: float = DEEP
+    ) -> None:
         self._count = len(problem.assembly.blocks)
         self._size = problem.assembly.size
-        super().__init__(_with_supports_as_blocks(problem), settings)
+        self.problem = _with_supports_as_blocks(problem, deep)
+        super().__init__(self.problem, settings)
         masses = self._mass.copy()
         masses[self._count :] = HEAVY
         self._mass = masses
@@ -93,7 +98,7 @@ def _hull(points: Array) -> Array:
     return points[found.vertices]
 
 
-def _with_supports_as_blocks(problem: Problem) -> Problem:
+def _with_supports_as_blocks(problem: Problem, deep: float) -> Problem:
     """Return the problem with supports that move as its last blocks, ground far below."""
     assembly = problem.assembly
     mass = float(np.mean([block.mass for block in assembly.blocks]))
@@ -125,9 +130,9 @@ def _with_supports_as_blocks(problem: Problem) -> Problem:
     # Level ground is below all that moves, or a support that settles would rest on it.
     corners = np.concatenate([block.vertices for block in (*assembly.blocks, *made)])
     (west, low), (east, _) = corners.min(axis=0), corners.max(axis=0)
-    top = low - DEEP * assembly.size
-    deep = top - assembly.size
-    ground = Support((np.array([(west, top), (west, deep), (east, deep), (east, top)]),))
+    top, wide = low - deep * assembly.size, 2 * assembly.size
+    west, east, foot = west - wide, east + wide, top - wide / 10
+    ground = Support((np.array([(west, top), (west, foot), (east, foot), (east, top)]),))
     return replace(
         problem,
         assembly=replace(

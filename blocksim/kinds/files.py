@@ -100,10 +100,9 @@ def changed(data: object, changes: Mapping[str, object]) -> dict[str, Any]:
         If it is of no kind.
     """
     kind = data.get("kind") if isinstance(data, dict) else None  # pyright: ignore
-    name, value = next(iter(changes.items()))
-    require(kind is not None, name, value, "left out: the file has blocks, not a kind")
     table = {**cast("dict[str, Any]", data)}
     for name, value in changes.items():
+        require(kind is not None, name, value, "left out: the file has blocks, not a kind")
         here, _, rest = name.partition(".")
         inside = table.get(here)
         nested = bool(rest) and isinstance(inside, Mapping | None)
