@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 
-from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
@@ -23,7 +22,6 @@ _STATICS = (
         name="theory",
         sees="the continuous arch: least thickness, mode, thrust, hinge and sliding angles",
         finest=0.0,
-        has_joint_friction=False,
     ),
     Method(
         name="limit",
@@ -123,22 +121,12 @@ def _beyond(method: Method, problem: Problem | None) -> str:
         return f"one of {able}: {method.name} knows no ground that shakes"
     if method.name == "theory" and "half_angle" not in problem.origin:
         return "limit or an engine: theory is of symmetric circular arches only"
-    if not method.has_joint_friction and _own_friction(problem):
-        able = ", ".join(each.name for each in METHODS.values() if each.has_joint_friction)
-        return f"one of {able}: {method.name} knows no friction of single joints between blocks"
     return ""
 
 
 def _reduces(method: Method) -> bool:
     """Tell whether it says what joints carry, which a reduced arch takes."""
     return isinstance(method, Engine) and method.tells_forces
-
-
-def _own_friction(problem: Problem) -> bool:
-    """Tell whether joints between blocks have friction of their own."""
-    joints, mu = problem.assembly.joint_arrays, problem.friction
-    between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
-    return bool((mu[between] != problem.mu).any()) or (problem.mu == 0 and bool(mu.any()))
 
 
 def chosen_words(method: str, rung: Method) -> str:

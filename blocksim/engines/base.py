@@ -183,8 +183,6 @@ class Method:
         What it can tell.
     finest : float
         Smallest relative width of a bracket it can answer for; its error is less.
-    has_joint_friction : bool
-        Whether joints between blocks may have friction of their own.
     is_spatial : bool
         Whether it sees motion out of the plane.
     adjustable : tuple of str
@@ -200,7 +198,6 @@ class Method:
     name: str
     sees: str
     finest: float
-    has_joint_friction: bool = True
     is_spatial: bool = False
     adjustable: tuple[str, ...] = ()
     chart: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
