@@ -39,7 +39,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.engines.boxes import EDGE, Box, Frame, edge, plate
-from blocksim.engines.bulletspace import SLOP, Space, State, share
+from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
 from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, sides_of
 from blocksim.engines.solids import Solids, prisms
 
@@ -103,7 +103,7 @@ def linked(space: Space, problem: Problem, reaches: Array | None = None) -> Buil
     ends: Ends = defaultdict(list)
     for index in [*range(len(problem.assembly.blocks)), SUPPORT]:
         its = boxes[index]
-        shares = [share(problem.friction[each.joint]) for each in its]
+        shares = [friction_share(problem.friction[each.joint]) for each in its]
         place, masses = place_of(space.frame, problem.assembly, index), _masses(problem, index)
         body = space.linked([each.box for each in its], shares, place, masses)
         for link, each in enumerate(its):
@@ -126,7 +126,7 @@ def can_be_layered(problem: Problem) -> bool:
 
 def layered(space: Space, problem: Problem) -> Built:
     """Build anew, of bodies without links, and those of the support one for each joint."""
-    assembly, mu = problem.assembly, share(problem.mu)
+    assembly, mu = problem.assembly, friction_share(problem.mu)
     layers = _layers(assembly)
     space.clear(_breaking(assembly, layers.max()))
     boxes, bodies = _boxes(problem), list[int]()
@@ -134,7 +134,9 @@ def layered(space: Space, problem: Problem) -> Built:
     blocks = [(index, boxes[index]) for index in range(len(assembly.blocks))]
     for index, its in [*blocks, *((SUPPORT, [each]) for each in boxes[SUPPORT])]:
         # What a block has of a pair's friction is the same everywhere.
-        own = share(problem.friction[its[0].joint]) ** 2 / mu if index == SUPPORT else mu
+        own = mu
+        if index == SUPPORT:
+            own = friction_share(problem.friction[its[0].joint]) ** 2 / mu
         placed = [
             replace(box, centre=[*box.centre[:2], float(layers[joint])])
             for joint, _, box in its
@@ -152,7 +154,7 @@ def layered(space: Space, problem: Problem) -> Built:
 
 def solid(space: Space, problem: Problem, solids: Solids, states: Sequence[State]) -> list[int]:
     """Build anew, blocks in given states as they are, what they stand on and the floor."""
-    assembly, own = problem.assembly, share(problem.mu)
+    assembly, own = problem.assembly, friction_share(problem.mu)
     space.clear(_breaking(assembly))
     polygons: dict[int, list[Array]] = defaultdict(list)
     for index, polygon in solids.moving:

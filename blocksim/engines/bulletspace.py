@@ -36,7 +36,7 @@ without the margin that else rounds their corners; pybullet gives it no name."""
 NOTHING = (0.0, 0.0, 0.0)
 
 
-def share(mu: float) -> float:
+def friction_share(mu: float) -> float:
     """Return what two sides have of a friction, each: a pair's is their product."""
     return math.sqrt(min(float(mu), MOST_FRICTION))
 
@@ -79,10 +79,10 @@ class _Client:
 
 
 class Space:
-    """One of Bullet's spaces. Bodies are known by their numbers, links by theirs; -1 is none.
+    """One of Bullet's spaces. Bodies and their links are known by their numbers.
 
-    A body's masses are its mass and its moments of inertia about x, y and z; one without
-    them stays where it is.
+    A body has its share of a friction (`friction_share`). Its masses are its mass and its
+    moments of inertia about x, y and z; one without them stays where it is.
 
     Parameters
     ----------
@@ -190,15 +190,15 @@ class Space:
             linkJointAxis=[[0.0, 0.0, 1.0]] * count,
         )
         self._weigh(body, masses)
-        for link, its in enumerate(shares):
+        for link, share in enumerate(shares):
             self._avoid(body, link)
-            self._rub(body, its, link)
+            self._rub(body, share, link)
         return body
 
     def layered(
         self,
         boxes: Sequence[Box],
-        its: float,
+        share: float,
         place: list[float],
         masses: list[float] | None,
     ) -> int:
@@ -212,12 +212,12 @@ class Space:
             collisionFramePositions=[box.centre for box in boxes],
             collisionFrameOrientations=[box.quaternion for box in boxes],
         )
-        body = self._solid(shape, its, place, masses)
+        body = self._solid(shape, share, place, masses)
         self._avoid(body, -1)
         return body
 
     def hulls(
-        self, text: str, its: float, place: list[float], masses: list[float] | None = None
+        self, text: str, share: float, place: list[float], masses: list[float] | None = None
     ) -> int:
         """Create a body of convex hulls from the text of an .obj file, and its friction share.
 
@@ -230,17 +230,17 @@ class Space:
                 bullet.GEOM_MESH, fileName=str(path), flags=KNOW_FACES
             )
             # The body's creation reads the file once more.
-            return self._solid(shape, its, place, masses)
+            return self._solid(shape, share, place, masses)
 
-    def floor(self, its: float, place: list[float]) -> int:
+    def floor(self, share: float, place: list[float]) -> int:
         """Create a level floor through a place, with its share of a friction."""
         shape: int = self._client.createCollisionShape(
             bullet.GEOM_PLANE, planeNormal=[0.0, 1.0, 0.0]
         )
-        return self._solid(shape, its, place, None)
+        return self._solid(shape, share, place, None)
 
     def _solid(
-        self, shape: int, its: float, place: list[float], masses: list[float] | None
+        self, shape: int, share: float, place: list[float], masses: list[float] | None
     ) -> int:
         # Without maximal coordinates Bullet would push blocks that overlap apart.
         body: int = self._client.createMultiBody(
@@ -250,7 +250,7 @@ class Space:
             baseOrientation=self.frame.quaternion,
             useMaximalCoordinates=1,
         )
-        self._rub(body, its)
+        self._rub(body, share)
         self._weigh(body, masses)
         return body
 
@@ -261,9 +261,9 @@ class Space:
             mass, *inertia = masses
             self._client.changeDynamics(body, -1, mass=mass, localInertiaDiagonal=inertia)
 
-    def _rub(self, body: int, its: float, link: int = -1) -> None:
+    def _rub(self, body: int, share: float, link: int = -1) -> None:
         """Give a body, or a link of it, its share of a friction, and no rebound."""
-        self._client.changeDynamics(body, link, lateralFriction=its, restitution=0)
+        self._client.changeDynamics(body, link, lateralFriction=share, restitution=0)
 
     def soften(self, body: int, link: int, stiffness: float) -> None:
         """Make contacts of a link springs; a pair's stiffness is half of either's."""
