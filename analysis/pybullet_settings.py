@@ -2,7 +2,7 @@
 
 Question: how must an arch be put into Bullet so that its contact forces converge to
 balance, and stay there once it is let go? Each variant departs in one point from what
-`engines/pybullet.py` does:
+`engines/bulletblocks.py` and `engines/bulletspace.py` do:
 
 - *soft lock*: inertias out of the plane a million times too large, not beyond reach;
 - *breaking 2*: contact points of a joint's length replace each other;
@@ -35,7 +35,7 @@ from analysis.command import run
 from blocksim import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Array, displacement
-from blocksim.engines import pybullet as bullet
+from blocksim.engines import bulletblocks, bulletspace
 from blocksim.evidence.simulation import Simulation
 from blocksim.view.style import FONT
 
@@ -67,21 +67,14 @@ class Result:
 @contextmanager
 def variant(name: str) -> Generator[None]:
     """Put one setting of the engine out of order."""
-    real = bullet.bullet.setPhysicsEngineParameter
-
-    def slack(**parameters: float) -> None:
-        if "contactSlop" in parameters:
-            parameters["contactSlop"] = 5e-5
-        real(**parameters)
-
     if name == "breaking 2":
-        with patch.object(bullet, "MERGED", 2.0):
+        with patch.object(bulletblocks, "MERGED", 2.0):
             yield
     elif name == "slop 5e-5":
-        with patch.object(bullet.bullet, "setPhysicsEngineParameter", slack):
+        with patch.object(bulletspace, "SLOP", 5e-5):
             yield
     elif name == "soft lock":
-        with patch.object(bullet, "LOCK", LOCK):
+        with patch.object(bulletblocks, "LOCK", LOCK):
             yield
     else:
         yield

@@ -35,7 +35,7 @@ from blocksim.evidence.verdict import Verdict
 pytest.importorskip("pybullet", exc_type=ImportError)
 
 from blocksim.engines.boxes import Frame
-from blocksim.engines.pybullet import ENGINE, Bodies, bullet
+from blocksim.engines.pybullet import ENGINE, Bodies
 
 ARCHES = [
     (90, 0.7, 9, "centreline", Mode.RRR),
@@ -202,10 +202,7 @@ def test_each_joint_has_two_contacts_at_its_ends(name: str) -> None:
     world = Bodies(problem, ENGINE.rule(assembly))
     world.hold(1)
     resultants = world.resultants()
-    places = [
-        np.add(contact[5], contact[6])[:2] / 2
-        for contact in bullet.getContactPoints(physicsClientId=world._client)
-    ]
+    places = [contact.place[:2] for contact in world._space.contacts()]
     ends = assembly.joint_arrays.ends.reshape(-1, 2)
     off = np.hypot(*(ends[:, None] - np.array(places)[None]).transpose(2, 0, 1))
     assert len(places) == 2 * len(assembly.joints)
