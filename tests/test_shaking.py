@@ -145,14 +145,8 @@ def test_a_table_is_followed_along_straight_lines(
     assert shaking.gained(start, start + length) == pytest.approx(wanted, abs=2e-2)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param("pulse_1x4_03", marks=pytest.mark.long),
-        pytest.param("pulse_1x4_05", marks=pytest.mark.long),
-        "pulse_1x4_10",
-    ],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["pulse_1x4_03", "pulse_1x4_05", "pulse_1x4_10"])
 def test_a_pulse_overturns_a_block_from_its_known_duration_on(name: str) -> None:
     """Corpus: half a hundredth to either side of the duration, by `direct`."""
     assert shake(shaken(name, 0.995), "direct").verdict is Verdict.STANDS
@@ -165,10 +159,8 @@ def test_pymunk_sees_the_same_pulses(name: str) -> None:
     assert shake(shaken(name, 1.01), "pymunk").verdict is Verdict.COLLAPSES
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["frame_pulse_gamma05", pytest.param("frame_pulse_gamma20", marks=pytest.mark.long)],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["frame_pulse_gamma05", "frame_pulse_gamma20"])
 def test_a_lintel_on_two_columns_overturns_with_them(name: str) -> None:
     """Makris and Vassiliou: a frame rocks like a larger block."""
     assert shake(shaken(name, 0.99), "direct").verdict is Verdict.STANDS

@@ -1,4 +1,4 @@
-"""Engines by name: one file each, which says all there is to say of it."""
+"""Engines by name: each has a file with an `ENGINE`, which says all there is to say of it."""
 
 from __future__ import annotations
 
