@@ -39,7 +39,7 @@ from blocksim.evidence.simulation import Simulation
 from blocksim.kinds.files import structure_of
 from blocksim.many import load_design, read_rows, sweep
 from blocksim.view.style import FONT
-from tests.structure_cases import case, scenes
+from tests.structure_cases import case, scenes, tipped
 
 ENGINES = ("direct", "pymunk")
 PULSES = {
@@ -153,14 +153,8 @@ def pulse(name: str, engine: str) -> Row:
 
 def fall(step: float) -> Fall:
     """Let a block go on its corner, and time its fall."""
-    known, scene = case("rocking_1x4_5"), scenes("rocking_1x4_5")[0]
-    turned = known["initial"]["rotation"]
-    corners = np.array(scene["blocks"][1]["vertices"], dtype=float)
-    pivot = np.array([corners[:, 0].max(), 0.0])
-    cos, sin = math.cos(-turned), math.sin(-turned)
-    corners = (corners - pivot) @ np.array([[cos, sin], [-sin, cos]]) + pivot
-    scene["blocks"][1]["vertices"] = corners.tolist()
-    problem, expected = structure_of(scene), known["expected"]
+    known, problem = case("rocking_1x4_5"), structure_of(tipped("rocking_1x4_5"))
+    expected = known["expected"]
     simulation = Simulation.of(problem, "direct", settings={"step": step})
     world: Any = simulation.world()
     world.hold(1)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 CASES = Path(__file__).parent / "structures" / "cases"
 BESIDES = {"expected", "label", "gravity_angle_deg"}
@@ -28,3 +31,15 @@ def scenes(name: str) -> list[dict[str, Any]]:
         {key: value for key, value in scene.items() if key not in BESIDES}
         for scene in read.get("scenes") or [read["scene"]]
     ]
+
+
+def tipped(name: str) -> dict[str, Any]:
+    """The structure of a `rocking` case, its block turned about its lower right corner."""
+    (scene,) = scenes(name)
+    turned = case(name)["initial"]["rotation"]
+    corners = np.array(scene["blocks"][1]["vertices"], dtype=float)
+    pivot = np.array([corners[:, 0].max(), 0.0])
+    cos, sin = math.cos(-turned), math.sin(-turned)
+    corners = (corners - pivot) @ np.array([[cos, sin], [-sin, cos]]) + pivot
+    scene["blocks"][1]["vertices"] = corners.tolist()
+    return scene

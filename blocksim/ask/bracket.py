@@ -233,24 +233,24 @@ def _shaken(
     progress: Progress,
 ) -> Search:
     """Search for the change by shaking the blocks, each time until they lie still."""
-    more_is_safer = family.stands == "high"
-
-    def turned(value: float) -> float:
-        return value if more_is_safer else 1 / value
-
-    def judge(strength: float) -> Answer:
-        seen = shake(family.at(turned(strength)), engine, settings=settings)
-        # Nothing leads from how it falls to where it stands: the bracket is halved.
-        return Answer(seen.verdict, 0.0)
-
     least, most = max(within[0], start / FARTHEST), min(within[1], start * FARTHEST)
-    floor, ceiling = (least, most) if more_is_safer else (1 / most, 1 / least)
-    search = Bisection(judge, progress, floor=floor, ceiling=ceiling, name=family.name)
-    search.expand(turned(start))
-    search.bisect(tol)
+
+    def judge(value: float) -> Answer:
+        # Nothing leads from how it falls to where it stands: the bracket is halved.
+        return Answer(shake(family.at(value), engine, settings=settings).verdict, 0.0)
+
+    search, falls, stands = _sought(
+        judge,
+        start,
+        (least, most),
+        tol,
+        name=family.name,
+        more_is_safer=family.stands == "high",
+        progress=progress,
+    )
     return Search(
-        falls=None if search.low is None else turned(search.low),
-        stands=None if search.high is None else turned(search.high),
+        falls=falls,
+        stands=stands,
         runs=search.runs,
         undecided=search.undecided,
         reason=f"shaken at {search.runs} values, each time until all lay still; this is one "
@@ -309,8 +309,7 @@ def by_engine(
     name : str
         What the value is.
     more_is_safer : bool
-        Whether it stands above the change. A bisection knows such values only: of others
-        it is given the inverse.
+        Whether it stands above the change.
     confirm : bool
         Let the blocks go at both ends.
     progress : Progress, optional
@@ -318,12 +317,8 @@ def by_engine(
     ends: dict[Verdict, tuple[float, Held]] = {}
     blocks = splits = both = 0
 
-    def turned(value: float) -> float:
-        return value if more_is_safer else 1 / value
-
-    def judge(strength: float) -> Answer:
+    def judge(value: float) -> Answer:
         nonlocal blocks, splits, both
-        value = turned(strength)
         held = held_at(value)
         blocks, splits = max(blocks, held.simulation.blocks), splits + held.splits
         both += held.onset.may_rest
@@ -331,11 +326,15 @@ def by_engine(
         ends[held.onset.verdict] = value, held
         return Answer(held.onset.verdict, held.onset.acceleration)
 
-    low, high = within
-    floor, ceiling = (low, high) if more_is_safer else (1 / high, 1 / low)
-    search = Bisection(judge, progress, floor=floor, ceiling=ceiling, name=name)
-    search.expand(turned(start))
-    search.bisect(tol)
+    search, falls, stands = _sought(
+        judge,
+        start,
+        within,
+        tol,
+        name=name,
+        more_is_safer=more_is_safer,
+        progress=progress,
+    )
     agreed: list[bool] = []
     collapse = None
     for expected in (Verdict.COLLAPSES, Verdict.STANDS):
@@ -354,8 +353,8 @@ def by_engine(
     if both:
         reason += f"; friction allows both rest and motion at {both} of them"
     return Search(
-        falls=None if search.low is None else turned(search.low),
-        stands=None if search.high is None else turned(search.high),
+        falls=falls,
+        stands=stands,
         confirmed=confirmed,
         runs=search.runs,
         undecided=search.undecided,
@@ -364,3 +363,36 @@ def by_engine(
         splits=splits,
         collapse=collapse,
     )
+
+
+def _sought(
+    judge: Callable[[float], Answer],
+    start: float,
+    within: tuple[float, float],
+    tol: float,
+    *,
+    name: str,
+    more_is_safer: bool,
+    progress: Progress,
+) -> tuple[Bisection, float | None, float | None]:
+    """Search, and return the nearest values that fell and that stood.
+
+    A bisection knows values only of which more is safer: of others it is given the inverse.
+    """
+
+    def turned(value: float) -> float:
+        return value if more_is_safer else 1 / value
+
+    low, high = within
+    floor, ceiling = (low, high) if more_is_safer else (1 / high, 1 / low)
+    search = Bisection(
+        lambda strength: judge(turned(strength)),
+        progress,
+        floor=floor,
+        ceiling=ceiling,
+        name=name,
+    )
+    search.expand(turned(start))
+    search.bisect(tol)
+    falls, stands = (None if end is None else turned(end) for end in (search.low, search.high))
+    return search, falls, stands

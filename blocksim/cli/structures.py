@@ -195,7 +195,7 @@ def simulate_structure(
     """Let a structure go and record it."""
     duration = None
     if seconds is not None:
-        duration = seconds / math.sqrt(problem.assembly.size / STANDARD_GRAVITY)
+        duration = seconds / problem.seconds
     with named_options(), progress() as report:
         return simulate(
             problem,

@@ -81,7 +81,7 @@ class Blocks:
         self._velocities = np.zeros_like(self._poses)
         loads = problem.dead + problem.live
         self._turning = any(load.point is not None for load in loads)
-        self._free = problem.pull() / self._mass
+        self._free = self._still = problem.pull() / self._mass
         self._time = 0.0
         self._solution: Solution | None = None
         self._balance = Balance(problem, self._poses)
@@ -137,7 +137,7 @@ class Blocks:
         if self._asked.shaking is not None:
             start, self._time = self._time, self._time + step
             across = self._asked.shaken(start, self._time) - self._asked.gravity
-            self._free = self._asked.pull(self._looked) / self._mass
+            self._free = (self._free if self._turning else self._still).copy()
             self._free[:, :2] += across[:2]
 
     @property

@@ -145,7 +145,7 @@ def _released(
             overlap = max(overlap, overlap_share(assembly, poses[-1]))
         if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
             break
-        if until is not None and _lies_still(assembly, poses, moved):
+        if until is not None and moved[-1] > MOVED and lie_still(assembly, poses):
             break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
@@ -162,14 +162,12 @@ def _released(
     )
 
 
-def _lies_still(assembly: Assembly, poses: list[Array], moved: list[float]) -> bool:
-    """Tell whether what has collapsed has come to rest."""
-    if moved[-1] <= MOVED or len(poses) <= AT_REST:
+def lie_still(assembly: Assembly, poses: list[Array]) -> bool:
+    """Tell whether blocks have hardly moved for a while."""
+    if len(poses) <= AT_REST:
         return False
-    return (
-        float(displacement(np.array(poses[-1 - AT_REST :]) - poses[-1], assembly).max())
-        < UNSEEN
-    )
+    last = np.array(poses[-1 - AT_REST :])
+    return float(displacement(last - last[-1], assembly).max()) < UNSEEN
 
 
 def distrust(quality: Quality, settings: Settings, length: str) -> str:

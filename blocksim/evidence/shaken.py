@@ -17,12 +17,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, Array, Assembly, displacement
+from blocksim.blocks.assembly import PLANAR, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import trusted
 from blocksim.engines.contact.geometry import Geometry, turns_of
-from blocksim.evidence.motion import FRAME, UNSEEN, distrust
+from blocksim.evidence.motion import FRAME, distrust, lie_still
 from blocksim.evidence.observation import hold
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
@@ -32,8 +32,6 @@ SUNK = 0.5
 """How far a block's centre has sunk that will not come back [size]."""
 LONGEST = 200.0
 """Time after the shaking at which blocks that still move are given up [sqrt(size/g)]."""
-STILL = 40
-"""Frames in which blocks that lie still move by less than `UNSEEN`."""
 APART = 0.01
 """Gap across a joint from which its blocks do not touch [size]."""
 TURNED, SHUT = 1e-4, 1e-7
@@ -79,6 +77,12 @@ class Shaken:
     moved: float
     recording: Recording
 
+    @property
+    def first_impact_s(self) -> float | None:
+        """When a joint that had opened closed first [s]."""
+        impact = self.rocking.impact
+        return None if impact is None else impact * self.recording.problem.seconds
+
 
 def shake(
     problem: Problem,
@@ -122,7 +126,7 @@ def shake(
         taken += stride
         times.append(taken * step)
         poses.append(world.poses())
-        if times[-1] > shaken and _lie_still(assembly, poses):
+        if times[-1] > shaken and lie_still(assembly, poses):
             break
         if not whole and _sunk(poses) > SUNK:
             break
@@ -148,7 +152,7 @@ def outcome(recording: Recording) -> tuple[Verdict, str]:
     """Tell from the poses what became of blocks on ground that shook, and in words why."""
     poses, problem = list(recording.poses), recording.problem
     over = problem.shaking.duration / problem.seconds if problem.shaking else 0.0
-    if recording.times[-1] > over and _lie_still(problem.assembly, poses):
+    if recording.times[-1] > over and lie_still(problem.assembly, poses):
         ended = _ended(problem.assembly, poses[-1])
         if ended:
             return Verdict.COLLAPSES, f"lies still; joints that are none any more: {ended}"
@@ -204,14 +208,6 @@ def _zero(now: float, slope: float, bend: float) -> float:
     found = np.roots([bend, slope, now])
     inside = found[(abs(found.imag) < SHUT) & (found.real >= 0) & (found.real <= 1)].real
     return float(inside.min()) if len(inside) else 1.0
-
-
-def _lie_still(assembly: Assembly, poses: list[Array]) -> bool:
-    """Tell whether blocks have hardly moved for a while."""
-    if len(poses) <= STILL:
-        return False
-    last = np.array(poses[-1 - STILL :])
-    return float(displacement(last - last[-1], assembly).max()) < UNSEEN
 
 
 def _ended(assembly: Assembly, poses: Array) -> int:

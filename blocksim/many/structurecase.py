@@ -162,11 +162,9 @@ def _rocking(seen: ProblemCheck) -> Row:
     """Tell how blocks turned on ground that shakes."""
     if seen.shaken is None:
         return {}
-    rocking = seen.shaken.rocking
-    impact = rocking.impact and rocking.impact * seen.problem.seconds
     return {
-        "largest_rotation_deg": math.degrees(rocking.rotation),
-        "first_impact_s": impact,
+        "largest_rotation_deg": math.degrees(seen.shaken.rocking.rotation),
+        "first_impact_s": seen.shaken.first_impact_s,
     }
 
 

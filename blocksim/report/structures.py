@@ -11,7 +11,7 @@ from blocksim.ask.bracket import Bracket
 from blocksim.ask.check import ProblemCheck
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import shaking_record
 from blocksim.kinds.files import kind_behind
 
@@ -28,7 +28,7 @@ def check_record(answer: ProblemCheck) -> dict[str, object]:
     assembly = problem.assembly
     seconds = None
     if answer.simulated is not None:
-        seconds = answer.simulated * math.sqrt(assembly.size / STANDARD_GRAVITY)
+        seconds = answer.simulated * problem.seconds
     return {
         "method": answer.method,
         "verdict": answer.verdict.value,
@@ -192,11 +192,10 @@ def _shaken(answer: ProblemCheck) -> dict[str, object] | None:
     if answer.shaken is None:
         return None
     rocking, assembly = answer.shaken.rocking, answer.problem.assembly
-    impact = rocking.impact
     return {
         "largest_rotation_deg": math.degrees(rocking.rotation),
         "block": assembly.blocks[rocking.block].name or str(rocking.block),
-        "first_impact_s": None if impact is None else impact * answer.problem.seconds,
+        "first_impact_s": answer.shaken.first_impact_s,
         "moved_m": answer.shaken.moved * assembly.size,
     }
 
