@@ -1,0 +1,142 @@
+"""Forces that joints can carry: the cones of friction at their ends, and what those balance."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import lsmr
+
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.problem import Problem
+
+ROUND_OFF = 1e-9
+"""Lack of force that is round-off [mean weights]."""
+
+
+class Cones:
+    """Edges of the cones of friction at all ends of joints, and what their forces do.
+
+    A cone of finite friction has two edges, one without friction has one; unbounded
+    friction leaves a normal part that presses and a tangential one that is free.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+    friction : (joints,) float, optional
+        Instead of the problem's own.
+    width : float
+        Share of each joint's width that may be used, about its middle.
+    """
+
+    def __init__(
+        self, problem: Problem, *, friction: Array | None = None, width: float = 1.0
+    ) -> None:
+        assembly, joints = problem.assembly, problem.assembly.joint_arrays
+        self._joints = len(assembly.joints)
+        self.shape = (len(assembly.blocks), PLANAR)
+        # What nothing can turn (half a keystone on its plane) bears any moment.
+        self.ease = np.ones(self.shape)
+        self.ease[:, 2] = 1 / np.maximum(1.0, assembly.masses[:, 2])
+        mu = np.repeat(problem.friction if friction is None else friction, 2)
+        ends = np.arange(2 * self._joints)
+        finite, rough = ends[np.isfinite(mu)], ends[(mu > 0) & np.isfinite(mu)]
+        boundless = ends[np.isinf(mu)]
+        # Steep edges are scaled, or their normal parts would fade.
+        upright = 1 / np.maximum(1.0, np.where(np.isfinite(mu), mu, 0.0))
+        along = np.where(np.isfinite(mu), mu, 0.0) * upright
+        self._end = np.concatenate([finite, rough, boundless, boundless])
+        ones = np.ones(len(boundless))
+        self._normal = np.concatenate([upright[finite], upright[rough], ones, 0 * ones])
+        self._tangent = np.concatenate([along[finite], -along[rough], 0 * ones, ones])
+        self.count = len(self._end)
+        free = self.count - len(boundless)
+        self.bounded = np.where(np.arange(self.count) < free, 1.0, 0.0)
+        self._joint = self._end // 2
+        direction = (
+            self._normal[:, None] * joints.normal[self._joint]
+            + self._tangent[:, None] * joints.tangent[self._joint]
+        )
+        self._direction = direction
+        middle = joints.ends.mean(axis=1, keepdims=True)
+        ends_used = joints.ends if width == 1 else middle + width * (joints.ends - middle)
+        self._point = point = ends_used.reshape(-1, 2)[self._end]
+        # Where each part meets a support: which, and in which sense it acts on it.
+        which = [-1 if each.support is None else each.support for each in assembly.joints]
+        self._support = np.array(which, dtype=np.int64)[self._joint]
+        on_after = (joints.after == SUPPORT)[self._joint]
+        on_before = (joints.before == SUPPORT)[self._joint]
+        self._sense = on_after.astype(np.float64) - on_before
+        # The support comes last, as index -1 says, and is left out in the end.
+        centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+        rows: list[NDArray[np.int64]] = []
+        values: list[Array] = []
+        for sign, block in ((1.0, joints.after), (-1.0, joints.before)):
+            mine = block[self._joint]
+            arm = point - centres[mine]
+            turn = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
+            part = sign * np.column_stack([direction, turn])
+            part *= np.vstack([self.ease, np.zeros(PLANAR)])[mine]
+            rows.append(PLANAR * np.maximum(mine, 0)[:, None] + np.arange(PLANAR))
+            values.append(part)
+        columns = np.repeat(np.arange(self.count), PLANAR)
+        self.balance = csc_array(
+            (
+                np.concatenate([each.ravel() for each in values]),
+                (
+                    np.concatenate([each.ravel() for each in rows]),
+                    np.concatenate([columns, columns]),
+                ),
+            ),
+            shape=(PLANAR * self.shape[0], self.count),
+        )
+
+    @cached_property
+    def bounds(self) -> list[tuple[float | None, float | None]]:
+        """Parts press; what is tangential only may have any sign."""
+        return [(0.0, None) if each else (None, None) for each in self.bounded]
+
+    def loads(self, pull: Array) -> Array:
+        """Return loads on the blocks as the balance has them, in one row."""
+        return (pull * self.ease).ravel()
+
+    def at_supports(self, velocities: Array) -> Array:
+        """Return at which rate each part works on supports that move, (parts,)."""
+        still = np.vstack([velocities, np.zeros(PLANAR)])[self._support]
+        x, y = self._point.T
+        way = np.column_stack([still[:, 0] - still[:, 2] * y, still[:, 1] + still[:, 2] * x])
+        return self._sense * (way * self._direction).sum(axis=1)
+
+    def rates(self, found: Any) -> Array:
+        """Return the rates of the blocks that an answer has as its dual, (blocks, 3)."""
+        return -np.asarray(found.eqlin.marginals).reshape(self.shape) * self.ease
+
+    def polished(self, parts: Array, pull: Array) -> Array:
+        """Take away the imbalance the solver leaves, by the least change of what presses."""
+        left = -self.loads(pull) - self.balance @ parts
+        held = np.flatnonzero((parts > 1.0) | (self.bounded == 0))
+        if np.abs(left).max() < ROUND_OFF or not len(held):
+            return parts
+        solve: Any = lsmr
+        change = solve(self.balance[:, held], left, atol=1e-14, btol=1e-14)[0]
+        better = parts.copy()
+        better[held] += change
+        worst = np.abs(-self.loads(pull) - self.balance @ better).max()
+        return better if worst < np.abs(left).max() else parts
+
+    def work(self, ways: Array) -> Array:
+        """Return what each part does along given ways of the ends, (joints, 2, 2)."""
+        normal, tangent = ways.reshape(-1, 2)[self._end].T
+        return self._normal * normal + self._tangent * tangent
+
+    def forces(self, parts: Array) -> Array:
+        """Sum parts to forces at the ends of joints, shape (joints, 2, 2)."""
+        found = np.zeros((2 * self._joints, 2))
+        np.add.at(
+            found, self._end, np.column_stack([self._normal, self._tangent]) * parts[:, None]
+        )
+        return found.reshape(-1, 2, 2)

@@ -1,0 +1,231 @@
+"""How far blocks are from falling: what their joints need, and the range of their thrust.
+
+An arch or a wall has many states of equilibrium. Its *line of thrust* joins the points at
+which joints press. Two of the states have the least and the greatest thrust (Heyman 1966).
+A third asks least of the joints: it leaves the same share of every joint's width, and of its
+friction, unused. That is the geometrically safest line of thrust.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.limit.cones import Cones
+from blocksim.limit.programme import UNBOUNDED, extreme, most_common
+
+HOPELESS = 1e3
+"""Share of width or friction beyond which blocks count as never standing."""
+NOTHING = 1e-10
+"""Lack of force that is none [mean weights]."""
+NEAR = 1e-7
+"""How far below the least share blocks are seen to fall, as a share of it."""
+STEP = 1e-6
+"""Change of the share by which the balance of forces is differentiated."""
+ROUNDS = 60
+"""Shares that are tried at most."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Margins:
+    """The least that joints need, each as a share of what they have.
+
+    A share is above 1 where the blocks fall, 0 where nothing is needed, and None where no
+    share suffices.
+
+    Parameters
+    ----------
+    width : float or None
+        Of the width of every joint, about its middle; loads and friction stay. Its inverse is
+        Heyman's geometrical factor of safety: how much thinner an arch along the same
+        centreline would just contain a line of thrust (Heyman 1969).
+    friction : float or None
+        Of the friction of every joint; where that is unbounded, the coefficient itself.
+    strength : float or None
+        Of width and friction, both at once.
+    forces : (joints, 2, 2) float or None
+        The state of equilibrium that needs no more strength than that, as of `Equilibrium`:
+        the geometrically safest line of thrust.
+    """
+
+    width: float | None
+    friction: float | None
+    strength: float | None
+    forces: Array | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Thrust:
+    """A state of equilibrium in which a joint has its least or its greatest thrust.
+
+    Parameters
+    ----------
+    thrust : float
+        Horizontal part of the force through the joint, above 0 where it presses
+        [mean weights]; inf where nothing limits it.
+    forces : (joints, 2, 2) float or None
+        As of `Equilibrium`; None where nothing limits the thrust.
+    """
+
+    thrust: float
+    forces: Array | None
+
+
+def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
+    """Find the least and the greatest thrust of a joint, two linear programmes.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+    joint : int
+
+    Returns
+    -------
+    least, greatest : Thrust
+        None where there is no equilibrium.
+    """
+    cones = Cones(problem)
+    across = np.zeros((len(problem.assembly.joints), 2, 2))
+    arrays = problem.assembly.joint_arrays
+    # On the block after it; a joint whose normal points to the left is pressed to the left.
+    sense = math.copysign(1.0, arrays.normal[joint, 0])
+    across[joint, :, 0] = sense * arrays.normal[joint, 0]
+    across[joint, :, 1] = sense * arrays.tangent[joint, 0]
+    cost = cones.work(across)
+    ends: list[Thrust] = []
+    for sign in (1.0, -1.0):
+        found = extreme(cones, sign * cost, problem.pull())
+        if found.status == UNBOUNDED:
+            ends.append(Thrust(thrust=-sign * math.inf, forces=None))
+        elif found.x is None or not found.success:
+            return None
+        else:
+            forces = cones.forces(found.x)
+            ends.append(Thrust(thrust=float((across * forces).sum()), forces=forces))
+    return ends[0], ends[1]
+
+
+def crown(problem: Problem) -> int | None:
+    """Return the joint at which thrust is told: the highest of those that stand most upright.
+
+    None where all joints are nearer to level than to upright.
+    """
+    joints = problem.assembly.joint_arrays
+    upright = np.abs(joints.normal[:, 0])
+    if upright.max(initial=0.0) < math.sqrt(0.5):
+        return None
+    best = np.flatnonzero(upright >= upright.max() * (1 - NOTHING))
+    heights = joints.ends[best, :, 1].mean(axis=1)
+    return int(best[np.argmax(heights)])
+
+
+def margins(problem: Problem) -> Margins:
+    """Find the least that joints need of their width, of their friction, and of both.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+
+    Returns
+    -------
+    Margins
+    """
+    width = _least_share(_Search(problem, friction=False), 0.0)
+    friction = _least_share(_Search(problem, width=False), 0.0)
+    both = _Search(problem)
+    # Whoever needs less of both needs less of each.
+    known = np.isfinite(problem.friction).all() and friction is not None
+    start = max(width or 0.0, (friction or 0.0) if known else 0.0)
+    strength = _least_share(both, start)
+    return Margins(
+        width=width,
+        friction=friction,
+        strength=strength,
+        forces=None if strength is None else both.forces(strength),
+    )
+
+
+def _least_share(search: _Search, low: float) -> float | None:
+    """Find the least share that suffices, where none below `low` does."""
+    if search.margin(low)[0] >= -NOTHING:
+        return low
+    high = max(1.0, 2 * low)
+    while search.margin(high)[0] < -NOTHING:
+        low, high = high, 2 * high
+        if high > HOPELESS:
+            return None
+    return search.boundary(low, high)
+
+
+class _Search:
+    """The least part that contacts can have in common, as their strength is scaled."""
+
+    def __init__(self, problem: Problem, *, width: bool = True, friction: bool = True) -> None:
+        self._problem, self._width, self._friction = problem, width, friction
+        unbounded = np.isinf(problem.friction) if not width else np.zeros(1, dtype=bool)
+        self._unit = np.where(unbounded, 1.0, problem.friction)
+
+    def _cones(self, share: float) -> Cones:
+        mu = self._unit
+        if self._friction:
+            # Unbounded friction stays so, however little of it is left.
+            mu = np.where(np.isinf(mu), mu, share * np.where(np.isinf(mu), 0.0, mu))
+        return Cones(self._problem, friction=mu, width=share if self._width else 1.0)
+
+    def margin(self, share: float) -> tuple[float, float]:
+        """Return the margin of `Equilibrium` at a share, and its derivative."""
+        cones = self._cones(share)
+        found = most_common(cones, self._problem.pull())
+        if found is None:
+            return -math.inf, math.nan
+        margin = float(found.x[-1])
+        if not share:
+            return margin, math.nan
+        # By the envelope theorem only the balance of forces changes.
+        parts = found.x[:-1] + margin * cones.bounded
+        turned = self._cones(share * (1 + STEP)).balance - cones.balance
+        slope = float(np.asarray(found.eqlin.marginals) @ (turned @ parts)) / (share * STEP)
+        return margin, slope
+
+    def boundary(self, low: float, high: float) -> float:
+        """Find the least share at which the margin is not below 0.
+
+        Newton's method, kept between a share that falls and one that stands. Where contacts
+        cannot press at all the margin stays 0 from there on: so it is looked at from below.
+        """
+        guess, last = (low + high) / 2, math.inf
+        for _ in range(ROUNDS):
+            margin, slope = self.margin(guess)
+            if margin < -NOTHING:
+                low = guess
+            else:
+                high = guess
+            step = -margin / slope if slope > 0 and math.isfinite(margin) else math.nan
+            if abs(step) <= NOTHING * guess and self.margin(guess * (1 - NEAR))[0] < -NOTHING:
+                return guess + step
+            following = guess + step
+            if not low < following < high or abs(step) > last / 2:
+                following, step = (low + high) / 2, (high - low) / 2
+            if high - low <= NOTHING * high:
+                return high
+            guess, last = following, abs(step)
+        return high
+
+    def forces(self, share: float) -> Array | None:
+        """Return forces of equilibrium at a share that barely suffices."""
+        cones = self._cones(share)
+        found = most_common(cones, self._problem.pull())
+        if found is None:
+            return None
+        margin = min(0.0, float(found.x[-1]))
+        inside = cones.forces(found.x[:-1] + margin * cones.bounded)
+        if not self._width:
+            return inside
+        # The same resultants, as forces at the true ends of the joints.
+        return (1 + share) / 2 * inside + (1 - share) / 2 * inside[:, ::-1]

@@ -1,0 +1,124 @@
+"""What joints carry and what supports bear, from the forces at the ends of joints."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.problem import Problem
+
+FORCELESS = 1e-9
+"""Pressure below which a joint carries nothing [mean weights]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Resultants:
+    """What each joint carries, as it acts on the block after it.
+
+    Parameters
+    ----------
+    normal, friction : (joints,) float
+        Along normal and tangent [N].
+    force : (joints, 2) float
+        x and y [N].
+    point : (joints, 2) float
+        Where the resultant crosses the joint [m]; nan where it carries nothing.
+    width_used : (joints,) float
+        Distance of that point from the middle of the joint, over half its width; 0 where
+        it carries nothing, and for corners, which have no width.
+    friction_used : (joints,) float
+        Friction over the most there can be; 0 where it carries nothing.
+    """
+
+    normal: Array
+    friction: Array
+    force: Array
+    point: Array
+    width_used: Array
+    friction_used: Array
+
+    @property
+    def used(self) -> Array:
+        """The larger of the shares of width and friction that each joint uses, (joints,)."""
+        return np.maximum(self.width_used, self.friction_used)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reaction:
+    """What a support bears.
+
+    Parameters
+    ----------
+    name : str
+        Of the support.
+    force : (2,) float
+        x and y, as it acts on the blocks [N].
+    point : (2,) float
+        Where its line of action is nearest to the middle of what it bears [m].
+    """
+
+    name: str
+    force: Array
+    point: Array
+
+
+def resultants(problem: Problem, forces: Array) -> Resultants:
+    """Sum forces at the ends of joints, (joints, 2, 2) in mean weights, to resultants."""
+    joints = problem.assembly.joint_arrays
+    normal, friction = np.asarray(forces).sum(axis=1).T
+    loaded = np.abs(normal) > FORCELESS
+    safe = np.where(loaded, normal, 1.0)
+    share = forces[:, 1, 0] / safe
+    ends = joints.ends * problem.assembly.size
+    point = ends[:, 0] + share[:, None] * (ends[:, 1] - ends[:, 0])
+    most = problem.friction * np.abs(safe)
+    rubs = np.abs(friction) > FORCELESS
+    friction_used = np.divide(
+        np.abs(friction), most, out=np.zeros(len(most)), where=loaded & rubs & (most > 0)
+    )
+    force = normal[:, None] * joints.normal + friction[:, None] * joints.tangent
+    unit = problem.unit_force
+    return Resultants(
+        normal=normal * unit,
+        friction=friction * unit,
+        force=force * unit,
+        point=np.where(loaded[:, None], point, math.nan),
+        width_used=np.where(loaded & ~joints.is_corner, np.abs(2 * share - 1), 0.0),
+        friction_used=friction_used,
+    )
+
+
+def reactions(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
+    """Sum what each support bears; a joint on an unnamed support is one of its own."""
+    assembly, carried = problem.assembly, resultants(problem, forces)
+    bearing: dict[object, list[int]] = {}
+    names: dict[object, str] = {}
+    for index, joint in enumerate(assembly.joints):
+        if SUPPORT in (joint.before, joint.after):
+            key = ("joint", index) if joint.support is None else joint.support
+            bearing.setdefault(key, []).append(index)
+            named = "" if joint.support is None else assembly.supports[joint.support].name
+            names[key] = (
+                named or f"support {len(names) + 1}" if key not in names else names[key]
+            )
+    return tuple(_reaction(problem, carried, at, names[key]) for key, at in bearing.items())
+
+
+def _reaction(problem: Problem, carried: Resultants, at: list[int], name: str) -> Reaction:
+    joints = problem.assembly.joint_arrays
+    outward = np.where(joints.before[at] == SUPPORT, 1.0, -1.0)[:, None]
+    force = (outward * carried.force[at]).sum(axis=0)
+    ends = joints.ends[at] * problem.assembly.size
+    middle = ends.mean(axis=(0, 1))
+    arm = np.where(np.isnan(carried.point[at]), middle, carried.point[at]) - middle
+    each = outward * carried.force[at]
+    moment = float((arm[:, 0] * each[:, 1] - arm[:, 1] * each[:, 0]).sum())
+    square = float(force @ force)
+    # The foot of the perpendicular from the middle onto the line of action.
+    offset = np.zeros(2)
+    if square > (FORCELESS * problem.unit_force) ** 2:
+        offset = moment / square * np.array([force[1], -force[0]])
+    return Reaction(name=name, force=force, point=middle + offset)

@@ -1,0 +1,191 @@
+"""What joints need and the range of thrust, held to closed forms and to balance."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from structure_cases import scenes
+
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit.statics import least_thickness
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.structure import structure_of
+from blocksim.kinds.files import structure_of as kind_of
+from blocksim.limit import margins, reactions, resultants, thrust_range
+from blocksim.limit.margins import crown
+
+FLOOR = {"id": "floor", "vertices": [[-99, -1], [99, -1], [99, 0], [-99, 0]], "fixed": True}
+SQUEEZED = [
+    FLOOR,
+    {"id": "left", "vertices": [[-1, 0], [0, 0], [0, 2], [-1, 2]], "fixed": True},
+    {"id": "block", "vertices": [[0, 0], [1, 0], [1, 1], [0, 1]], "weight": 3.0},
+    {"id": "right", "vertices": [[1, 0], [2, 0], [2, 2], [1, 2]], "fixed": True},
+]
+
+
+def slope(width: float, height: float, tilt: float, mu: float | str) -> Problem:
+    """A block on a slope that goes down to the right."""
+    block = {"id": "1", "vertices": [[0, 0], [width, 0], [width, height], [0, height]]}
+    problem = structure_of({"friction": mu, "blocks": [FLOOR, block]})
+    return problem.tilted(math.radians(tilt))
+
+
+def thrusts(problem: Problem, joint: int) -> tuple[float, float]:
+    """Least and greatest thrust [N]."""
+    found = thrust_range(problem, joint)
+    assert found is not None
+    return found[0].thrust * problem.unit_force, found[1].thrust * problem.unit_force
+
+
+@settings(max_examples=25)
+@given(st.floats(0.5, 40.0), st.floats(0.2, 5.0), st.floats(0.2, 5.0), st.floats(0.1, 2.0))
+def test_a_block_on_a_slope_needs_what_its_weight_asks_for(
+    tilt: float, width: float, height: float, mu: float
+) -> None:
+    """Friction tan(tilt); the weight meets the base height/2 tan(tilt) from its middle."""
+    found = margins(slope(width, height, tilt, mu))
+    slip, tip = math.tan(math.radians(tilt)) / mu, math.tan(math.radians(tilt)) * height / width
+    assert found.friction == pytest.approx(slip, rel=1e-8) if tip < 1 else True
+    assert found.width == pytest.approx(tip, rel=1e-8) if slip < 1 else True
+    assert found.strength == pytest.approx(max(slip, tip), rel=1e-8)
+
+
+def test_what_falls_needs_more_than_it_has() -> None:
+    """A block that slides at 30 deg with mu = 0.5 needs tan 30 / 0.5; no friction holds one
+    that tips, and no width one that slides."""
+    sliding = margins(slope(4.0, 1.0, 30.0, 0.5))
+    assert sliding.friction == pytest.approx(math.tan(math.pi / 6) / 0.5, rel=1e-8)
+    assert sliding.width is None
+    tipping = margins(slope(1.0, 4.0, 30.0, 2.0))
+    assert tipping.friction is None
+    assert tipping.width == pytest.approx(4 * math.tan(math.pi / 6), rel=1e-8)
+
+
+def test_unbounded_friction_is_told_as_the_coefficient_it_takes() -> None:
+    assert margins(slope(4.0, 1.0, 20.0, "inf")).friction == pytest.approx(
+        math.tan(math.radians(20)), rel=1e-8
+    )
+
+
+def test_level_blocks_need_neither_friction_nor_width() -> None:
+    found = margins(kind_of({"kind": "stack", "friction": 0.5}))
+    assert found.friction == 0.0
+    plumb = margins(slope(1.0, 1.0, 0.0, 0.5))
+    assert (plumb.width, plumb.friction, plumb.strength) == (0.0, 0.0, 0.0)
+
+
+@settings(max_examples=10)
+@given(
+    st.floats(25.0, 150.0),
+    st.floats(1.01, 1.8),
+    st.floats(0.4, 2.0),
+    st.integers(4, 31),
+    st.sampled_from(["centreline", "sector"]),
+)
+def test_arches_agree_with_their_own_statics(
+    alpha: float, spare: float, mu: float, voussoirs: int, weight: Any
+) -> None:
+    """Thickness over the least where weight does not change with it, and the same thrusts."""
+    half = math.radians(alpha)
+    least = least_thickness(half, mu, voussoirs, "centreline").eta
+    assume(least and spare * least < 2)
+    assert least is not None
+    arch = Arch(half_angle=half, eta=spare * least, voussoirs=voussoirs, weight=weight)
+    problem = arch.problem(mu)
+    found = margins(problem)
+    if weight == "centreline":
+        assert found.width == pytest.approx(1 / spare, rel=1e-9)
+    joint = crown(problem)
+    assert joint in {voussoirs // 2, (voussoirs + 1) // 2}
+    low, high = thrusts(problem, joint)
+    assert low <= high
+    # Vertical loads leave every joint the same thrust; springings past the horizontal face
+    # the other way.
+    other = sorted(abs(each) for each in thrusts(problem, 0))
+    assert other == pytest.approx([low, high], rel=1e-8)
+
+
+def test_a_two_hinged_wedge_by_hand() -> None:
+    """Two voussoirs: half the weight W/2 acts at a; the thrust line passes crown and springing
+    within their joints, so H = (W/2)(x - a)/(rise) between its two extremes."""
+    arch = Arch(half_angle=math.pi / 2, eta=0.4, voussoirs=4, weight="sector", radius=2.0)
+    problem = arch.problem(math.inf)
+    quarter = arch.voussoir_weight
+    found = thrust_range(problem, 2)
+    assert found is not None
+    for each in found:
+        carried = resultants(problem, each.forces)
+        # Moments of the right half about where its springing presses.
+        base, top = carried.point[4], carried.point[2]
+        thrust = abs(carried.force[2, 0])
+        turning = thrust * (top[1] - base[1])
+        centres = problem.assembly.centres[2:, 0]
+        assert turning == pytest.approx(quarter * (base[0] - centres).sum(), rel=1e-9)
+        assert thrust == pytest.approx(abs(each.thrust) * problem.unit_force, rel=1e-12)
+        assert np.isclose(carried.width_used, 1.0, atol=1e-8).sum() >= 3
+
+
+def test_a_squeezed_block_has_no_greatest_thrust() -> None:
+    """Two walls may press as hard as they like, and need not press at all."""
+    problem = structure_of({"friction": 0.5, "blocks": SQUEEZED})
+    side = next(k for k, each in enumerate(problem.assembly.joints) if each.support == 1)
+    low, high = thrusts(problem, side)
+    assert low == pytest.approx(0.0, abs=1e-9)
+    assert high == math.inf
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        {"kind": "pointed-arch", "thickness": 0.3, "density": 20e3},
+        {"kind": "portal", "pier_width": 1.5, "density": 20e3},
+        {"kind": "wall", "density": 18e3},
+        {"kind": "flat-arch", "thickness": 0.6},
+    ],
+    ids=lambda table: table["kind"],
+)
+def test_supports_bear_the_weight_and_its_moment(table: dict[str, Any]) -> None:
+    """In every state that is told: forces and moments of supports balance the loads."""
+    problem = kind_of({"friction": 0.8, **table})
+    found = margins(problem)
+    states = [found.forces]
+    joint = crown(problem)
+    if joint is not None:
+        ends = thrust_range(problem, joint)
+        assert ends is not None
+        states += [each.forces for each in ends if each.forces is not None]
+    weight = problem.pull() * problem.unit_force
+    centres = problem.assembly.centres
+    moment = (weight[:, 2] * problem.assembly.size).sum()
+    moment += (centres[:, 0] * weight[:, 1] - centres[:, 1] * weight[:, 0]).sum()
+    for forces in states:
+        assert forces is not None
+        borne = reactions(problem, forces)
+        total = sum((each.force for each in borne), np.zeros(2))
+        assert total == pytest.approx(-weight[:, :2].sum(axis=0), rel=1e-9, abs=1e-6)
+        turned = sum(
+            each.point[0] * each.force[1] - each.point[1] * each.force[0] for each in borne
+        )
+        assert turned == pytest.approx(-moment, rel=1e-8, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["box2d_arch", "overhang_three_blocks", "rampant_75_20", "diamond_4", "compas_cra_shelf"],
+)
+def test_no_joint_uses_more_than_is_said(name: str) -> None:
+    """The safest state uses at most the share of strength, and some joint all of that."""
+    for scene in scenes(name):
+        problem = structure_of(scene)
+        found = margins(problem)
+        assert found.strength is not None
+        if found.strength == 0:
+            continue
+        assert found.forces is not None
+        used = resultants(problem, found.forces).used
+        assert used.max() == pytest.approx(found.strength, rel=1e-6)
