@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import cached_property
 
 from blocksim.arch import limit, theory
+from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.mechanism import Mechanism, mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
+from blocksim.ask.carried import Carried
 from blocksim.ask.check import Check
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
@@ -19,6 +22,9 @@ from blocksim.common.progress import Progress, silent
 from blocksim.evidence.observation import observe
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
+
+TIMES = 0.5
+"""Share above the least thickness from which on it is told how many times that it is."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,6 +60,11 @@ class ArchCheck(Check):
     mode_in_motion: Mode | None
     mode_limit: Mode | None
     mode_theory: Mode
+
+    @cached_property
+    def carried(self) -> Carried | None:
+        """What the arch carries; None where gravity leans."""
+        return None if self.lean else carried_by_arch(self.arch, self.mu)
 
 
 def check(
@@ -153,6 +164,8 @@ def _compare(eta: float, least: float | None, whose: str) -> tuple[Verdict, str]
     share = eta / least - 1
     verdict = Verdict.STANDS if share >= 0 else Verdict.COLLAPSES
     side = "above" if share >= 0 else "below"
+    if share > TIMES:
+        return verdict, f"eta is {1 + share:.5g} times the least thickness {whose}, {least:.6g}"
     return verdict, f"eta is {abs(share):.2%} {side} the least thickness {whose}, {least:.6g}"
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from blocksim.ask.carried import Carried, carried_by
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
@@ -20,6 +22,10 @@ from blocksim.evidence.shaken import Shaken, shake
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import Equilibrium, collapse, equilibrium
+
+
+SOUGHT = 500
+"""Joints up to which what a structure carries is found within seconds."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,6 +96,16 @@ class ProblemCheck(Check):
     forces: Array | None
     mechanism: Array | None
     shaken: Shaken | None = None
+
+    @cached_property
+    def carried(self) -> Carried | None:
+        """What it carries; None where gravity leans, the ground shakes, or it is too large.
+
+        `blocksim.ask.carried.carried_by` has no such bound.
+        """
+        still = self.problem.is_planar and self.shaken is None
+        small = len(self.problem.assembly.joints) <= SOUGHT
+        return carried_by(self.problem) if still and small else None
 
 
 def check(

@@ -140,7 +140,7 @@ class Around:
     friction: Friction
     title: Annotated[str, Field(max_length=200, strict=True)] = ""
     source: Annotated[str, Field(max_length=500, strict=True)] = ""
-    density: Positive = 1.0
+    density: Positive | None = None
     dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
     live: Annotated[tuple[LoadEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
@@ -150,7 +150,14 @@ class Around:
     expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     quick: Annotated[bool, Field(strict=True)] = False
 
+    @property
+    def unit_weight(self) -> float:
+        """Weight of a unit of volume [N/m^3]."""
+        return UNIT_WEIGHT if self.density is None else self.density
 
+
+UNIT_WEIGHT = 1.0
+"""Where none is given, so that only ratios of forces have a meaning [N/m^3]."""
 AROUND = tuple(field.name for field in fields(Around))
 """Keys of a structure file that are not of its blocks."""
 

@@ -98,6 +98,9 @@ class Problem:
     origin : mapping
         The parameters it was made from, and by which `kind` of generator; empty where its
         blocks were given.
+    weighed : bool
+        Whether its weights are real ones: a unit weight or the blocks' own were given. Where
+        they are not only ratios of forces have a meaning.
     notes : tuple of str
         What was mended or taken when it was read, for answers to state.
 
@@ -118,6 +121,7 @@ class Problem:
     title: str = ""
     source: str = ""
     origin: Mapping[str, object] = field(default_factory=dict[str, object])
+    weighed: bool = True
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

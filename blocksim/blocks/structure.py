@@ -43,7 +43,7 @@ def structure_of(data: object) -> Problem:
     bodies = _bodies(written)
     joints = _joints(written, bodies)
     found = assembly_of_bodies(
-        bodies, joints=joints, density=written.density, size=written.size
+        bodies, joints=joints, density=written.unit_weight, size=written.size
     )
     return problem_of(written, bodies, *found)
 
@@ -175,8 +175,13 @@ def problem_of(
         shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
         title=written.title,
         source=written.source,
+        weighed=written.density is not None or all(map(_has_weight, bodies)),
         notes=(*notes, *found),
     )
+
+
+def _has_weight(body: Body) -> bool:
+    return body.fixed or body.weight is not None
 
 
 def _friction(value: float | str | None) -> float | None:

@@ -157,9 +157,9 @@ def problem_of(kind: Kind, around: Around) -> Problem:
     Problem
         Dead loads begin with the weight of fill; its origin is the kind's table.
     """
-    made = kind.made(around.density)
+    made = kind.made(around.unit_weight)
     if made.joints is None:
-        found = assembly_of_bodies(made.bodies, density=around.density, size=around.size)
+        found = assembly_of_bodies(made.bodies, density=around.unit_weight, size=around.size)
     else:
         found = assembly_as_made(made.bodies, made.joints, around.size), ()
     problem = structure.problem_of(around, made.bodies, *found)
@@ -176,7 +176,9 @@ def problem_of(kind: Kind, around: Around) -> Problem:
         problem,
         dead=(*fills, *problem.dead),
         title=problem.title or kind.name,
-        origin={**kind.table(), "density": around.density},
+        origin={**kind.table(), "density": around.unit_weight},
+        # Kinds weigh their blocks, whatever the unit weight.
+        weighed=around.density is not None,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import Any
 
@@ -96,9 +97,10 @@ class Cones:
         )
 
     @cached_property
-    def bounds(self) -> list[tuple[float | None, float | None]]:
-        """Parts press; what is tangential only may have any sign."""
-        return [(0.0, None) if each else (None, None) for each in self.bounded]
+    def bounds(self) -> tuple[Array, Array]:
+        """Least and greatest parts: they press; what is tangential only may have any sign."""
+        low = np.where(self.bounded > 0, 0.0, -math.inf)
+        return low, np.full(self.count, math.inf)
 
     def loads(self, pull: Array) -> Array:
         """Return loads on the blocks as the balance has them, in one row."""
@@ -111,9 +113,9 @@ class Cones:
         way = np.column_stack([still[:, 0] - still[:, 2] * y, still[:, 1] + still[:, 2] * x])
         return self._sense * (way * self._direction).sum(axis=1)
 
-    def rates(self, found: Any) -> Array:
-        """Return the rates of the blocks that an answer has as its dual, (blocks, 3)."""
-        return -np.asarray(found.eqlin.marginals).reshape(self.shape) * self.ease
+    def rates(self, prices: Array) -> Array:
+        """Return the rates of the blocks that the prices of the balance are, (blocks, 3)."""
+        return -prices.reshape(self.shape) * self.ease
 
     def polished(self, parts: Array, pull: Array) -> Array:
         """Take away the imbalance the solver leaves, by the least change of what presses."""

@@ -16,7 +16,8 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit.cones import Cones
-from blocksim.limit.programme import UNBOUNDED, extreme, most_common
+from blocksim.limit.linear import LinearProgramme
+from blocksim.limit.programme import extreme, most_common
 
 HOPELESS = 1e3
 """Share of width or friction beyond which blocks count as never standing."""
@@ -97,15 +98,15 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     across[joint, :, 0] = sense * arrays.normal[joint, 0]
     across[joint, :, 1] = sense * arrays.tangent[joint, 0]
     cost = cones.work(across)
-    ends: list[Thrust] = []
+    solver, ends = LinearProgramme(), list[Thrust]()
     for sign in (1.0, -1.0):
-        found = extreme(cones, sign * cost, problem.pull())
-        if found.status == UNBOUNDED:
+        found = extreme(cones, sign * cost, problem.pull(), solver)
+        if found.unbounded:
             ends.append(Thrust(thrust=-sign * math.inf, forces=None))
-        elif found.x is None or not found.success:
+        elif not found.exists:
             return None
         else:
-            forces = cones.forces(found.x)
+            forces = cones.forces(found.values)
             ends.append(Thrust(thrust=float((across * forces).sum()), forces=forces))
     return ends[0], ends[1]
 
@@ -136,13 +137,16 @@ def margins(problem: Problem) -> Margins:
     -------
     Margins
     """
-    width = _least_share(_Search(problem, friction=False), 0.0)
-    friction = _least_share(_Search(problem, width=False), 0.0)
-    both = _Search(problem)
+    solver = LinearProgramme()
+    width = _least_share(_Search(problem, solver, friction=False), 0.0)
+    stands = width is not None and width <= 1
+    rough = _Search(problem, solver, width=False)
+    friction = _least_share(rough, 0.0, stands=stands and rough.bounded)
+    both = _Search(problem, solver)
     # Whoever needs less of both needs less of each.
     known = np.isfinite(problem.friction).all() and friction is not None
     start = max(width or 0.0, (friction or 0.0) if known else 0.0)
-    strength = _least_share(both, start)
+    strength = _least_share(both, start, stands=stands)
     return Margins(
         width=width,
         friction=friction,
@@ -151,24 +155,38 @@ def margins(problem: Problem) -> Margins:
     )
 
 
-def _least_share(search: _Search, low: float) -> float | None:
-    """Find the least share that suffices, where none below `low` does."""
-    if search.margin(low)[0] >= -NOTHING:
+def _least_share(search: _Search, low: float, *, stands: bool = False) -> float | None:
+    """Find the least share that suffices, where none below `low` does.
+
+    Where the blocks are known to stand it is at most 1.
+    """
+    margin, slope = search.margin(low)
+    if margin >= -NOTHING:
         return low
     high = max(1.0, 2 * low)
-    while search.margin(high)[0] < -NOTHING:
+    while not stands and search.margin(high)[0] < -NOTHING:
         low, high = high, 2 * high
         if high > HOPELESS:
             return None
-    return search.boundary(low, high)
+    guess = low - margin / slope if slope > 0 else math.nan
+    return search.boundary(low, high, guess if low < guess < high else (low + high) / 2)
 
 
 class _Search:
     """The least part that contacts can have in common, as their strength is scaled."""
 
-    def __init__(self, problem: Problem, *, width: bool = True, friction: bool = True) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        solver: LinearProgramme,
+        *,
+        width: bool = True,
+        friction: bool = True,
+    ) -> None:
         self._problem, self._width, self._friction = problem, width, friction
+        self._pull, self._solver = problem.pull(), solver
         unbounded = np.isinf(problem.friction) if not width else np.zeros(1, dtype=bool)
+        self.bounded = not unbounded.any()
         self._unit = np.where(unbounded, 1.0, problem.friction)
 
     def _cones(self, share: float) -> Cones:
@@ -181,25 +199,26 @@ class _Search:
     def margin(self, share: float) -> tuple[float, float]:
         """Return the margin of `Equilibrium` at a share, and its derivative."""
         cones = self._cones(share)
-        found = most_common(cones, self._problem.pull())
-        if found is None:
+        found = most_common(cones, self._pull, self._solver)
+        if not found.exists:
             return -math.inf, math.nan
-        margin = float(found.x[-1])
+        margin = float(found.values[-1])
         if not share:
             return margin, math.nan
         # By the envelope theorem only the balance of forces changes.
-        parts = found.x[:-1] + margin * cones.bounded
+        parts = found.values[:-1] + margin * cones.bounded
         turned = self._cones(share * (1 + STEP)).balance - cones.balance
-        slope = float(np.asarray(found.eqlin.marginals) @ (turned @ parts)) / (share * STEP)
+        gained = np.asarray(turned @ parts)
+        slope = float(found.prices @ gained) / (share * STEP)
         return margin, slope
 
-    def boundary(self, low: float, high: float) -> float:
+    def boundary(self, low: float, high: float, guess: float) -> float:
         """Find the least share at which the margin is not below 0.
 
         Newton's method, kept between a share that falls and one that stands. Where contacts
         cannot press at all the margin stays 0 from there on: so it is looked at from below.
         """
-        guess, last = (low + high) / 2, math.inf
+        last = math.inf
         for _ in range(ROUNDS):
             margin, slope = self.margin(guess)
             if margin < -NOTHING:
@@ -220,11 +239,11 @@ class _Search:
     def forces(self, share: float) -> Array | None:
         """Return forces of equilibrium at a share that barely suffices."""
         cones = self._cones(share)
-        found = most_common(cones, self._problem.pull())
-        if found is None:
+        found = most_common(cones, self._pull, self._solver)
+        if not found.exists:
             return None
-        margin = min(0.0, float(found.x[-1]))
-        inside = cones.forces(found.x[:-1] + margin * cones.bounded)
+        margin = min(0.0, float(found.values[-1]))
+        inside = cones.forces(found.values[:-1] + margin * cones.bounded)
         if not self._width:
             return inside
         # The same resultants, as forces at the true ends of the joints.

@@ -17,21 +17,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
 from scipy.sparse import csc_array, hstack
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit.cones import ROUND_OFF, Cones
+from blocksim.limit.linear import LinearProgramme, Optimum
 
 SPARE = 1.0
 """Most that is asked for along every edge of a cone [mean weights]."""
 TENSION = 1e3
 """Most that every edge may lack [mean weights]."""
-FINEST = 1e-10
-"""HiGHS's own least tolerance."""
-MANY = 1000
-"""Edges of cones from which the interior point is faster than the simplex."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,13 +95,13 @@ def equilibrium(problem: Problem) -> Equilibrium:
     """
     cones = Cones(problem)
     found = most_common(cones, problem.pull())
-    if found is None:
+    if not found.exists:
         return Equilibrium(margin=-math.inf, forces=None, mechanism=None)
-    margin = float(found.x[-1])
+    margin = float(found.values[-1])
     if margin < -ROUND_OFF:
-        mechanism = _scaled(cones.rates(found))
+        mechanism = _scaled(cones.rates(found.prices))
         return Equilibrium(margin=margin, forces=None, mechanism=mechanism)
-    parts = cones.polished(found.x[:-1] + margin * cones.bounded, problem.pull())
+    parts = cones.polished(found.values[:-1] + margin * cones.bounded, problem.pull())
     return Equilibrium(margin=margin, forces=cones.forces(parts), mechanism=None)
 
 
@@ -127,15 +123,15 @@ def collapse(problem: Problem) -> Collapse:
     live = sum((problem.of_load(load) for load in problem.live), np.zeros(cones.shape))
     dead = problem.with_load(0.0).pull()
     column = csc_array(cones.loads(live)[:, None])
-    found = _most(cones, column, -cones.loads(dead), (None, None))
-    if found.status == UNBOUNDED:
+    found = _most(cones, column, -cones.loads(dead), (-math.inf, math.inf))
+    if found.unbounded:
         return Collapse(load_factor=math.inf, forces=None, mechanism=None)
-    if found.x is None or not found.success:
+    if not found.exists:
         return Collapse(load_factor=None, forces=None, mechanism=None)
     return Collapse(
-        load_factor=float(found.x[-1]),
-        forces=cones.forces(found.x[:-1]),
-        mechanism=_scaled(cones.rates(found)),
+        load_factor=float(found.values[-1]),
+        forces=cones.forces(found.values[:-1]),
+        mechanism=_scaled(cones.rates(found.prices)),
     )
 
 
@@ -161,7 +157,7 @@ def settling(problem: Problem, supports: Array) -> Array | None:
     """
     cones = Cones(problem)
     found = extreme(cones, cones.at_supports(supports), problem.pull())
-    return cones.rates(found) if found.x is not None and found.success else None
+    return cones.rates(found.prices) if found.exists else None
 
 
 def falling(problem: Problem) -> Array | None:
@@ -181,76 +177,47 @@ def falling(problem: Problem) -> Array | None:
     cones = Cones(problem)
     pull = cones.loads(problem.pull())
     # Rates at contacts: what presses may part, what only rubs stays.
-    parts, rows = cones.bounded > 0, cones.balance.T.tocsr()
-    solve: Any = linprog
-    found = solve(
-        -pull,
-        A_ub=-rows[parts],
-        b_ub=np.zeros(int(parts.sum())),
-        A_eq=rows[~parts] if (~parts).any() else None,
-        b_eq=np.zeros(int((~parts).sum())) if (~parts).any() else None,
-        bounds=(-1.0, 1.0),
-        method="highs",
-        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+    most = np.where(cones.bounded > 0, math.inf, 0.0)
+    ones = np.ones(pull.size)
+    found = LinearProgramme().solve(
+        -pull, csc_array(cones.balance.T), (np.zeros(most.size), most), (-ones, ones)
     )
-    if not found.success or -found.fun < ROUND_OFF:
+    if not found.exists or pull @ found.values < ROUND_OFF:
         return None
-    return np.asarray(found.x).reshape(cones.shape) * cones.ease
+    return found.values.reshape(cones.shape) * cones.ease
 
 
-def most_common(cones: Cones, pull: Array) -> Any:
+def most_common(cones: Cones, pull: Array, solver: LinearProgramme | None = None) -> Optimum:
     """Find parts of forces of equilibrium whose least is as large as it can be.
 
-    Returns
-    -------
-    OptimizeResult or None
-        What all parts have in common comes last; None where nothing balances the loads.
+    What all parts have in common comes last in the optimum's values.
     """
     common = csc_array(cones.balance @ cones.bounded[:, None])
-    found = _most(cones, common, -cones.loads(pull), (-TENSION, SPARE))
-    return None if found.x is None or not found.success else found
+    return _most(cones, common, -cones.loads(pull), (-TENSION, SPARE), solver)
 
 
-def extreme(cones: Cones, cost: Array, pull: Array) -> Any:
+def extreme(
+    cones: Cones, cost: Array, pull: Array, solver: LinearProgramme | None = None
+) -> Optimum:
     """Find parts of forces of equilibrium at the least cost, (parts,) float for each."""
-    solve: Any = linprog
-    return solve(
-        cost,
-        A_eq=cones.balance,
-        b_eq=-cones.loads(pull),
-        bounds=cones.bounds,
-        method="highs",
-        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
+    right = -cones.loads(pull)
+    return (solver or LinearProgramme()).solve(
+        cost, cones.balance, (right, right), cones.bounds
     )
 
 
-def _most(cones: Cones, column: Any, right: Array, bounds: tuple[float | None, ...]) -> Any:
+def _most(
+    cones: Cones,
+    column: Any,
+    right: Array,
+    bounds: tuple[float, float],
+    solver: LinearProgramme | None = None,
+) -> Optimum:
     """Make the factor on a column as large as the balance of forces allows."""
-    # Of many joints the interior point is three to ten times faster, and as exact: its
-    # answer is brought to a vertex. It does not tell whether nothing limits the factor.
-    if cones.count > MANY:
-        found = _solve("highs-ipm", cones, column, right, bounds)
-        if found.success:
-            return found
-    return _solve("highs", cones, column, right, bounds)
-
-
-def _solve(
-    method: str, cones: Cones, column: Any, right: Array, bounds: tuple[float | None, ...]
-) -> Any:
-    solve: Any = linprog
-    return solve(
-        np.append(np.zeros(cones.count), -1.0),
-        A_eq=hstack([cones.balance, column]),
-        b_eq=right,
-        bounds=[*cones.bounds, bounds],
-        method=method,
-        options={"primal_feasibility_tolerance": FINEST, "dual_feasibility_tolerance": FINEST},
-    )
-
-
-UNBOUNDED = 3
-"""Status by which `linprog` says that nothing limits the factor."""
+    low, high = (np.append(each, end) for each, end in zip(cones.bounds, bounds, strict=True))
+    cost = np.append(np.zeros(cones.count), -1.0)
+    matrix = hstack([cones.balance, column], format="csc")
+    return (solver or LinearProgramme()).solve(cost, matrix, (right, right), (low, high))
 
 
 def _scaled(rates: Array) -> Array:

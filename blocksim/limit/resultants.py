@@ -12,6 +12,8 @@ from blocksim.blocks.problem import Problem
 
 FORCELESS = 1e-9
 """Pressure below which a joint carries nothing [mean weights]."""
+SIDES = ("left", "right")
+"""Names of two supports that have none."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,12 +50,12 @@ class Resultants:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reaction:
-    """What a support bears.
+    """What a support bears of one block.
 
     Parameters
     ----------
     name : str
-        Of the support.
+        Of the support, and of the block where it bears several.
     force : (2,) float
         x and y, as it acts on the blocks [N].
     point : (2,) float
@@ -92,19 +94,32 @@ def resultants(problem: Problem, forces: Array) -> Resultants:
 
 
 def reactions(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
-    """Sum what each support bears; a joint on an unnamed support is one of its own."""
+    """Sum what supports bear, for each block that lies on them."""
     assembly, carried = problem.assembly, resultants(problem, forces)
-    bearing: dict[object, list[int]] = {}
-    names: dict[object, str] = {}
+    joints = assembly.joint_arrays
+    bearing: dict[tuple[int | None, int], list[int]] = {}
     for index, joint in enumerate(assembly.joints):
         if SUPPORT in (joint.before, joint.after):
-            key = ("joint", index) if joint.support is None else joint.support
-            bearing.setdefault(key, []).append(index)
-            named = "" if joint.support is None else assembly.supports[joint.support].name
-            names[key] = (
-                named or f"support {len(names) + 1}" if key not in names else names[key]
-            )
-    return tuple(_reaction(problem, carried, at, names[key]) for key, at in bearing.items())
+            block = joint.after if joint.before == SUPPORT else joint.before
+            bearing.setdefault((joint.support, block), []).append(index)
+    order = sorted(bearing, key=lambda key: float(joints.ends[bearing[key], :, 0].mean()))
+    names = [_name_of(problem, place, order) for place in range(len(order))]
+    return tuple(
+        _reaction(problem, carried, bearing[key], name)
+        for key, name in zip(order, names, strict=True)
+    )
+
+
+def _name_of(problem: Problem, place: int, order: list[tuple[int | None, int]]) -> str:
+    """Name a support, and the block it bears where it bears several."""
+    support, block = order[place]
+    supports = problem.assembly.supports
+    name = supports[support].name if support is not None else ""
+    if not name:
+        return SIDES[place] if len(order) == len(SIDES) else f"support {place + 1}"
+    if [each for each, _ in order].count(support) == 1:
+        return name
+    return f"{name} under {problem.assembly.blocks[block].name or block}"
 
 
 def _reaction(problem: Problem, carried: Resultants, at: list[int], name: str) -> Reaction:

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from blocksim.arch.bracket import Bracket
 from blocksim.arch.check import ArchCheck
-from blocksim.arch.circular import GRAVITY
+from blocksim.arch.circular import GRAVITY, Arch
 from blocksim.arch.modes import Mode
+from blocksim.ask.carried import Carried
 from blocksim.blocks.joints import JointState
+from blocksim.common.version import __version__
 from blocksim.evidence.motion import EARLY
+from blocksim.report.carried import carried_lines, carried_record
 
 
-def check_record(answer: ArchCheck) -> dict[str, object]:
+def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str, object]:
     """Return a check as `check --json` prints it."""
-    arch = answer.arch
+    arch, carried = answer.arch, carried or answer.carried
     seconds = None
     if answer.simulated is not None:
         seconds = answer.simulated * math.sqrt(arch.radius / GRAVITY)
     return {
+        "version": __version__,
         "method": answer.method,
         "verdict": answer.verdict.value,
         "reason": answer.reason,
@@ -32,6 +37,8 @@ def check_record(answer: ArchCheck) -> dict[str, object]:
         "lean_deg": math.degrees(answer.lean),
         "eta_limit": answer.eta_limit,
         "eta_theory": answer.eta_theory,
+        "factor_of_safety": carried and carried.geometrical_factor,
+        **carried_record(carried, joint_names_of(arch)),
         "mode": answer.mode,
         "mode_in_motion": answer.mode_in_motion,
         "mode_limit": answer.mode_limit,
@@ -51,6 +58,7 @@ def check_record(answer: ArchCheck) -> dict[str, object]:
 def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
     """Return a bracket as `bracket --json` prints it, its depth in m, as the radius is."""
     return {
+        "version": __version__,
         "method": answer.method,
         "half_angle_deg": math.degrees(answer.half_angle),
         "mu": answer.mu,
@@ -81,13 +89,19 @@ def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
     }
 
 
+def joint_names_of(arch: Arch) -> list[str]:
+    """Name joints by the voussoirs on their two sides, numbered from 1 at the left."""
+    sides = ["left", *map(str, range(1, arch.voussoirs + 1)), "right"]
+    return [f"{before}-{after}" for before, after in pairwise(sides)]
+
+
 def _degrees(angle: float | None) -> float | None:
     return None if angle is None else math.degrees(angle)
 
 
-def check_lines(answer: ArchCheck) -> list[str]:
+def check_lines(answer: ArchCheck, carried: Carried | None = None) -> list[str]:
     """Return a check in words."""
-    arch = answer.arch
+    arch, carried = answer.arch, carried or answer.carried
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
@@ -95,6 +109,7 @@ def check_lines(answer: ArchCheck) -> list[str]:
         f"depth {arch.depth / arch.radius:g} r{lean_words(answer.lean)}",
         f"  because {answer.reason}",
         _exact("least  ", answer),
+        *carried_lines(carried, joint_names_of(arch)),
     ]
     if answer.method == "theory":
         of = "of the continuous arch at its least thickness"

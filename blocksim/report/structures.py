@@ -8,28 +8,33 @@ from dataclasses import asdict
 
 from blocksim.arch.circular import arch_of
 from blocksim.ask.bracket import Bracket
-from blocksim.ask.check import ProblemCheck
+from blocksim.ask.carried import Carried
+from blocksim.ask.check import SOUGHT, ProblemCheck
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import shaking_record
+from blocksim.common.version import __version__
 from blocksim.kinds.files import kind_behind
+from blocksim.report.carried import carried_lines, carried_record
 
 SHOWN = 8
 """Joints and blocks told in a line of text."""
 
 
-def check_record(answer: ProblemCheck) -> dict[str, object]:
+def check_record(answer: ProblemCheck, carried: Carried | None = None) -> dict[str, object]:
     """Return a check of a structure as `check --json` prints it.
 
-    Forces are in N, in the file's units; normal forces press where they are above 0.
+    Forces of joints are in N, as the file has them; normal forces press where they are above
+    0. They are those of the safest state of equilibrium.
     """
-    problem = answer.problem
+    problem, carried = answer.problem, carried or answer.carried
     assembly = problem.assembly
     seconds = None
     if answer.simulated is not None:
         seconds = answer.simulated * problem.seconds
     return {
+        "version": __version__,
         "method": answer.method,
         "verdict": answer.verdict.value,
         "reason": answer.reason,
@@ -43,8 +48,10 @@ def check_record(answer: ProblemCheck) -> dict[str, object]:
             "shake": None if problem.shaking is None else shaking_record(problem.shaking),
         },
         "load_factor": answer.load_factor,
+        "factor_of_safety": _factor_of_safety(answer, carried),
+        **carried_record(carried, joint_names(assembly)),
         "rest": answer.rest,
-        "joints": _joints(answer),
+        "joints": _joints(answer, carried),
         "mechanism": _mechanism(answer.mechanism, assembly),
         "shaken": _shaken(answer),
         "simulated_s": seconds,
@@ -56,6 +63,7 @@ def check_record(answer: ProblemCheck) -> dict[str, object]:
 def bracket_record(answer: Bracket) -> dict[str, object]:
     """Return a bracket of a structure as `bracket --json` prints it."""
     return {
+        "version": __version__,
         "method": answer.method,
         "over": answer.over,
         "unit": answer.unit,
@@ -72,9 +80,9 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
     }
 
 
-def check_lines(answer: ProblemCheck) -> list[str]:
+def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[str]:
     """Return a check of a structure in words."""
-    problem = answer.problem
+    problem, carried = answer.problem, carried or answer.carried
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  what    {_described(problem)}",
@@ -83,6 +91,9 @@ def check_lines(answer: ProblemCheck) -> list[str]:
     if answer.load_factor is not None:
         at = f", asked at {problem.load:g}" if problem.load else ""
         lines.append(f"  load    factor at collapse {_number(answer.load_factor)}{at}")
+    lines += carried_lines(carried, joint_names(problem.assembly))
+    if carried is None and len(problem.assembly.joints) > SOUGHT:
+        lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
     if answer.rest == "can":
         lines.append("  rest    it can rest, and friction may let it move as well")
     named = joint_names(problem.assembly)
@@ -161,12 +172,21 @@ def _name(assembly: Assembly, joint: int, side: int) -> str:
     return assembly.supports[here.support].name or "support"
 
 
-def _joints(answer: ProblemCheck) -> list[dict[str, object]]:
+def _factor_of_safety(answer: ProblemCheck, carried: Carried | None) -> float | None:
+    """Return the factor on live loads where there are any, else the geometrical one."""
+    if answer.load_factor is not None and answer.problem.load > 0:
+        return answer.load_factor / answer.problem.load
+    if answer.problem.live:
+        return answer.load_factor
+    return carried and carried.geometrical_factor
+
+
+def _joints(answer: ProblemCheck, carried: Carried | None) -> list[dict[str, object]]:
     problem = answer.problem
-    assembly, forces, words = problem.assembly, answer.forces, _state_words(problem)
+    assembly, words = problem.assembly, _state_words(problem)
+    found = None if carried is None else carried.resultants
     told: list[dict[str, object]] = []
     for k, joint in enumerate(assembly.joints):
-        total = None if forces is None else forces[k].sum(axis=0) * problem.unit_force
         ends = (
             [joint.inner.tolist()]
             if joint.is_corner
@@ -180,8 +200,10 @@ def _joints(answer: ProblemCheck) -> list[dict[str, object]]:
                 "ends": ends[:1] if joint.is_corner else ends,
                 "state": words(answer.joints[k].state),
                 "hinge": None if end is None else ends[min(end, len(ends) - 1)],
-                "normal_force": None if total is None else float(total[0]),
-                "friction_force": None if total is None else float(total[1]),
+                "normal_force": None if found is None else float(found.normal[k]),
+                "friction_force": None if found is None else float(found.friction[k]),
+                "width_used": None if found is None else float(found.width_used[k]),
+                "friction_used": None if found is None else float(found.friction_used[k]),
             }
         )
     return told

@@ -26,16 +26,17 @@ in both.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from blocksim.arch.circular import Arch, crown_width
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require_friction
+from blocksim.limit.linear import LinearProgramme
 
 ETA_MAX = 2.0
 ACTIVE = 1e-9
@@ -215,19 +216,23 @@ def _optimum(program: Conditions, about: Array, unit: float) -> tuple[Array, Arr
     """Let HiGHS solve the program in unknowns counted from `about` in a unit: (x, s), rates."""
     rows, unknowns = program.matrix.shape
     matrix = np.column_stack([program.matrix, np.full(rows, -1.0)])
-    result = linprog(
-        np.append(np.zeros(unknowns), 1.0),
-        A_ub=matrix,
-        b_ub=-(matrix @ about + program.offset) / unit,
-        bounds=[(None, None)] * unknowns + [((-SPARE - about[-1]) / unit, None)],
-        method="highs-ds",
+    right = -(matrix @ about + program.offset) / unit
+    high = np.full(unknowns + 1, math.inf)
+    low = -high
+    low[-1] = (-SPARE - about[-1]) / unit
+    cost = np.append(np.zeros(unknowns), 1.0)
+    found = LinearProgramme().solve(
+        cost,
+        matrix,
+        (np.full(len(right), -math.inf), right),
+        (low, high),
     )
-    if result.status != 0:
-        message = f"HiGHS: {result.message}"
+    if not found.exists:
+        message = "HiGHS found no optimum"
         raise RuntimeError(message)
-    rates: Array = np.maximum(-np.asarray(result.ineqlin.marginals, dtype=float), 0.0)
+    rates: Array = np.maximum(-found.prices, 0.0)
     rates[rates < ACTIVE] = 0.0
-    return about + unit * np.asarray(result.x, dtype=float), rates
+    return about + unit * found.values, rates
 
 
 def motions_of(angles: Array, rates: Array, eta: float, mu: float) -> Array:

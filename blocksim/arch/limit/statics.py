@@ -173,6 +173,30 @@ def slack(arch: Arch, mu: float) -> float:
     return 1.0 - share
 
 
+def least_friction(arch: Arch) -> float | None:
+    """Least friction coefficient with which the arch stands; 0 where none is needed.
+
+    Returns
+    -------
+    float or None
+        None where no friction suffices.
+    """
+    angles = half_joints(arch.half_angle, arch.voussoirs)
+    spread = spread_of(arch.eta, arch.weight)
+
+    def gap(mu: float) -> float:
+        return _gap(thrust_bounds(angles, arch.eta, mu, spread))
+
+    if gap(math.inf) < 0:
+        return None
+    low, high = 0.0, 1.0
+    if gap(low) >= 0:
+        return low
+    while gap(high) < 0:
+        low, high = high, 2.0 * high
+    return _boundary(gap, low, high)
+
+
 def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
     """Joints that act where strength is taken away, or added, until the arch barely stands.
 

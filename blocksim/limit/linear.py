@@ -1,0 +1,123 @@
+"""Linear programmes, solved by HiGHS; the only place that knows it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import highspy
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+
+from blocksim.blocks.assembly import Array
+
+FINEST = 1e-10
+"""HiGHS's own least tolerance."""
+MANY = 1000
+"""Unknowns from which on the interior point is faster than the simplex at first."""
+Ends = tuple[Array, Array]
+Matrix = csc_array | NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Optimum:
+    """What came of a linear programme.
+
+    Parameters
+    ----------
+    values : (unknowns,) float
+        Empty where there is no optimum.
+    prices : (rows,) float
+        By how much the least cost grows with the right side of each row.
+    unbounded : bool
+        Whether nothing limits the cost from below.
+    """
+
+    values: Array
+    prices: Array
+    unbounded: bool
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is an optimum."""
+        return bool(self.values.size)
+
+
+NONE = Optimum(values=np.zeros(0), prices=np.zeros(0), unbounded=False)
+UNBOUNDED = Optimum(values=np.zeros(0), prices=np.zeros(0), unbounded=True)
+
+
+class LinearProgramme:
+    """A linear programme that may be solved again with other numbers.
+
+    Each solution begins with what was active in the last one, which takes a tenth of the time.
+    """
+
+    def __init__(self) -> None:
+        self._highs: Any = highspy.Highs()
+        self._shape, self._basis = (0, 0), None
+        for name, value in (
+            ("output_flag", False),
+            ("parallel", "off"),
+            ("primal_feasibility_tolerance", FINEST),
+            ("dual_feasibility_tolerance", FINEST),
+        ):
+            self._highs.setOptionValue(name, value)
+
+    def solve(self, cost: Array, matrix: Matrix, rows: Ends, bounds: Ends) -> Optimum:
+        """Find the least cost.
+
+        Parameters
+        ----------
+        cost : (unknowns,) float
+        matrix : (rows, unknowns) float
+        rows : two of (rows,) float
+            Least and greatest value of each row, infinite where there is none.
+        bounds : two of (unknowns,) float
+            Least and greatest value of each unknown.
+        """
+        columns = csc_array(matrix)
+        again = columns.shape == self._shape and self._basis is not None
+        self._highs.passModel(_model(cost, columns, rows, bounds))
+        if again:
+            self._highs.setBasis(self._basis)
+        else:
+            # Of many unknowns the interior point is three to ten times faster, and as exact:
+            # its answer is brought to a vertex. It does not tell whether nothing limits it.
+            self._shape, self._basis = columns.shape, None
+            if columns.shape[1] > MANY and self._run("ipm"):
+                return self._found()
+        return self._found() if self._run("simplex") else self._failed()
+
+    def _run(self, method: str) -> bool:
+        self._highs.setOptionValue("solver", method)
+        self._highs.run()
+        return self._highs.getModelStatus() == highspy.HighsModelStatus.kOptimal
+
+    def _found(self) -> Optimum:
+        self._basis = self._highs.getBasis()
+        solution = self._highs.getSolution()
+        return Optimum(
+            values=np.array(solution.col_value),
+            prices=np.array(solution.row_dual),
+            unbounded=False,
+        )
+
+    def _failed(self) -> Optimum:
+        status = self._highs.getModelStatus()
+        self._basis = None
+        return UNBOUNDED if status == highspy.HighsModelStatus.kUnbounded else NONE
+
+
+def _model(cost: Array, columns: csc_array, rows: Ends, bounds: Ends) -> Any:
+    model: Any = highspy.HighsLp()
+    model.num_row_, model.num_col_ = columns.shape
+    model.col_cost_ = cost
+    model.col_lower_, model.col_upper_ = bounds
+    model.row_lower_, model.row_upper_ = rows
+    model.a_matrix_.format_ = highspy.MatrixFormat.kColwise
+    model.a_matrix_.start_ = columns.indptr
+    model.a_matrix_.index_ = columns.indices
+    model.a_matrix_.value_ = columns.data
+    return model

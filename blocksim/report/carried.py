@@ -1,0 +1,146 @@
+"""The engineer's numbers as JSON and as text: factors of safety, thrust, reactions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from blocksim.ask.carried import Carried
+
+KILO = 1e3
+FIELDS = (
+    "geometrical_factor",
+    "friction_factor",
+    "least_friction",
+    "strength_used",
+    "weights_given",
+    "weight_kN",
+    "thrust_joint",
+    "thrust_min_kN",
+    "thrust_max_kN",
+    "thrust_min_kN_per_m",
+    "thrust_max_kN_per_m",
+    "thrust_min_per_weight",
+    "thrust_max_per_weight",
+    "reactions",
+    "worst_joints",
+)
+SHOWN = 4
+"""Supports and joints told in a line of text."""
+
+
+def carried_record(carried: Carried | None, names: Sequence[str]) -> dict[str, object]:
+    """Return what a structure carries, every field null where it is not known.
+
+    Parameters
+    ----------
+    carried : Carried or None
+    names : sequence of str
+        Of the joints.
+    """
+    if carried is None:
+        return {field: None for field in FIELDS}  # noqa: C420 - of any value
+    low, high = carried.thrust or (None, None)
+    depth, weight = carried.depth, carried.weight
+    used = carried.resultants
+    return {
+        "geometrical_factor": carried.geometrical_factor,
+        "friction_factor": carried.friction_factor,
+        "least_friction": carried.least_friction,
+        "strength_used": carried.strength_used,
+        "weights_given": carried.problem.weighed,
+        "weight_kN": weight / KILO,
+        "thrust_joint": None if carried.joint is None else names[carried.joint],
+        "thrust_min_kN": _over(low, KILO),
+        "thrust_max_kN": _over(high, KILO),
+        "thrust_min_kN_per_m": _over(low, depth and KILO * depth),
+        "thrust_max_kN_per_m": _over(high, depth and KILO * depth),
+        "thrust_min_per_weight": _over(low, weight),
+        "thrust_max_per_weight": _over(high, weight),
+        "reactions": [
+            {
+                "support": each.name,
+                "horizontal_kN": float(each.force[0]) / KILO,
+                "vertical_kN": float(each.force[1]) / KILO,
+                "x_m": float(each.point[0]),
+                "y_m": float(each.point[1]),
+            }
+            for each in carried.reactions
+        ],
+        "worst_joints": [
+            {
+                "joint": names[k],
+                "width_used": float(used.width_used[k]),
+                "friction_used": float(used.friction_used[k]),
+            }
+            for k in carried.worst_joints
+            if used is not None
+        ],
+    }
+
+
+def carried_lines(carried: Carried | None, names: Sequence[str]) -> list[str]:
+    """Return what a structure carries in words, each number with its unit."""
+    if carried is None:
+        return []
+    lines = [f"  safety  {_factors(carried)}"]
+    if carried.joint is not None and carried.thrust is not None:
+        low, high = (_force(each, carried) for each in carried.thrust)
+        lines.append(f"  thrust  {low} to {high} across joint {names[carried.joint]}")
+    if carried.reactions:
+        told = [
+            f"{each.name} {_force(float(each.force[1]), carried)} up, "
+            f"{_force(float(each.force[0]), carried)} to the right"
+            for each in carried.reactions
+        ]
+        lines.append(f"  bears   {_few(told, '; ')}, in the safest state")
+    lines += _worst(carried, names)
+    if not carried.problem.weighed:
+        lines.append("  unit    W is the weight of all blocks: no unit weight was given")
+    return lines
+
+
+def _factors(carried: Carried) -> str:
+    wide, rough = carried.geometrical_factor, carried.friction_factor
+    least = carried.least_friction
+    said = [
+        "no thickness suffices" if wide is None else f"geometrical factor {_number(wide)}",
+        "no friction suffices" if rough is None else f"friction factor {_number(rough)}",
+    ]
+    if least is not None:
+        said[1] += f" (mu {_number(least)} is needed)"
+    return ", ".join(said)
+
+
+def _worst(carried: Carried, names: Sequence[str]) -> list[str]:
+    used, worst = carried.resultants, carried.worst_joints
+    if used is None or not worst:
+        return []
+    first = worst[0]
+    what = "width" if used.width_used[first] >= used.friction_used[first] else "friction"
+    listed = _few([names[k] for k in worst], ", ")
+    joints = "joint" if len(worst) == 1 else "joints"
+    share = f"{used.used[first]:.1%} of the {what}"
+    return [f"  worst   {share} is used at {joints} {listed}, in the safest state"]
+
+
+def _force(newton: float, carried: Carried) -> str:
+    """Tell a force, over the depth where all blocks have the same."""
+    if not carried.problem.weighed:
+        return f"{_number(newton / carried.weight)} W"
+    if carried.depth is None:
+        return f"{_number(newton / KILO)} kN"
+    return f"{_number(newton / KILO / carried.depth)} kN/m"
+
+
+def _over(force: float | None, unit: float | None) -> float | None:
+    return None if force is None or unit is None else force / unit
+
+
+def _few(told: Sequence[str], between: str) -> str:
+    more = len(told) - SHOWN
+    return between.join(told[:SHOWN]) + (f" and {more} more" if more > 0 else "")
+
+
+def _number(value: float) -> str:
+    return "without limit" if math.isinf(value) else f"{value:.4g}"
