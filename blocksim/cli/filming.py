@@ -17,8 +17,8 @@ from blocksim.arch.scenario import Scenario
 from blocksim.ask.methods import SPATIAL
 from blocksim.ask.simulate import simulate
 from blocksim.cli.console import progress, say
-from blocksim.cli.options import Given, arch_of, named_options, question
-from blocksim.cli.structures import Loading, is_structure, loaded, structure
+from blocksim.cli.options import Given, Loading, named_options
+from blocksim.cli.structures import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES
@@ -107,12 +107,7 @@ def recordings(
             option = "with" if name == "parameters" else name
             require(value is None, f"--{option}", value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
-    if scene is not None and is_structure(scene):
-        problem = structure(scene, given, loading)
-    else:
-        asked = question(scene, given)
-        built = arch_of(asked, given.ratio).problem(asked.mu, asked.lean)
-        problem = loaded(built, Given(), loading)
+    problem = problem_asked(scene, given, loading)
     with named_options(), progress() as report:
         until = FALL if problem.shaking is None else None
         run = simulate(problem, method=method or "auto", duration=until, progress=report)

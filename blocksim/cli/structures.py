@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import typer
@@ -20,11 +20,13 @@ from blocksim.cli.console import answer_with, progress, save_picture, say
 from blocksim.cli.options import (
     EXIT_CODES,
     Given,
+    Loading,
     named_options,
     parameters_of,
     require_given,
     settings_of,
 )
+from blocksim.cli.question import arch_of, question
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_place
@@ -52,22 +54,6 @@ LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Loading:
-    """What acts on a structure, as given on the command line; None where it is not."""
-
-    load: float | None = None
-    tilt: float | None = None
-    shake: str | None = None
-    amplitude: float | None = None
-    duration: float | None = None
-
-    @property
-    def given(self) -> bool:
-        """Whether there is any of it."""
-        return self != Loading()
-
-
 def is_structure(scene: str | None) -> bool:
     """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
     if scene in KINDS or scene in shipped_structures():
@@ -84,6 +70,25 @@ def is_structure(scene: str | None) -> bool:
     except (OSError, ValueError, RecursionError):
         return False  # the reader of scenarios says what is wrong with it
     return "blocks" in table or "kind" in table
+
+
+def problem_asked(
+    scene: str | None, given: Given, loading: Loading, *, thick: bool = False, **needed: object
+) -> Problem:
+    """Return the structure or the arch asked about, and what the options put on it.
+
+    Parameters
+    ----------
+    scene, given, thick, needed
+        As of `question`.
+    loading : Loading
+    """
+    if scene is not None and is_structure(scene):
+        require_given(**needed)
+        return structure(scene, given, loading)
+    asked = question(scene, given, thick=thick, **needed)
+    built = arch_of(asked, given.ratio).problem(asked.mu, asked.lean)
+    return loaded(built, Given(), loading)
 
 
 def structure(scene: str, given: Given, loading: Loading) -> Problem:
