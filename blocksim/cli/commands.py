@@ -20,12 +20,12 @@ from blocksim.cli.console import (
 from blocksim.cli.drawing import write_arch
 from blocksim.cli.filming import (
     HEIGHT,
-    At,
     Beside,
     EngineOption,
     Height,
     RenderOptions,
     Slow,
+    Time,
     View,
     film,
     recordings,
@@ -54,8 +54,8 @@ from blocksim.cli.structures import (
     check_structure,
     draw_structure,
     is_structure,
-    loaded,
     problem_asked,
+    problem_of_arch,
     say_recorded,
     simulate_structure,
     spread_structure,
@@ -70,6 +70,7 @@ from blocksim.report.answers import (
     check_lines,
     check_record,
 )
+from blocksim.report.sizes import bracket_size_lines, bracket_size_record
 
 FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0
@@ -96,7 +97,7 @@ def check(
     arch = arch_of(asked, given.ratio)
     if loading.given:
         require(not reduce, "--reduce", reduce, "left out with a load or a tilt")
-        problem = loaded(arch.problem(asked.mu, asked.lean), Given(), loading)
+        problem = problem_of_arch(arch, asked, loading)
         check_structure(problem, method, settings, as_json=as_json)
     with named_options(), progress() as report:
         answer = ask_check(
@@ -109,7 +110,8 @@ def check(
             progress=report,
         )
     answer = replace(answer, reason=answer.reason + thickness_words(asked, given.ratio))
-    answer_with(check_record(answer), check_lines(answer), as_json=as_json)
+    at = asked.line and asked.line.at
+    answer_with(check_record(answer), check_lines(answer, at), as_json=as_json)
     raise typer.Exit(EXIT_CODES[answer.verdict])
 
 
@@ -128,7 +130,7 @@ def bracket(
     as_json: Json = False,
 ) -> None:
     """Find the value of a parameter from which on it falls: how thin an arch can be."""
-    if is_structure(scene) or over not in {None, THICKNESS}:
+    if is_structure(scene) or loading.on_road or over not in {None, THICKNESS}:
         require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
         problem = problem_asked(scene, given, loading, thick=True)
         bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
@@ -152,7 +154,9 @@ def bracket(
             reduce=reduce,
             progress=report,
         )
-    answer_with(bracket_record(answer, asked.radius), bracket_lines(answer), as_json=as_json)
+    record = bracket_record(answer, asked.radius) | bracket_size_record(answer, asked)
+    lines = bracket_lines(answer) + bracket_size_lines(answer, asked)
+    answer_with(record, lines, as_json=as_json)
 
 
 @app.command()
@@ -208,7 +212,7 @@ def render(
     beside: Beside = None,
     view: View = "2d",
     slow: Slow = None,
-    at: At = None,
+    time: Time = None,
     height: Height = None,
     method: EngineOption = None,
 ) -> None:
@@ -227,12 +231,12 @@ def render(
     kind = picture_kind(out, (*FILMS, "png", "svg", "pdf"))
     filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
-        shown = RenderOptions(view=view, slow=slow, at=at, height=height or HEIGHT)
-        require(at is None or kind not in FILMS, "--at", at, "left out of a film")
+        shown = RenderOptions(view=view, slow=slow, time=time, height=height or HEIGHT)
+        require(time is None or kind not in FILMS, "--time", time, "left out of a film")
         film(out, recordings(scene, given, loading, method, beside), shown)
     else:
-        shown = {"slow": slow, "at": at, "method": method}
-        built = scene is not None and is_structure(scene)
+        shown = {"slow": slow, "time": time, "method": method}
+        built = is_structure(scene) or bool(loading.on_road)
         for name, value in shown.items():
             # The picture of a structure shows the answer of a method.
             free = value is None or (built and name == "method")
@@ -240,8 +244,8 @@ def render(
         if height is not None:
             require(kind == "png", "--height", height, f"left out: a .{kind} has no pixels")
             require_height(height)
-        if scene is not None and built:
-            problem = structure(scene, given, loading)
+        if built:
+            problem = problem_asked(scene, given, loading, thick=True)
             draw_structure(out, kind, problem, method or "auto", height)
         else:
             require(

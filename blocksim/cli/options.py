@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -10,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from blocksim.arch.dimensions import LINES, friction_of, require_friction_angle
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.blocks.shaking import COLUMNS, SHAPES
@@ -52,11 +54,17 @@ Reduce = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 
+OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters"}
+"""Options that say how anything is built, not only an arch."""
+LARGEST_FRICTION = 10.0
+"""Coefficient above which, up to 90, one is taken for an angle."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Given:
     """The options that say what is built, as given; None where they are not.
 
-    All but `parameters`, of a kind, and `mu` and `lean` are of symmetric circular arches.
+    All but those of `OF_ANY` are of symmetric circular arches.
     """
 
     alpha: Annotated[
@@ -65,18 +73,52 @@ class Given:
     eta: Annotated[float | None, typer.Option(help="Thickness-to-radius ratio, up to 2.")] = (
         None
     )
+    span: Annotated[
+        float | None,
+        typer.Option(
+            help="Instead of --alpha and --eta: distance between the springings in m."
+        ),
+    ] = None
+    rise: Annotated[
+        float | None, typer.Option(help="Beside --span: height of the crown above them in m.")
+    ] = None
+    thickness: Annotated[
+        float | None, typer.Option(help="Beside --span: thickness of the arch in m.")
+    ] = None
+    at: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LINE",
+            help=f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
+            "which gives the clear span.",
+        ),
+    ] = None
     ratio: Annotated[
         float | None,
-        typer.Option(help="Instead of --eta: thickness over the least that stands, as built."),
+        typer.Option(
+            help="Instead of --eta or --thickness: thickness over the least that stands, "
+            "as built."
+        ),
     ] = None
     mu: Annotated[
         float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")
+    ] = None
+    friction_angle: Annotated[
+        float | None, typer.Option(help="Instead of --mu: angle of friction in degrees.")
     ] = None
     voussoirs: Annotated[
         int | None, typer.Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
     ] = None
     weight: Annotated[
-        str | None, typer.Option(help="Where weight acts: centreline (if left out) or sector.")
+        str | None,
+        typer.Option(
+            help="Where weight acts: centreline, or sector, as it does in true voussoirs. "
+            "If left out: sector with --span, else centreline."
+        ),
+    ] = None
+    unit_weight: Annotated[
+        float | None,
+        typer.Option(help="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
     ] = None
     depth: Annotated[
         float | None,
@@ -99,16 +141,73 @@ class Given:
     @property
     def of_arches(self) -> dict[str, object]:
         """Those that say how an arch is built."""
-        others = {"mu", "lean", "parameters"}
-        return {name: each for name, each in asdict(self).items() if name not in others}
+        return {name: each for name, each in asdict(self).items() if name not in OF_ANY}
+
+    @property
+    def measured(self) -> dict[str, object]:
+        """Those that give an arch in metres; empty where none is given."""
+        names = ("span", "rise", "thickness", "at")
+        found = {name: getattr(self, name) for name in names}
+        return {name: each for name, each in found.items() if each is not None}
+
+    @property
+    def friction(self) -> float | None:
+        """Friction coefficient, given as such or as an angle.
+
+        Raises
+        ------
+        InputError
+            If both are given, or one is out of range or looks like the other.
+        """
+        mu, angle = self.mu, self.friction_angle
+        if angle is None:
+            slip = mu is not None and LARGEST_FRICTION < mu < 90
+            words = f"a coefficient: as an angle it would be --friction-angle {mu or 0:g}"
+            require(not slip, "--mu", mu, words)
+            return mu
+        require(mu is None, "--friction-angle", angle, "left out where --mu is given")
+        require_friction_angle("--friction-angle", angle)
+        smooth = angle < math.pi / 2
+        words = f"in degrees: as a coefficient it would be --mu {angle:g}, in radians "
+        words += f"--friction-angle {math.degrees(angle):.4g}"
+        require(not smooth, "--friction-angle", angle, words)
+        return friction_of(angle)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Loading:
-    """What acts besides gravity, as given on the command line; None where it is not."""
+    """What acts besides gravity, as given on the command line; None where it is not.
 
+    What is on the road, fill or loads, goes straight down to the blocks below.
+    """
+
+    fill: Annotated[
+        float | None,
+        typer.Option(help="Of arches and portals: height of fill over the crown in m."),
+    ] = None
+    fill_unit_weight: Annotated[
+        float | None,
+        typer.Option(help="Unit weight of the fill in kN/m3; that of the blocks if left out."),
+    ] = None
+    point_load: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="X KN",
+            help="Weight on the road at x (m from the crown of an arch; else from the "
+            "structure's origin), live. It goes straight down to the block below; fill does "
+            "not spread it.",
+        ),
+    ] = None
+    patch_load: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2."),
+    ] = None
     load: Annotated[
-        float | None, typer.Option(help="Factor on the live loads of a structure.")
+        float | None,
+        typer.Option(
+            help="Factor on the live loads; if left out 1 with --point-load or --patch-load, "
+            "else what the file says."
+        ),
     ] = None
     tilt: Annotated[
         float | None,
@@ -136,13 +235,26 @@ class Loading:
         """Whether there is any of it."""
         return self != Loading()
 
+    @property
+    def on_road(self) -> dict[str, object]:
+        """Those that lie on the road; empty where none is given."""
+        names = ("fill", "fill_unit_weight", "point_load", "patch_load")
+        found = {name: getattr(self, name) for name in names}
+        return {name: each for name, each in found.items() if each is not None}
 
-def require_given(**options: object) -> None:
-    """Name all options that are missing at once."""
-    absent = [f"--{name}" for name, value in options.items() if value is None]
+
+def require_given(instead: str = "", /, **options: object) -> None:
+    """Name all options that are missing at once, and what may stand in their place."""
+    absent = [name for name, value in options.items() if value is None]
     if absent:
-        listed = " and ".join(filter(None, (", ".join(absent[:-1]), absent[-1])))
-        raise InputError(listed, MISSING if len(absent) == 1 else ALL_MISSING, "given")
+        named = [option_of(name) for name in absent]
+        listed = " and ".join(filter(None, (", ".join(named[:-1]), named[-1])))
+        raise InputError(listed, MISSING if len(named) == 1 else ALL_MISSING, f"given{instead}")
+
+
+def option_of(field: str) -> str:
+    """Return the option of a field."""
+    return "--with" if field == "parameters" else f"--{field.replace('_', '-')}"
 
 
 def parameters_of(given: list[str] | None) -> dict[str, object]:
@@ -174,6 +286,11 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
 
 
 OPTIONS = {
+    "span",
+    "rise",
+    "thickness",
+    "at",
+    "fill",
     "shake",
     "amplitude",
     "duration",
@@ -196,8 +313,7 @@ def named_options() -> Generator[None]:
         yield
     except InputError as error:
         if error.where is None and error.field in OPTIONS:
-            option = error.field.replace("_", "-")
-            raise InputError(f"--{option}", error.value, error.allowed) from None
+            raise InputError(option_of(error.field), error.value, error.allowed) from None
         if error.where is None and error.field.startswith("settings"):
             _, _, name = error.field.partition(".")
             value = f"{name}={error.value:g}" if name else error.value

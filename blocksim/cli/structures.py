@@ -9,6 +9,10 @@ from pathlib import Path
 
 import typer
 
+from blocksim.arch.circular import Arch
+from blocksim.arch.dimensions import require_unit_weight
+from blocksim.arch.scenario import Scenario
+from blocksim.arch.structure import structure_of_arch
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
@@ -22,11 +26,13 @@ from blocksim.cli.options import (
     Given,
     Loading,
     named_options,
+    option_of,
     parameters_of,
     require_given,
     settings_of,
 )
 from blocksim.cli.question import arch_of, question
+from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_place
@@ -38,6 +44,7 @@ from blocksim.kinds.files import (
     load_structure,
     shipped_structures,
     structure_of,
+    weighed,
 )
 from blocksim.report.structures import (
     bracket_lines,
@@ -87,8 +94,14 @@ def problem_asked(
         require_given(**needed)
         return structure(scene, given, loading)
     asked = question(scene, given, thick=thick, **needed)
-    built = arch_of(asked, given.ratio).problem(asked.mu, asked.lean)
-    return loaded(built, Given(), loading)
+    return problem_of_arch(arch_of(asked, given.ratio), asked, loading)
+
+
+def problem_of_arch(arch: Arch, asked: Scenario, loading: Loading) -> Problem:
+    """Return an arch asked about, with what the options put on it."""
+    # Fill and loads on the road are borne by a structure, of the arch's kind.
+    made = structure_of_arch if loading.on_road else Arch.problem
+    return loaded(made(arch, asked.mu, asked.lean), Given(), loading)
 
 
 def structure(scene: str, given: Given, loading: Loading) -> Problem:
@@ -101,15 +114,20 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
     """
     for name, value in given.of_arches.items():
         allowed = "left out: the file or --with says what is built"
-        require(value is None, f"--{name}", value, allowed)
+        require(value is None, option_of(name), value, allowed)
     changes = parameters_of(given.parameters)
+    heavy = given.unit_weight
+    if heavy is not None:
+        require_unit_weight("--unit-weight", heavy)
+    density = None if heavy is None else 1000 * heavy
     try:
         if scene in KINDS:
-            require_given(mu=given.mu)
+            require_given(mu=given.friction)
             # Friction is put on with the loads.
-            built = structure_of(changed({"kind": scene, "friction": 0.0}, changes))
+            table = changed({"kind": scene, "friction": 0.0}, changes)
+            built = structure_of(table if density is None else weighed(table, density))
         else:
-            built = load_structure(scene, changes)
+            built = load_structure(scene, changes, density)
     except InputError as error:
         name = error.field.partition("[")[0]
         if name not in changes:
@@ -121,8 +139,10 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
 def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
     """Put on a problem what the options say: friction, load, tilt, lean."""
     with named_options():
-        if given.mu is not None:
-            problem = problem.with_friction(given.mu)
+        if given.friction is not None:
+            problem = problem.with_friction(given.friction)
+        if loading.on_road:
+            problem = under_road(problem, loading)
         if loading.load is not None:
             require(bool(problem.live), "--load", loading.load, "left out: no live loads")
             problem = problem.with_load(loading.load)
