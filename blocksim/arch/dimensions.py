@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from blocksim.arch.circular import Arch
+from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.checks import is_number, require
 
 At = Literal["intrados", "centreline", "extrados"]
@@ -23,8 +24,9 @@ ALMOST = 1 + 1e-12
 """Round-off allowed of arches that are as thick as can be."""
 LONGEST = 1000.0
 """Longest span that is believed to be in metres."""
-HEAVIEST = 200.0
-"""Largest unit weight that is believed to be in kN/m^3: gold has 189."""
+HEAVIEST, NEWTONS = 200.0, 8000.0
+"""Largest unit weight that is believed to be in kN/m^3, gold having 189; from the second on
+one is taken for N/m^3, below it for a density in kg/m^3."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,9 +102,9 @@ class Dimensions:
     def __post_init__(self) -> None:
         """Check the ranges."""
         require_length("thickness", self.thickness)
-        inside = OFFSET[self.at] + 0.5
-        allowed = f"at most {self.line.radius / (inside or 1.0):.6g} m, which is eta = 2"
-        fits = inside * self.thickness <= self.line.radius * ALMOST
+        radius, inside = self.line.radius, OFFSET[self.at] + 0.5
+        allowed = f"at most {radius / (inside or 1.0):.6g} m, which is eta = 2"
+        fits = inside * self.thickness <= radius * ALMOST
         require(fits, "thickness", self.thickness, allowed)
 
     @property
@@ -194,7 +196,6 @@ def require_unit_weight(field: str, value: float) -> None:
     """Raise `InputError` unless a value is a unit weight in kN/m^3."""
     allowed = f"above 0 and at most {HEAVIEST:g} kN/m3"
     if is_number(value, HEAVIEST, math.inf):
-        allowed += (
-            f" ({value:g} N/m3 are {value / 1000:g}, {value:g} kg/m3 are {value * 9.81e-3:g})"
-        )
+        unit, share = ("N/m3", 1e-3) if value >= NEWTONS else ("kg/m3", STANDARD_GRAVITY / 1000)
+        allowed += f" ({value:g} {unit} would be {value * share:.4g})"
     require(is_number(value, 0, HEAVIEST), field, value, allowed)
