@@ -25,7 +25,7 @@ from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_file, shipped_files
+from blocksim.common.files import AnyPath, require_file, shipped_files
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, kind_of, parameters_of
 
@@ -40,7 +40,7 @@ def shipped_structures() -> dict[str, Path]:
 
 
 def load_structure(
-    path: Path | str,
+    path: AnyPath,
     changes: Mapping[str, object] = MappingProxyType({}),
     density: float | None = None,
 ) -> Problem:
@@ -48,7 +48,7 @@ def load_structure(
 
     Parameters
     ----------
-    path : Path or str
+    path : str or path
         Ends in .json or .toml, or the name of a shipped one.
     changes : mapping of str to object
         Parameters of its kind instead of those it says; `arch.thickness`: of its arch.
@@ -66,7 +66,7 @@ def load_structure(
 
 
 @contextmanager
-def named_file(path: Path | str) -> Generator[object]:
+def named_file(path: AnyPath) -> Generator[object]:
     """Give what a structure file says; what is wrong with it is said with the file's name.
 
     Raises
