@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.bracket import Bracket as ArchBracket
 from blocksim.arch.check import ArchCheck
-from blocksim.arch.circular import Arch
+from blocksim.arch.circular import Arch, arch_of
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.check import ProblemCheck
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 LABEL = 10
 """Letters of a line of an answer before its words: two blanks and what it is about."""
+TALL = 400
+"""Height of a frame [pixels]."""
 THIN = 0.02
 """Thickness-to-radius ratio drawn of an arch that stands at any."""
 
@@ -79,7 +81,7 @@ def lines_of(shown: object) -> list[str]:
         Bracket: structures.bracket_lines,
         Recording: lambda run: [
             f"Recording by {run.engine}",
-            *(f"  motion  {line.strip()}" for line in recording_lines(run, "L")),
+            *(f"  motion  {line.strip()}" for line in _recording_lines(run)),
             f"  what    {structures.described(run.problem)}",
         ],
     }
@@ -135,6 +137,10 @@ def html_of(shown: object) -> str:
         for line in lines
     )
     return f"<div><strong>{head.strip()}</strong><table>{rows}</table>{svg_of(shown)}</div>"
+
+
+def _recording_lines(recording: Recording) -> list[str]:
+    return recording_lines(recording, "L" if arch_of(recording.problem) is None else "r")
 
 
 def _arch_words(arch: Arch) -> str:
@@ -220,4 +226,4 @@ def _bracket_figure(answer: Bracket) -> Figure:
 def _recording_figure(recording: Recording) -> Figure:
     from blocksim.view.film import Film
 
-    return Film([recording]).figure()
+    return Film([recording], height=TALL).figure()
