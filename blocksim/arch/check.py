@@ -66,6 +66,13 @@ class ArchCheck(Check):
         """What the arch carries; None where gravity leans."""
         return None if self.lean else carried_by_arch(self.arch, self.mu)
 
+    def __repr__(self) -> str:
+        arch = self.arch
+        return (
+            f"ArchCheck({self.verdict}, by {self.method}, half_angle={arch.half_angle:g}, "
+            f"eta={arch.eta:g}, mu={self.mu:g}, voussoirs={arch.voussoirs})"
+        )
+
 
 def check(
     arch: Arch,

@@ -15,6 +15,7 @@ from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.common.shown import Shown
 from blocksim.engines.base import Method
 from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import PROBE
@@ -23,13 +24,12 @@ from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import Equilibrium, collapse, equilibrium
 
-
 SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Check:
+class Check(Shown):
     """Answer to *does it stand*, with its evidence.
 
     Parameters
@@ -106,6 +106,9 @@ class ProblemCheck(Check):
         still = self.problem.is_planar and self.shaken is None
         small = len(self.problem.assembly.joints) <= SOUGHT
         return carried_by(self.problem) if still and small else None
+
+    def __repr__(self) -> str:
+        return f"ProblemCheck({self.verdict}, by {self.method}, of {self.problem!r})"
 
 
 def check(

@@ -8,12 +8,14 @@ from itertools import pairwise
 from blocksim.arch.bracket import Bracket
 from blocksim.arch.check import ArchCheck
 from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.arch.dimensions import At
 from blocksim.arch.modes import Mode
 from blocksim.ask.carried import Carried
 from blocksim.blocks.joints import JointState
 from blocksim.common.version import __version__
 from blocksim.evidence.motion import EARLY
 from blocksim.report.carried import carried_lines, carried_record
+from blocksim.report.sizes import size_lines, size_record
 
 
 def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str, object]:
@@ -34,6 +36,7 @@ def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str,
         "weight": arch.weight,
         "radius": arch.radius,
         "depth": arch.depth,
+        **size_record(arch, answer.mu),
         "lean_deg": math.degrees(answer.lean),
         "eta_limit": answer.eta_limit,
         "eta_theory": answer.eta_theory,
@@ -99,14 +102,17 @@ def _degrees(angle: float | None) -> float | None:
     return None if angle is None else math.degrees(angle)
 
 
-def check_lines(answer: ArchCheck, carried: Carried | None = None) -> list[str]:
-    """Return a check in words."""
+def check_lines(
+    answer: ArchCheck, at: At | None = None, carried: Carried | None = None
+) -> list[str]:
+    """Return a check in words; `at` is the line that was measured, if one was."""
     arch, carried = answer.arch, carried or answer.carried
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
         f"mu {answer.mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}, "
         f"depth {arch.depth / arch.radius:g} r{lean_words(answer.lean)}",
+        *size_lines(arch, answer.mu, at),
         f"  because {answer.reason}",
         _exact("least  ", answer),
         *carried_lines(carried, joint_names_of(arch)),

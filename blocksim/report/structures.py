@@ -17,6 +17,7 @@ from blocksim.blocks.shaking import shaking_record
 from blocksim.common.version import __version__
 from blocksim.kinds.files import kind_behind
 from blocksim.report.carried import carried_lines, carried_record
+from blocksim.report.sizes import problem_size_lines, problem_size_record
 
 SHOWN = 8
 """Joints and blocks told in a line of text."""
@@ -46,6 +47,7 @@ def check_record(answer: ProblemCheck, carried: Carried | None = None) -> dict[s
             **tilt_and_lean(problem),
             "load": problem.load,
             "shake": None if problem.shaking is None else shaking_record(problem.shaking),
+            **problem_size_record(problem),
         },
         "load_factor": answer.load_factor,
         "factor_of_safety": _factor_of_safety(answer, carried),
@@ -85,7 +87,8 @@ def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[st
     problem, carried = answer.problem, carried or answer.carried
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
-        f"  what    {_described(problem)}",
+        f"  what    {described(problem)}",
+        *problem_size_lines(problem),
         f"  because {answer.reason}",
     ]
     if answer.load_factor is not None:
@@ -245,7 +248,8 @@ def _movers(rates: Array, assembly: Assembly) -> list[str]:
     return [assembly.blocks[k].name or str(k) for k in order]
 
 
-def _described(problem: Problem) -> str:
+def described(problem: Problem) -> str:
+    """Say what a problem is, in a line."""
     turned = tilt_and_lean(problem)
     assembly = problem.assembly
     said = [problem.title] if problem.title else []
