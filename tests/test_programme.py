@@ -14,7 +14,7 @@ from structure_cases import case, names, scenes
 
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.limit import collapse, equilibrium, programme
+from blocksim.limit import collapse, equilibrium, linear
 
 frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))
 lengths = st.floats(0.2, 5.0)
@@ -217,13 +217,13 @@ def test_published_load_factors(name: str) -> None:
 def test_both_solvers_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The interior point, taken of many joints, and the simplex."""
     (scene,) = scenes(name)
-    assert programme.MANY > 1
-    monkeypatch.setattr(programme, "MANY", 0)
+    assert linear.MANY > 1
+    monkeypatch.setattr(linear, "MANY", 0)
     assert factor(scene) == pytest.approx(case(name)["expected"]["value"], rel=1e-9)
     pressed = structure_of(scene | {"live": [{"body": [0, -1]}]})
-    monkeypatch.setattr(programme, "MANY", 10**9)
+    monkeypatch.setattr(linear, "MANY", 10**9)
     simplex = collapse(pressed).load_factor
-    monkeypatch.setattr(programme, "MANY", 0)
+    monkeypatch.setattr(linear, "MANY", 0)
     assert collapse(pressed).load_factor == pytest.approx(simplex, rel=1e-9)
 
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from blocksim.arch.bracket import bracket as ask_bracket
+from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.check import check as ask_check
 from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.cli.app import app
@@ -34,6 +35,7 @@ from blocksim.cli.filming import (
 from blocksim.cli.groups import grouped
 from blocksim.cli.options import (
     EXIT_CODES,
+    AtJoint,
     Given,
     Json,
     Loading,
@@ -54,6 +56,7 @@ from blocksim.cli.structures import (
     check_structure,
     draw_structure,
     is_structure,
+    joint_of,
     problem_asked,
     problem_of_arch,
     say_recorded,
@@ -69,6 +72,7 @@ from blocksim.report.answers import (
     bracket_record,
     check_lines,
     check_record,
+    joint_names_of,
 )
 from blocksim.report.sizes import bracket_size_lines, bracket_size_record
 
@@ -85,6 +89,7 @@ def check(
     scene: Scene = None,
     method: MethodOption = "auto",
     settings: Set = None,
+    joint: AtJoint = None,
     reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
@@ -92,13 +97,14 @@ def check(
     if scene is not None and is_structure(scene):
         require(not reduce, "--reduce", reduce, "left out: it is for arches")
         problem = structure(scene, given, loading)
-        check_structure(problem, method, settings, as_json=as_json)
+        check_structure(problem, method, settings, joint, as_json=as_json)
     asked = question(scene, given, thick=True)
     arch = arch_of(asked, given.ratio)
     if loading.given:
         require(not reduce, "--reduce", reduce, "left out with a load or a tilt")
         problem = problem_of_arch(arch, asked, loading)
-        check_structure(problem, method, settings, as_json=as_json)
+        check_structure(problem, method, settings, joint, as_json=as_json)
+    at_joint = None if joint is None else joint_of(joint, joint_names_of(arch))
     with named_options(), progress() as report:
         answer = ask_check(
             arch,
@@ -111,7 +117,10 @@ def check(
         )
     answer = replace(answer, reason=answer.reason + thickness_words(asked, given.ratio))
     at = asked.line and asked.line.at
-    answer_with(check_record(answer), check_lines(answer, at), as_json=as_json)
+    told = answer.carried
+    if told is not None and at_joint is not None:
+        told = carried_by_arch(arch, asked.mu, at_joint)
+    answer_with(check_record(answer, told), check_lines(answer, at, told), as_json=as_json)
     raise typer.Exit(EXIT_CODES[answer.verdict])
 
 

@@ -51,6 +51,14 @@ Reduce = Annotated[
     bool,
     typer.Option("--reduce", help="Simulate half the arch, in no more blocks than it takes."),
 ]
+AtJoint = Annotated[
+    str | None,
+    typer.Option(
+        "--joint",
+        metavar="A-B",
+        help="Joint of which thrust is told, by its two blocks; the crown if left out.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 

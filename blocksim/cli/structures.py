@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from blocksim.arch.dimensions import require_unit_weight
 from blocksim.arch.scenario import Scenario
 from blocksim.arch.structure import structure_of_arch
 from blocksim.ask.bracket import bracket
+from blocksim.ask.carried import carried_by
 from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
 from blocksim.ask.simulate import simulate
@@ -51,6 +53,7 @@ from blocksim.report.structures import (
     bracket_record,
     check_lines,
     check_record,
+    joint_names,
 )
 
 THICKNESS = "thickness"
@@ -176,13 +179,29 @@ def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
 
 
 def check_structure(
-    problem: Problem, method: str, settings: list[str] | None, *, as_json: bool
+    problem: Problem,
+    method: str,
+    settings: list[str] | None,
+    joint: str | None = None,
+    *,
+    as_json: bool,
 ) -> None:
     """Answer `check` and leave with its exit code."""
+    at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
     with named_options(), progress() as report:
         answer = check(problem, method=method, settings=settings_of(settings), progress=report)
-    answer_with(check_record(answer), check_lines(answer), as_json=as_json)
+        told = answer.carried
+        if at is not None and told is not None:
+            report(1.0, "thrust")
+            told = carried_by(problem, at)
+    answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
     raise typer.Exit(EXIT_CODES[answer.verdict])
+
+
+def joint_of(said: str, names: Sequence[str]) -> int:
+    """Return the joint that is named so."""
+    require(said in names, "--joint", said, f"one like {names[len(names) // 2]}")
+    return names.index(said)
 
 
 def bracket_structure(

@@ -59,7 +59,8 @@ class Reaction:
     force : (2,) float
         x and y, as it acts on the blocks [N].
     point : (2,) float
-        Where its line of action is nearest to the middle of what it bears [m].
+        Centre of the pressure of its joints [m]: where its line of action crosses them, if
+        they lie along one line.
     """
 
     name: str
@@ -124,16 +125,9 @@ def _name_of(problem: Problem, place: int, order: list[tuple[int | None, int]]) 
 
 def _reaction(problem: Problem, carried: Resultants, at: list[int], name: str) -> Reaction:
     joints = problem.assembly.joint_arrays
-    outward = np.where(joints.before[at] == SUPPORT, 1.0, -1.0)[:, None]
-    force = (outward * carried.force[at]).sum(axis=0)
-    ends = joints.ends[at] * problem.assembly.size
-    middle = ends.mean(axis=(0, 1))
-    arm = np.where(np.isnan(carried.point[at]), middle, carried.point[at]) - middle
-    each = outward * carried.force[at]
-    moment = float((arm[:, 0] * each[:, 1] - arm[:, 1] * each[:, 0]).sum())
-    square = float(force @ force)
-    # The foot of the perpendicular from the middle onto the line of action.
-    offset = np.zeros(2)
-    if square > (FORCELESS * problem.unit_force) ** 2:
-        offset = moment / square * np.array([force[1], -force[0]])
-    return Reaction(name=name, force=force, point=middle + offset)
+    on_blocks = np.where(joints.before[at] == SUPPORT, 1.0, -1.0)[:, None]
+    pressing = [k for k in at if not math.isnan(carried.point[k, 0])]
+    point = joints.ends[at].mean(axis=(0, 1)) * problem.assembly.size
+    if pressing:
+        point = np.average(carried.point[pressing], axis=0, weights=carried.normal[pressing])
+    return Reaction(name=name, force=(on_blocks * carried.force[at]).sum(axis=0), point=point)
