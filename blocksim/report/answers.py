@@ -154,7 +154,7 @@ def bracket_lines(answer: Bracket) -> list[str]:
     whose = "continuous arch" if answer.method == "theory" else "voussoirs as built"
     lines += _modes(answer, f"of the {whose}, at eta {ratio(answer.eta_low)}")
     if answer.thrust is not None:
-        lines.append(f"  thrust  h = {answer.thrust:.9g}")
+        lines.append(f"  thrust  h = {answer.thrust:.9g}, in units of gamma t d r")
     if answer.beta_r is not None:
         lines.append(f"  hinge   {math.degrees(answer.beta_r):.4f} deg from the crown")
     if answer.beta_s is not None:
