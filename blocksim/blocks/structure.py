@@ -175,7 +175,7 @@ def problem_of(
         shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
         title=written.title,
         source=written.source,
-        notes=(*notes, *found),
+        notes=(*written.notes, *notes, *found),
     )
 
 

@@ -33,6 +33,7 @@ from blocksim.evidence.shaken import rocking_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import (
     changed,
+    is_drawing,
     load_structure,
     shipped_structures,
     structure_of,
@@ -72,10 +73,12 @@ def is_structure(scene: str | None) -> bool:
     """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
     if scene in KINDS or scene in shipped_structures():
         return True
-    if scene is None or not scene.endswith((".json", ".toml")):
+    if scene is None:
         return False
-    if scene.endswith(".json"):
+    if is_drawing(scene) or scene.lower().endswith(".json"):
         return True
+    if not scene.endswith(".toml"):
+        return False
     path = Path(scene)
     try:
         if not path.is_file() or path.stat().st_size > LARGEST_PEEK:
@@ -104,7 +107,10 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
             # Friction is put on with the loads.
             built = structure_of(changed({"kind": scene, "friction": 0.0}, changes))
         else:
-            built = load_structure(scene, changes)
+            if is_drawing(scene):
+                require_given(mu=given.mu)
+            friction = None if given.mu is None else 0.0
+            built = load_structure(scene, changes, friction=friction)
     except InputError as error:
         name = error.field.partition("[")[0]
         if name not in changes:
