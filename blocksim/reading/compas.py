@@ -15,6 +15,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
@@ -67,7 +68,7 @@ def read_compas(data: Table) -> dict[str, Any]:
     Raises
     ------
     InputError
-        In one line, if it is no assembly, not planar, or nothing in it is a support.
+        In one line, if it is no assembly, or not planar.
     """
     try:
         meshes = [_mesh(*each) for each in islice(_nodes(data), MOST_BLOCKS + 1)]
@@ -77,9 +78,6 @@ def read_compas(data: Table) -> dict[str, Any]:
         allowed = "an assembly of compas_assembly or compas_cra: a graph of blocks"
         raise InputError("file", f"{type(error).__name__}: {error}", allowed) from None
     require(0 < len(meshes) <= MOST_BLOCKS, "blocks", len(meshes), f"1 to {MOST_BLOCKS}")
-    fixed = any(mesh.fixed for mesh in meshes)
-    allowed = 'at least one node with "is_support": true'
-    require(fixed, "supports", "none", allowed)
     depthwise = _direction(meshes)
     # To the right: the direction of the plane that points more to the larger x, or y.
     across = np.cross(depthwise, [0.0, 0.0, 1.0])
@@ -103,7 +101,8 @@ def _inside(value: object) -> Table:
 def _nodes(data: Table) -> Iterator[tuple[str, Table, bool]]:
     """Name, mesh and support of each block, in either of two layouts."""
     if isinstance(data.get("blocks"), dict):
-        places = data["assembly"]["vertex"]
+        graph = data["assembly"]
+        places = graph["vertex"] if "vertex" in graph else graph["node"]
         for name, block in data["blocks"].items():
             yield str(name), _inside(block), bool(places[name].get("is_support", False))
         return
@@ -227,7 +226,12 @@ def _section(mesh: _Mesh, way: Array, across: Array) -> dict[str, Any]:
     low, high = _levels(mesh, way)
     return {
         "id": mesh.name,
-        "polygons": [flat[face].tolist() for face in _ends(mesh, way)],
+        "polygons": [_turned(flat[face]).tolist() for face in _ends(mesh, way)],
         "depth": float(high - low),
         **({"fixed": True} if mesh.fixed else {}),
     }
+
+
+def _turned(corners: Array) -> Array:
+    """Counter-clockwise, as seen along the depth."""
+    return corners[::-1] if signed_area(corners) < 0 else corners

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
@@ -135,6 +138,8 @@ def _block(shape: Shape, layer: str, unit: Unit) -> dict[str, Any]:
     if shape.wrong is not None:
         raise InputError(field, shape.wrong, "an outline of straight sides, in the plane")
     require(len(corners) >= 3, field, f"{len(corners)} corners", "at least three corners")
+    # Nobody means anything by the direction in which an outline was drawn.
+    corners = corners[::-1] if signed_area(np.array(corners)) < 0 else corners
     vertices = [[x * unit.metres, y * unit.metres] for x, y in corners]
     return {"id": plain(shape.name), "vertices": vertices}
 
