@@ -161,7 +161,7 @@ def test_load_needs_live_loads(tmp_path: Path) -> None:
 
 
 def test_least_friction_of_a_wedge_beside_a_block_on_a_slope(tmp_path: Path) -> None:
-    """A plug in a gap that widens downwards, by 10 deg to each side, is held from tan 10 deg on.
+    """A plug in a gap that widens by 10 deg to each side downwards is held from tan 10 deg on.
 
     There the margin jumps to that of the other block, on a slope of 5 deg, and grows with it.
     """

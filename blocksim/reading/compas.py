@@ -15,6 +15,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from blocksim.blocks.entries import FARTHEST
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
 from blocksim.common.checks import require
@@ -118,7 +119,8 @@ def _mesh(name: str, block: Table, fixed: bool) -> _Mesh:
         [[float(each[axis]) for axis in "xyz"] for each in block["vertex"].values()]
     ).reshape(-1, 3)
     field = f"block {name}"
-    require(bool(np.isfinite(points).all()), field, points.tolist(), "finite numbers")
+    near = bool((np.abs(points) <= FARTHEST).all())
+    require(near, field, points.tolist(), f"corners within {FARTHEST:g} m")
     found = tuple(
         np.array([index[str(key)] for key in _listed(row)]) for row in _listed(block["face"])
     )

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from blocksim.blocks.entries import FARTHEST
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.common.checks import require
@@ -114,9 +115,12 @@ def structure_from(shapes: Iterable[Shape], path: Path, unit: Unit) -> dict[str,
         else:
             left[f"{shape.what} on layer {layer}" if layer else shape.what] += 1
     rest = _listed(left)
-    if not blocks:
-        allowed = "on layers blocks and supports"
-        raise InputError("closed outlines", f"none there ({rest or 'it is empty'})", allowed)
+    for layer, fixed in LAYERS.items():
+        found = any(bool(block.get("fixed")) is fixed for block in blocks)
+        # With several blocks, convert can be told which of them are fixed.
+        if not found and (not fixed or len(blocks) < 2):
+            said = f"none (there is {rest or 'nothing else'})"
+            raise InputError(f"closed outlines on layer {layer}", said, "at least one")
     return {
         "title": plain(path.stem)[:200],
         "source": plain(path.name)[:500],
@@ -138,6 +142,8 @@ def _block(shape: Shape, layer: str, unit: Unit) -> dict[str, Any]:
     if shape.wrong is not None:
         raise InputError(field, shape.wrong, "an outline of straight sides, in the plane")
     require(len(corners) >= 3, field, f"{len(corners)} corners", "at least three corners")
+    far = max(abs(each) * unit.metres for corner in corners for each in corner)
+    require(far <= FARTHEST, field, far, f"within {FARTHEST:g} m")
     # Nobody means anything by the direction in which an outline was drawn.
     corners = corners[::-1] if signed_area(np.array(corners)) < 0 else corners
     vertices = [[x * unit.metres, y * unit.metres] for x, y in corners]

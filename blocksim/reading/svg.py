@@ -256,7 +256,7 @@ def _numbers(text: str, field: str) -> list[float]:
     while at < len(text):
         found = _NUMBER.match(text, at)
         if found is None:
-            raise InputError(field, text[at : at + 20], "numbers")
+            raise InputError(field, text, "numbers, without units")
         numbers.append(float(found[0]))
         at = _past_space(text, found.end())
     return numbers
