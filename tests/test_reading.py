@@ -205,6 +205,25 @@ def test_an_assembly_of_compas_is_its_section(
     assert answers(drawn) == pytest.approx(answers(known), rel=1e-9)
 
 
+def test_least_friction_of_the_bridge_of_compas_cra(tmp_path: Path) -> None:
+    """Its own file (MIT, see the licence beside it), with the supports and the weights of its
+    example: blocks 11 to 15 are 3.51 times as heavy. An independent linear programme found
+    0.06956349629.
+    """
+    scene = Path(__file__).parent / "structures" / "scenes" / "compas_cra_bridge.json"
+    out = tmp_path / "bridge.json"
+    done = inside("convert", str(scene), "--mu", "0.9", "--fixed", "0,1", "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    table = json.loads(out.read_text())
+    bare = load_structure(out).assembly.blocks
+    weights = {block.name: block.mass * 9.81 for block in bare}
+    for block in table["blocks"]:
+        if int(block["id"]) >= 11:
+            block["weight"] = 3.51 * weights[block["id"]]
+    found = ask.bracket(ask.family_of(structure_of(table), "mu")).limit
+    assert found == pytest.approx(0.06956349629, rel=2e-8)
+
+
 def test_a_converted_drawing_is_the_same_problem(tmp_path: Path) -> None:
     path = write_dxf(tmp_path / "wall.dxf", WALL, scale=100, unit=0)
     out = tmp_path / "wall.json"
