@@ -383,6 +383,18 @@ def test_tables_of_kinds_have_a_column_and_a_type_for_each_parameter(tmp_path: P
                 assert held[same] == row[same]
 
 
+def test_a_table_of_one_question_about_a_kind(tmp_path: Path) -> None:
+    """Without any whole number in it."""
+    parquet = pytest.importorskip("pyarrow.parquet")
+    with ThreadPoolExecutor(1) as executor:
+        alone = 'kind = "portal"\nmu = 0.7\nmethod = "limit"'
+        sweep(design_of(tmp_path, alone), tmp_path, executor=executor)
+    write_parquet(tmp_path, tmp_path / "rows.parquet")
+    [held] = parquet.read_table(tmp_path / "rows.parquet").to_pylist()
+    [row] = read_rows(tmp_path)
+    assert held == {key: value for key, value in row.items() if key != "parameters"}
+
+
 def test_csv_of_arches_is_their_rows(tmp_path: Path) -> None:
     done = inside(*written(tmp_path, GRID), "--workers", "1", "--csv")
     assert done.returncode == 0, done.stderr
