@@ -149,6 +149,7 @@ def test_every_question_takes_a_drawing(tmp_path: Path, command: str) -> None:
 
 SHAPES = """
 <defs><rect id="hidden" x="0" y="0" width="9" height="9"/></defs>
+<rect width="100%" height="100%"/>
 <g id="supports"><rect x="-1000" y="0" width="8000" height="1000"/></g>
 <g transform="translate(1000 0)"><g class="stone Blocks">
   <g transform="matrix(1 0 0 1 0 -300) scale(2,1)">
@@ -175,7 +176,7 @@ def test_svg_with_transforms_units_and_layers(tmp_path: Path) -> None:
         expected = [(1, low), (2, low), (2, top), (1, top)]
         assert found == pytest.approx(np.array(expected), abs=1e-12)
     assert "0.001 m, by the width" in problem.notes[0]
-    assert "1 text on layer stone" not in problem.notes[1]
+    assert "1 rect" in problem.notes[1]
     assert "1 text on layer Blocks" in problem.notes[1]
     assert "1 open path on layer Blocks" in problem.notes[1]
 

@@ -139,6 +139,9 @@ class _Reader:
             self._inside.pop()
 
     def _shape(self, kind: str, given: dict[str, str], matrix: Matrix, layer: str) -> Shape:
+        if layer.lower() not in LAYERS:
+            # Frames and the like may be anything: "100%" wide, and curved.
+            return Shape(what=kind, layer=layer)
         name = given.get("id", "")
         if not name or name in self._names:
             name = f"{kind} {len(self.shapes) + 1}"
