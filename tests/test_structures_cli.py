@@ -158,3 +158,24 @@ def test_load_needs_live_loads(tmp_path: Path) -> None:
         done = blocksim(*command)
         assert done.returncode == 2
         assert "live" in done.stderr
+
+
+def test_least_friction_of_a_wedge_beside_a_block_on_a_slope(tmp_path: Path) -> None:
+    """A plug in a gap that widens by 10 deg to each side downwards is held from tan 10 deg on.
+
+    There the margin jumps to that of the other block, on a slope of 5 deg, and grows with it.
+    """
+    wide, rise = math.tan(math.radians(10)), math.tan(math.radians(5))
+    left = [[-3, 0], [-0.5 - wide, 0], [-0.5, 1], [-3, 1]]
+    blocks = [
+        {"id": "left", "vertices": left, "fixed": True},
+        {"id": "right", "vertices": [[-x, y] for x, y in left], "fixed": True},
+        {"id": "plug", "vertices": [[-0.5 - wide, 0], [0.5 + wide, 0], [0.5, 1], [-0.5, 1]]},
+        {"id": "slope", "vertices": [[9, -1], [11, -1], [11, 2 * rise], [9, 0]], "fixed": True},
+        {"id": "rider", "vertices": [[9.5, 0.5 * rise], [10.5, 1.5 * rise], [10.5, 1]]},
+    ]
+    path = tmp_path / "wedge.json"
+    path.write_text(json.dumps({"friction": 0.9, "blocks": blocks}))
+    answer = json.loads(blocksim("bracket", str(path), "--over", "mu", "--json").stdout)
+    assert answer["limit"] == pytest.approx(wide, rel=1e-8)
+    assert answer["low"] < wide < answer["high"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import subprocess
@@ -12,12 +13,12 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecu
 from pathlib import Path
 
 import pytest
-from running import blocksim
+from running import blocksim, inside
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim import Arch, bracket, check
 from blocksim.common.errors import InputError, MissingPart
-from blocksim.many import Case, answers, read_rows, run, sweep, write_parquet
+from blocksim.many import Case, answers, read_rows, run, sweep, write_csv, write_parquet
 from blocksim.many import table as tables
 from blocksim.many.answers import Answered, Asked, answer
 from blocksim.many.shards import identities
@@ -331,6 +332,84 @@ def test_a_parquet_table_holds_the_same_rows(
         if settings is not None:
             held["settings"] = {k: value for k, value in settings.items() if value is not None}
         assert held == {**row, "mu": float(str(row["mu"]))}
+
+
+KINDS_GRID = """
+kind = "portal"
+pier_width = { low = 0.3, high = 1, steps = 3 }
+arch = { kind = "circular-arch", voussoirs = [6, 8], joints = ["normal", "radial"] }
+mu = [0.7, inf]
+tilt_deg = 2.5
+method = "limit"
+"""
+
+
+def test_tables_of_kinds_have_a_column_and_a_type_for_each_parameter(tmp_path: Path) -> None:
+    """CSV is read by the rules of a reader that guesses types, as pandas does."""
+    arrow_csv = pytest.importorskip("pyarrow.csv")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(tmp_path, KINDS_GRID), tmp_path, executor=executor)
+    write_csv(tmp_path, tmp_path / "rows.csv")
+    write_parquet(tmp_path, tmp_path / "rows.parquet")
+    rows = list(read_rows(tmp_path))
+    assert len(rows) == 24
+    types = {
+        "pier_width_m": "double",
+        "arch.voussoirs": "int64",
+        "arch.joints": "string",
+        "mu": "double",
+        "tilt_deg": "double",
+        "load_factor": "double",
+        "verdict": "string",
+        "wall_s": "double",
+    }
+    for table in (
+        arrow_csv.read_csv(tmp_path / "rows.csv"),
+        parquet.read_table(tmp_path / "rows.parquet"),
+    ):
+        found = {name: str(table.schema.field(name).type) for name in types}
+        empty = {name for name, kind in found.items() if kind == "null"}
+        assert empty <= {"load_factor"}
+        assert found | dict.fromkeys(empty, "double") == types
+        assert "parameters" not in table.schema.names
+        for row, held in zip(rows, table.to_pylist(), strict=True):
+            asked = row["parameters"]
+            assert held["pier_width_m"] == asked["pier_width"]
+            assert held["arch.voussoirs"] == asked["arch.voussoirs"]
+            assert held["arch.joints"] == asked["arch.joints"]
+            assert held["mu"] == float(str(row["mu"]))
+            for same in ("id", "method", "verdict", "tilt_deg", "wall_s", "reason"):
+                assert held[same] == row[same]
+
+
+def test_a_table_of_one_question_about_a_kind(tmp_path: Path) -> None:
+    """Without any whole number in it."""
+    parquet = pytest.importorskip("pyarrow.parquet")
+    with ThreadPoolExecutor(1) as executor:
+        alone = 'kind = "portal"\nmu = 0.7\nmethod = "limit"'
+        sweep(design_of(tmp_path, alone), tmp_path, executor=executor)
+    write_parquet(tmp_path, tmp_path / "rows.parquet")
+    [held] = parquet.read_table(tmp_path / "rows.parquet").to_pylist()
+    [row] = read_rows(tmp_path)
+    assert held == {key: value for key, value in row.items() if key != "parameters"}
+
+
+def test_csv_of_arches_is_their_rows(tmp_path: Path) -> None:
+    done = inside(*written(tmp_path, GRID), "--workers", "1", "--csv")
+    assert done.returncode == 0, done.stderr
+    rows = list(read_rows(tmp_path / "out"))
+    with (tmp_path / "out/rows.csv").open(newline="") as file:
+        held = list(csv.DictReader(file))
+    assert len(held) == len(rows) == 192
+    for row, said in zip(rows, held, strict=True):
+        for name, value in row.items():
+            if name == "settings":
+                continue
+            if isinstance(value, float) and not isinstance(value, bool):
+                assert float(said[name]) == value
+            else:
+                assert said[name] == ("" if value is None else str(value))
 
 
 def test_a_table_is_written_where_it_can_be(tmp_path: Path) -> None:

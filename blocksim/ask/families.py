@@ -336,4 +336,6 @@ def _root(
     one, two = (margin(min(max(found + k * step, low), high)) - ENOUGH for k in (1, 2))
     if one < 10 * ENOUGH or two <= one:
         return found
-    return found + step - one * step / (two - one)
+    zero = found + step - one * step / (two - one)
+    # Where blocks can be wedged the margin jumps, and its zero is found already.
+    return zero if abs(zero - found) <= abs(step) else found

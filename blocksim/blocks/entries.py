@@ -21,6 +21,8 @@ Point = tuple[Number, Number]
 Corners = Annotated[list[Point], Field(min_length=3, max_length=MOST_CORNERS)]
 Name = Annotated[str, Field(min_length=1, max_length=100, strict=True)]
 Id = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
+Note = Annotated[str, Field(max_length=2000, strict=True)]
+MOST_NOTES = 20
 Friction = (
     Annotated[float, Field(ge=0, le=FARTHEST, allow_inf_nan=False, strict=True)]
     | Literal["inf"]
@@ -132,7 +134,8 @@ class Around:
     """What a structure file says besides its blocks: friction, weight and loads.
 
     `load` (the factor on `live`) and `size` are what records need to be read back; files may
-    have them, too. `expect` and `quick` are for `validate`.
+    have them, too. `notes` say how a file was made of another; they are said with each answer.
+    `expect` and `quick` are for `validate`.
     """
 
     __pydantic_config__: ClassVar = _FORBID
@@ -147,6 +150,7 @@ class Around:
     shake: ShakeEntry | None = None
     load: Number = 0.0
     size: Positive | None = None
+    notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
     expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     quick: Annotated[bool, Field(strict=True)] = False
 

@@ -157,7 +157,10 @@ def assembly_of_bodies(
     raw = [_finite(body, index) for index, body in enumerate(bodies)]
     moving = [index for index, body in enumerate(bodies) if not body.fixed]
     require(bool(moving), "blocks", "all fixed", "at least one that is not fixed")
-    require(len(moving) < len(bodies), "blocks", "none fixed", "at least one with fixed = true")
+    held = (
+        "at least one with fixed = true (drawings: on the layer supports; compas: is_support)"
+    )
+    require(len(moving) < len(bodies), "blocks", "none fixed", held)
     points = np.concatenate([polygon for index in moving for polygon in raw[index]])
     size = float(np.ptp(points, axis=0).max()) / 2 if size is None else size
     require(size > 0, "blocks", "no extent", "polygons with an area")

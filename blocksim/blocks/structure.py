@@ -176,7 +176,7 @@ def problem_of(
         title=written.title,
         source=written.source,
         weighed=written.density is not None or all(map(_has_weight, bodies)),
-        notes=(*notes, *found),
+        notes=(*written.notes, *notes, *found),
     )
 
 

@@ -21,6 +21,8 @@ from blocksim.cli.console import (
 from blocksim.cli.drawing import write_arch
 from blocksim.cli.filming import (
     HEIGHT,
+    MODELS,
+    TABLES,
     Beside,
     EngineOption,
     Height,
@@ -28,6 +30,7 @@ from blocksim.cli.filming import (
     Slow,
     Time,
     View,
+    export,
     film,
     recordings,
     require_height,
@@ -212,7 +215,10 @@ def render(
     loading: Loading,
     out: Annotated[
         Path | None,
-        typer.Option(help="File to write: .mp4, .gif, .png, .svg or .pdf; required."),
+        typer.Option(
+            help="File to write: .mp4, .gif, .png, .svg, .pdf, or .glb, .gltf, .csv, .json "
+            "of a recording; required."
+        ),
     ] = None,
     scene: Annotated[
         str | None,
@@ -230,14 +236,20 @@ def render(
     A picture of a scenario shows its lines of thrust and friction and its mechanism: at
     the thickness given, the voussoirs as built; with none given, the continuous arch at its
     least thickness, in each of its collapse modes. Everything else is drawn from a
-    recording: a film, a view in 3d, a frame of an .npz file. A scenario is simulated first,
-    1 % below its least thickness where none is given.
+    recording: a film, a view in 3d, a frame of an .npz file, an animated model (glTF), tables.
+    A scenario is simulated first, 1 % below its least thickness where none is given.
     """
     if scene is None:
         question(scene, given, out=out)
     require_given(out=out)
     out = out or Path()
-    kind = picture_kind(out, (*FILMS, "png", "svg", "pdf"))
+    kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", *MODELS, *TABLES))
+    if kind in (*MODELS, *TABLES):
+        options = {"beside": beside, "slow": slow, "time": time, "height": height}
+        for name, value in options.items():
+            require(value is None, f"--{name}", value, f"left out of a .{kind}")
+        export(out, kind, *recordings(scene, given, loading, method, None))
+        return
     filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
         shown = RenderOptions(view=view, slow=slow, time=time, height=height or HEIGHT)

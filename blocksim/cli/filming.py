@@ -16,6 +16,7 @@ from blocksim.arch.motion import load_recording
 from blocksim.arch.scenario import Scenario
 from blocksim.ask.methods import SPATIAL
 from blocksim.ask.simulate import simulate
+from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.cli.console import progress, say
 from blocksim.cli.options import Given, Loading, named_options, option_of
 from blocksim.cli.structures import problem_asked
@@ -26,6 +27,7 @@ from blocksim.evidence.motion import MOVED
 from blocksim.evidence.observation import conclude, hold
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
+from blocksim.report.poses import write_recording_csv, write_recording_json
 
 FALL = 12.0
 """Time recorded of a scenario at most: it ends when the rubble lies still [sqrt(r/g)]."""
@@ -36,6 +38,9 @@ STILL = 1e-3
 """Time recorded of an arch of which only a picture is wanted [sqrt(r/g)]."""
 SHOWN = 0.2
 """Largest motion in the picture of an arch that overturns [r]."""
+
+MODELS, TABLES = ("glb", "gltf"), ("csv", "json")
+"""Endings of recordings as glTF, and as numbers."""
 
 Beside = Annotated[
     Path | None, typer.Option(help="A second recording, .npz, to show side by side.")
@@ -141,6 +146,25 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
     for recording, moves in zip(shown, made.moves, strict=True):
         if not moves:
             say(_motionless(recording))
+
+
+def export(out: Path, kind: str, recording: Recording) -> None:
+    """Write a recording as glTF or as a table, in metres and seconds, and say so."""
+    if kind in MODELS:
+        # What it draws with takes a second to import, which other commands need not wait for.
+        from blocksim.view.gltf import write_gltf
+
+        write_whole(out, lambda file: write_gltf(recording, file, kind))
+    else:
+        write = write_recording_csv if kind == "csv" else write_recording_json
+        write_whole(out, lambda file: write(recording, file))
+    # A radius of 1 stands for none given.
+    no_radius = recording.assembly.size == 1 and arch_of_problem(recording.problem)
+    radius = " if r = 1 m" if no_radius else ""
+    say(
+        f"wrote {out}: {len(recording.assembly.blocks)} blocks, {len(recording.times)} frames, "
+        f"{recording.seconds(STANDARD_GRAVITY)[-1]:.3g} s{radius}"
+    )
 
 
 def _motionless(recording: Recording) -> str:

@@ -42,6 +42,7 @@ from blocksim.evidence.recording import Recording
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import (
     changed,
+    is_drawing,
     load_structure,
     shipped_structures,
     structure_of,
@@ -66,10 +67,12 @@ def is_structure(scene: str | None) -> bool:
     """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
     if scene in KINDS or scene in shipped_structures():
         return True
-    if scene is None or not scene.endswith((".json", ".toml")):
+    if scene is None:
         return False
-    if scene.endswith(".json"):
+    if is_drawing(scene) or scene.lower().endswith(".json"):
         return True
+    if not scene.endswith(".toml"):
+        return False
     path = Path(scene)
     try:
         if not path.is_file() or path.stat().st_size > LARGEST_PEEK:
@@ -128,7 +131,10 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
             table = changed({"kind": scene, "friction": 0.0}, changes)
             built = structure_of(table if density is None else weighed(table, density))
         else:
-            built = load_structure(scene, changes, density)
+            if is_drawing(scene):
+                require_given(mu=given.friction)
+            friction = None if given.friction is None else 0.0
+            built = load_structure(scene, changes, density, friction=friction)
     except InputError as error:
         name = error.field.partition("[")[0]
         if name not in changes:

@@ -130,6 +130,9 @@ def sweep(
     parquet: Annotated[
         bool, typer.Option("--parquet", help="Write all rows as a table, too: rows.parquet.")
     ] = False,
+    csv: Annotated[
+        bool, typer.Option("--csv", help="Write all rows as CSV, too: rows.csv.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Ask about many arches; a kill at any moment loses nothing that was done."""
@@ -137,7 +140,9 @@ def sweep(
         extra = " and --out" if out is None else ""
         raise InputError(f"DESIGN{extra}", ALL_MISSING if extra else MISSING, "given")
     require_given(out=out)
-    run_sweep(design, out or Path(), workers, scheduler, parquet=parquet, as_json=as_json)
+    run_sweep(
+        design, out or Path(), workers, scheduler, parquet=parquet, csv=csv, as_json=as_json
+    )
 
 
 @app.command(name="map")

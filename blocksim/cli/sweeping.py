@@ -10,7 +10,7 @@ from blocksim.cli.console import answer_with, progress
 from blocksim.many import Summary, load_design, write_parquet
 from blocksim.many import sweep as ask_sweep
 from blocksim.many.cluster import cluster
-from blocksim.many.table import require_parquet
+from blocksim.many.table import require_parquet, write_csv
 
 
 def run_sweep(
@@ -20,6 +20,7 @@ def run_sweep(
     scheduler: str | None,
     *,
     parquet: bool,
+    csv: bool,
     as_json: bool,
 ) -> None:
     """Run a design on processes or on a cluster, and say what was done."""
@@ -34,6 +35,8 @@ def run_sweep(
         done = ask_sweep(design, out, executor=executor, workers=workers, progress=report)
         if parquet:
             write_parquet(out, out / "rows.parquet")
+        if csv:
+            write_csv(out, out / "rows.csv")
     answer_with(summary_record(done), summary_lines(done, out), as_json=as_json)
 
 

@@ -1,4 +1,7 @@
-"""Structure files, JSON or TOML: blocks, or a kind and its parameters.
+"""Structure files, JSON or TOML: blocks, or a kind and its parameters; and files of others.
+
+Those are drawings (DXF, SVG) and assemblies of compas (JSON): `blocksim.reading` makes of each
+what a structure file says.
 
 Lengths in m, forces in N, angles in degrees, y upwards. The keys besides blocks are those of
 `blocks.entries.Around`, with blocks those of `StructureFile`.
@@ -7,9 +10,11 @@ Lengths in m, forces in N, angles in degrees, y upwards. The keys besides blocks
 from __future__ import annotations
 
 import json
+import math
+import re
 import tomllib
 from collections.abc import Generator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -29,10 +34,15 @@ from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, require_file, shipped_files
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, kind_of, parameters_of
+from blocksim.reading.compas import is_compas, read_compas
+from blocksim.reading.dxf import read_dxf
+from blocksim.reading.svg import read_svg
 
 LARGEST_FILE = 50_000_000
 """Bytes; a larger file is not read."""
 WRITTEN = {".json": "JSON", ".toml": "TOML"}
+DRAWN = {".dxf": read_dxf, ".svg": read_svg}
+"""Endings of drawings, and who reads them."""
 
 
 def shipped_structures() -> dict[str, Path]:
@@ -40,35 +50,60 @@ def shipped_structures() -> dict[str, Path]:
     return shipped_files("structures/*.toml")
 
 
+def is_drawing(path: Path | str) -> bool:
+    """Tell a drawing by its ending."""
+    return Path(path).suffix.lower() in DRAWN
+
+
 def load_structure(
     path: AnyPath,
     changes: Mapping[str, object] = MappingProxyType({}),
     density: float | None = None,
+    *,
+    friction: float | None = None,
 ) -> Problem:
-    """Read a structure file.
+    """Read a structure file, a drawing or an assembly of compas.
 
     Parameters
     ----------
     path : str or path
-        Ends in .json or .toml, or the name of a shipped one.
+        Ends in .json, .toml, .dxf or .svg, or the name of a shipped one.
     changes : mapping of str to object
         Parameters of its kind instead of those it says; `arch.thickness`: of its arch.
     density : float, optional
         Weight per volume instead of what it says [N/m^3].
+    friction : float, optional
+        Where the file says none, as drawings do not; inf allowed.
 
     Raises
     ------
     InputError
         In one line: file, entry, value, and what would be accepted.
     """
-    with named_file(path) as data:
+    with named_file(path) as said:
+        data = said if friction is None else with_friction(said, friction)
         table = changed(data, changes) if changes else data
         return structure_of(table if density is None else weighed(table, density))
 
 
+def with_friction(data: object, friction: float) -> object:
+    """Return what a file says, with a friction if it says none."""
+    if not isinstance(data, dict):
+        return data
+    table = cast("dict[str, Any]", data)
+    return {"friction": "inf" if friction == math.inf else friction, **table}
+
+
 @contextmanager
-def named_file(path: AnyPath) -> Generator[object]:
+def named_file(path: AnyPath, unit: float | None = None) -> Generator[object]:
     """Give what a structure file says; what is wrong with it is said with the file's name.
+
+    Parameters
+    ----------
+    path : Path or str
+        As of `load_structure`.
+    unit : float, optional
+        Metres that a unit of a drawing is; by default what the drawing says.
 
     Raises
     ------
@@ -76,25 +111,48 @@ def named_file(path: AnyPath) -> Generator[object]:
         In one line, also what is raised while it is used.
     """
     path = Path(path)
-    if path.suffix not in WRITTEN:
+    ending = path.suffix.lower()
+    if ending not in WRITTEN and ending not in DRAWN:
         path = shipped_structures().get(str(path), path)
-    allowed = "an existing structure file, .json or .toml, or a shipped structure"
-    require(path.suffix in WRITTEN, "structure", str(path), allowed)
+        ending = path.suffix
+    endings = ".json, .toml, .dxf or .svg"
+    allowed = f"an existing structure file, {endings}, or a shipped structure"
+    require(ending in WRITTEN or ending in DRAWN, "structure", str(path), allowed)
     require_file(path, "structure", allowed, LARGEST_FILE)
-    written = WRITTEN[path.suffix]
+    data: object = None
     try:
-        text = path.read_text(encoding="utf-8")
-        yield (
-            json.loads(text, object_pairs_hook=_once)
-            if written == "JSON"
-            else tomllib.loads(text)
-        )
+        if ending in DRAWN:
+            data = DRAWN[ending](path, unit)
+        else:
+            require(unit is None, "--unit", unit, "left out: it is of drawings")
+            data = _written(path.read_text(encoding="utf-8"), WRITTEN[ending])
+        yield data
     except InputError as error:
-        raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
+        field = _by_name(error.field, data)
+        raise InputError(field, error.value, error.allowed, where=str(path)) from None
     except (ValueError, RecursionError) as error:
         # Not JSON or TOML, no UTF-8, numbers beyond all bounds, or nested too deeply.
         said = " ".join(str(error).split())
-        raise InputError("file", said, f"valid {written}", where=str(path)) from None
+        raise InputError("file", said, f"valid {WRITTEN[ending]}", where=str(path)) from None
+
+
+def _written(text: str, language: str) -> object:
+    """Return what a text says, an assembly of compas as a structure file would."""
+    if language == "TOML":
+        return tomllib.loads(text)
+    data: object = json.loads(text, object_pairs_hook=_once)
+    return read_compas(cast("dict[str, Any]", data)) if is_compas(data) else data
+
+
+def _by_name(field: str, data: object) -> str:
+    """Say which block of another's file is meant, where nobody has numbered them."""
+    found = re.match(r"blocks\[(\d+)\]", field)
+    table = cast("dict[str, Any]", data) if isinstance(data, dict) else {}
+    if found is None or "notes" not in table:
+        return field
+    with suppress(IndexError, KeyError, TypeError):
+        return f"block {table['blocks'][int(found[1])]['id']}{field[found.end() :]}"
+    return field
 
 
 def changed(data: object, changes: Mapping[str, object]) -> dict[str, Any]:

@@ -104,6 +104,7 @@ class StructureCase(NamedTuple):
             "mu": "inf" if math.isinf(self.mu) else self.mu,
             **{name: acting.get(name) for name in ACTING},
             "over": self.over,
+            "unit": None,
             "asked": self.method,
             "settings": dict(self.settings) or None,
             "method": self.method,
@@ -150,6 +151,7 @@ class StructureCase(NamedTuple):
         found = bracket(family, method=self.method, tol=self.tol, settings=dict(self.settings))
         return {
             "method": found.method,
+            "unit": family.unit,
             "limit": _written(found.limit),
             "low": found.low,
             "high": found.high,

@@ -1,15 +1,25 @@
-"""Rows as one Parquet table; the only place that knows pyarrow."""
+"""Rows as one table, Parquet or CSV, a type a column; the only place that knows pyarrow.
+
+Columns are the keys of a row. The unit ends the name of a number that has one: `tilt_deg`,
+`wall_s`, and of kinds of structures `radius_m`, a column for each parameter that any row has.
+`low`, `high` and `limit` of a bracket are in what its `unit` says.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
+from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
 from itertools import chain, islice
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, cast
 
 from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, write_whole
 from blocksim.evidence.simulation import SETTINGS
+from blocksim.kinds import KINDS
+from blocksim.kinds.base import Parameter, parameters_of
 from blocksim.many.shards import read_rows
 
 ROWS_AT_ONCE = 50_000
@@ -43,13 +53,14 @@ COLUMNS = {
 STRUCTURE_COLUMNS = {
     "id": "string",
     "kind": "string",
-    "parameters": "string",
+    "parameters": "parameters",
     "mu": "double",
     "load": "double",
     "tilt_deg": "double",
     "amplitude_g": "double",
     "duration_s": "double",
     "over": "string",
+    "unit": "string",
     "asked": "string",
     "settings": "settings",
     "method": "string",
@@ -67,7 +78,7 @@ STRUCTURE_COLUMNS = {
     "error": "string",
     "wall_s": "double",
 }
-"""The same of other structures; parameters, of which each kind has its own, are JSON."""
+"""The same of other structures; each kind has parameters of its own."""
 NUMBERS = ("mu", "load_factor", "limit")
 """Those that may be infinite, which JSON writes as a text."""
 
@@ -81,8 +92,7 @@ def require_parquet() -> None:
 def write_parquet(folder: AnyPath, path: AnyPath) -> None:
     """Write the rows of a sweep as a Parquet table, in the order of `read_rows`.
 
-    Columns are the keys of a row; infinite friction is a number, and settings that were
-    not given are null.
+    Infinite friction is a number, and settings that were not given are null.
 
     Parameters
     ----------
@@ -104,33 +114,121 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
 
     arrow: Any = pyarrow
     tables: Any = parquet
-    rows = read_rows(folder)
-    empty: dict[str, object] = {}
-    first = next(rows, empty)
-    schema = _schema(arrow, STRUCTURE_COLUMNS if "kind" in first else COLUMNS)
-    rows = chain([first] if first else [], rows)
+    columns = _columns(folder)
+    schema = _schema(arrow, columns)
+    rows = (_flat(row) for row in read_rows(folder))
 
     def write(file: BinaryIO) -> None:
         with tables.ParquetWriter(file, schema, compression="zstd") as table:
-            while held := [_numbered(row) for row in islice(rows, ROWS_AT_ONCE)]:
+            while held := list(islice(rows, ROWS_AT_ONCE)):
                 table.write_batch(arrow.RecordBatch.from_pylist(held, schema))
 
     write_whole(path, write)
 
 
-def _numbered(row: dict[str, object]) -> dict[str, object]:
-    """Return a row with its numbers as such, and parameters as JSON."""
+def write_csv(folder: AnyPath, path: AnyPath) -> None:
+    """Write the rows of a sweep as CSV, in the order of `read_rows`: for `pandas.read_csv`.
+
+    Nothing stands for what is not there, `inf` for infinity; settings are columns of their
+    own, `settings.step`.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the sweep.
+    path : Path
+        Table to write, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If a file is not of a sweep, or the table cannot be written.
+    """
+    settings = [f"settings.{name}" for name in SETTINGS]
+    names: list[str] = []
+    for name in _columns(folder):
+        names += settings if name == "settings" else [name]
+
+    def write(file: BinaryIO) -> None:
+        text = io.TextIOWrapper(file, encoding="utf-8", newline="")
+        table = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
+        table.writeheader()
+        for row in read_rows(folder):
+            given = cast("dict[str, object]", row.get("settings") or {})
+            own = {f"settings.{name}": value for name, value in given.items()}
+            table.writerow(_flat(row) | own)
+        text.flush()
+        text.detach()
+
+    write_whole(path, write)
+
+
+def _columns(folder: AnyPath) -> dict[str, str]:
+    """Names and types of the columns: those of parameters are found in the rows."""
+    rows: Iterator[dict[str, object]] = read_rows(folder)
+    empty: dict[str, object] = {}
+    first = next(rows, empty)
+    if "kind" not in first:
+        return COLUMNS
+    parameters: dict[str, str] = {}
+    for row in chain([first], rows):
+        for name in _parameters(row):
+            known = _known(str(row["kind"]), name)
+            parameters[_column(name, known)] = _type_of(known)
+    columns: dict[str, str] = {}
+    for name, kind in STRUCTURE_COLUMNS.items():
+        columns |= parameters if name == "parameters" else {name: kind}
+    return columns
+
+
+def _parameters(row: Mapping[str, object]) -> dict[str, object]:
+    return cast("dict[str, object]", row.get("parameters") or {})
+
+
+def _known(kind: str, name: str) -> Parameter | None:
+    """Return what is known of a parameter of a kind, or of the arch in it."""
+    last = name.rpartition(".")[2]
+    kinds = [KINDS[kind]] if kind in KINDS and last == name else []
+    found = (parameters_of(each).get(last) for each in (*kinds, *KINDS.values()))
+    return next((each for each in found if each is not None), None)
+
+
+def _type_of(known: Parameter | None) -> str:
+    if known is None or not known.is_number:
+        return "string"
+    return "int64" if known.whole else "double"
+
+
+def _held(value: object, kind: str) -> object:
+    """Return the value of a parameter as its column holds it."""
+    if value is None or isinstance(value, str):
+        return value
+    if kind == "string":
+        return json.dumps(value)
+    number = float(str(value))
+    return number if kind == "double" else int(number)
+
+
+def _column(name: str, known: Parameter | None) -> str:
+    return f"{name}_{known.unit}" if known is not None and known.unit else name
+
+
+def _flat(row: dict[str, object]) -> dict[str, object]:
+    """Return a row with its numbers as such, and with its parameters as columns."""
     found = dict(row)
     for key in NUMBERS:
         if found.get(key) is not None:
             found[key] = float(str(found[key]))
-    if "parameters" in found:
-        found["parameters"] = json.dumps(found["parameters"])
+    for name, value in _parameters(found).items():
+        known = _known(str(row["kind"]), name)
+        found[_column(name, known)] = _held(value, _type_of(known))
+    found.pop("parameters", None)
     return found
 
 
 def _schema(arrow: Any, columns: dict[str, str]) -> Any:
-    types = {kind: arrow.type_for_alias(kind) for kind in {*columns.values()} - {"settings"}}
+    names = {*columns.values(), "int64", "double"} - {"settings"}
+    types = {kind: arrow.type_for_alias(kind) for kind in names}
     fields = [
         (name, types["int64" if setting.is_whole else "double"])
         for name, setting in SETTINGS.items()

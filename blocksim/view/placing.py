@@ -43,7 +43,7 @@ class Placing:
         self.sides = max(sides, *(len(each) for _, each in pieces))
         self.outlines = np.array([padded(each, self.sides) for _, each in pieces])
         self._half = assembly.depths[self.owner] / 2
-        self._turns = _quaternions(recording)
+        self._turns = quaternions(recording)
 
     def corners(self, earlier: int, later: int, share: float) -> Array:
         """Corners in space between two frames."""
@@ -71,8 +71,8 @@ class Placing:
 
     def _placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:
         """Centres and rotations of the blocks between two frames."""
-        centres = _centres(self._recording, earlier) * (1 - share)
-        centres += _centres(self._recording, later) * share
+        centres = centres_at(self._recording, earlier) * (1 - share)
+        centres += centres_at(self._recording, later) * share
         turns = self._turns[earlier] * (1 - share) + self._turns[later] * share
         turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
         return centres, turns
@@ -83,7 +83,7 @@ def padded(outline: Array, sides: int) -> Array:
     return np.pad(outline, ((0, sides - len(outline)), (0, 0)), "edge")
 
 
-def _centres(recording: Recording, frame: int) -> Array:
+def centres_at(recording: Recording, frame: int) -> Array:
     """Centres of the blocks in space, (blocks, 3)."""
     poses = recording.poses[frame]
     centres = np.zeros((len(poses), 3))
@@ -93,7 +93,7 @@ def _centres(recording: Recording, frame: int) -> Array:
     return centres
 
 
-def _quaternions(recording: Recording) -> Array:
+def quaternions(recording: Recording) -> Array:
     """Rotations as unit quaternions w, x, y, z that go on smoothly, (frames, blocks, 4)."""
     poses = recording.poses
     vectors = np.zeros((*poses.shape[:2], 3))

@@ -1,0 +1,84 @@
+"""The command that makes a structure file of a drawing or of another program's file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, cast
+
+import typer
+
+from blocksim.cli.app import app
+from blocksim.cli.console import say
+from blocksim.cli.options import named_options, require_given
+from blocksim.common.checks import require
+from blocksim.common.errors import InputError
+from blocksim.common.files import json_text, require_place, write_whole
+from blocksim.kinds.files import is_drawing, named_file, structure_of, with_friction
+
+
+@app.command()
+def convert(
+    source: Annotated[
+        str, typer.Argument(help="A drawing, .dxf or .svg, or an assembly of compas, .json.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="Structure file to write, .json; required.")
+    ] = None,
+    mu: Annotated[
+        float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")
+    ] = None,
+    unit: Annotated[
+        float | None,
+        typer.Option(help="Metres that a unit of the drawing is; 0.001 for mm."),
+    ] = None,
+    fixed: Annotated[
+        str | None, typer.Option(help="Blocks that stay where they are: ids, with commas.")
+    ] = None,
+) -> None:
+    """Write what was drawn as a structure file, to add loads, weights or frictions to."""
+    require_given(out=out)
+    out = out or Path()
+    require(out.suffix == ".json", "--out", str(out), "a file name ending in .json")
+    require_place(out)
+    if is_drawing(source):
+        require_given(mu=mu)
+    with named_options(), named_file(source, unit) as data:
+        said = data if mu is None else with_friction(data, mu)
+        require(isinstance(said, dict), "structure", type(said).__name__, "a table of keys")
+        table = _held(cast("dict[str, Any]", said), fixed)
+        problem = structure_of(table)
+    write_whole(out, lambda file: file.write(_text(table).encode()))
+    assembly = problem.assembly
+    say(
+        f"wrote {out}: {len(assembly.blocks)} blocks, {len(assembly.supports)} supports, "
+        f"{len(assembly.joints)} joints"
+    )
+    for note in problem.notes:
+        say(f"  {note}")
+
+
+def _held(table: dict[str, Any], fixed: str | None) -> dict[str, Any]:
+    """Return a structure with more blocks that stay where they are."""
+    if fixed is None:
+        return table
+    wanted = {each.strip() for each in fixed.split(",")}
+    blocks = [
+        {**block, "fixed": True} if str(block["id"]) in wanted else block
+        for block in table.get("blocks", [])
+    ]
+    known = {str(block["id"]) for block in blocks}
+    for name in wanted - known:
+        raise InputError("--fixed", name, f"ids of blocks: {', '.join(sorted(known)[:20])}")
+    return {**table, "blocks": blocks}
+
+
+def _text(table: dict[str, Any]) -> str:
+    """Return JSON that people can edit: a line for each block."""
+    lines: list[str] = []
+    for key, value in table.items():
+        text = json_text(value)
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            rows = [f"    {json_text(each)}" for each in cast("list[object]", value)]
+            text = "[\n" + ",\n".join(rows) + "\n  ]"
+        lines.append(f"  {json_text(key)}: {text}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"
