@@ -246,16 +246,26 @@ def _reaching(sides: tuple[Side, Side], ends: Array, ways: Array) -> tuple[Side,
 
 
 def _layers(assembly: Assembly) -> Array:
-    """Return where across the plane joints are, so that no two of a block meet, (joints,)."""
-    taken: dict[int, set[int]] = defaultdict(set)
-    found = np.zeros(len(assembly.joints))
-    for index, joint in enumerate(assembly.joints):
-        its = [taken[body] for body in (joint.before, joint.after) if body != SUPPORT]
-        layer = next(k for k in itertools.count() if not any(k in each for each in its))
-        for each in its:
-            each.add(layer)
-        found[index] = layer
-    return found * 2 * NARROW * max(assembly.joint_arrays.length.max(), EDGE)
+    """Return where across the plane joints are, (joints,).
+
+    Of two blocks that meet all sides may touch, not those of their joint alone. So each
+    joint of either is in a layer of its own: sides of others reach into each other where
+    a voussoir is narrow (at eta = 2 the intrados is a point).
+    """
+    joints_of: dict[int, set[int]] = defaultdict(set)
+    meets: dict[int, set[int]] = defaultdict(set)
+    blocks = [{joint.before, joint.after} - {SUPPORT} for joint in assembly.joints]
+    for index, its in enumerate(blocks):
+        for block in its:
+            joints_of[block].add(index)
+            meets[block] |= its
+    found: list[int] = []
+    for its in blocks:
+        near = {joint for one in its for other in meets[one] for joint in joints_of[other]}
+        taken = {found[joint] for joint in near if joint < len(found)}
+        found.append(next(k for k in itertools.count() if k not in taken))
+    spacing = 2 * NARROW * max(assembly.joint_arrays.length.max(), EDGE)
+    return np.array(found) * spacing
 
 
 def _breaking(assembly: Assembly, across: float = 0.0) -> float:
