@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arches import arch_at, held_in, mirrored, shuffled
+from scipy.spatial.transform import Rotation
 from structure_cases import case, scenes
 
 from analysis import rubble
@@ -34,7 +35,7 @@ from blocksim.evidence.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 
-from blocksim.engines.boxes import Frame
+from blocksim.engines.boxes import Frame, unwound
 from blocksim.engines.pybullet import ENGINE, Bodies
 
 ARCHES = [
@@ -279,3 +280,25 @@ def test_the_thinnest_arches_are_given_up_soon() -> None:
     """Sweeps would grow without end as joints shorten; what few can tell is undecided."""
     arch = Arch(half_angle=math.radians(60), eta=1e-9, voussoirs=3)
     assert observe(arch.problem(1.0), "pybullet").verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1), (0.6, 0, 0.8), (1, 0, 0)])
+@pytest.mark.parametrize("end", [3.2, 2 * math.pi, 20.0])
+def test_whole_turns_are_counted(axis: tuple[float, ...], end: float) -> None:
+    """An orientation is the same after each, and knows half a turn at most."""
+    turned = np.zeros((1, 3))
+    for angle in [*np.arange(0.0, end, 0.5), end]:
+        expected = angle * np.array([axis])
+        seen = Rotation.from_rotvec(expected).as_rotvec()
+        turned = unwound(seen, turned)
+        assert turned == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_block_on_its_head_lies_still() -> None:
+    """Turned by half a turn it may be seen as turned either way, and rocks only in numbers."""
+    problem = rubble.drawn(rubble.Case(13, "column"))
+    recording = simulate_problem(problem, method="pybullet", duration=rubble.LONGEST)
+    turned = recording.poses[:, :, 2]
+    assert (np.abs(np.abs(turned[-1]) - math.pi) < 1e-3).any()
+    assert np.abs(np.diff(turned, axis=0)).max() < 1.0
+    assert recording.times[-1] < rubble.LONGEST

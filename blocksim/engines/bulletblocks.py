@@ -17,8 +17,8 @@ How a near-critical arch has to be put into it (each point measured, see
 - Where gravity lies in the plane so does all motion, by symmetry. Sweeps break it, though:
   of two contacts across the plane the first takes more, and walls rock out of the plane
   for as long as they are solved. There inertias out of the plane are beyond reach (`LOCK`),
-  and a joint is so narrow that Bullet makes one contact of two. A lock a million times
-  softer is no lock: it leaves 3e-5 g that no sweeps remove.
+  and a joint is so narrow that Bullet makes one contact of two. A million times the true
+  ones, as others take, leave a hundred times more that no sweeps remove (1e-6 g).
 - Where gravity leans out of the plane inertias are the true ones.
 
 Bullet's x and y are those of the assembly's plane, z is out of it. In that frame the two

@@ -22,7 +22,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Quality, Settings
-from blocksim.engines.boxes import Frame
+from blocksim.engines.boxes import TURNS, Frame, unwound
 from blocksim.engines.bulletblocks import (
     breaking_of,
     can_be_layered,
@@ -115,6 +115,7 @@ class Bodies:
             State(place_of(frame, assembly, index), frame.quaternion)
             for index in range(len(assembly.blocks))
         ]
+        self._turned = np.zeros((len(assembly.blocks), len(TURNS)))
         self._is_free = self._is_rubble = False
         self._short, self._held = settings.step, 0
         self._bodies, self._joints = linked(self._space, problem)
@@ -219,7 +220,9 @@ class Bodies:
 
     def poses(self) -> Array:
         """Return places and rotations, shape (blocks, 6)."""
-        return self._space.poses(self._bodies)
+        found = self._space.poses(self._bodies)
+        found[:, TURNS] = self._turned = unwound(found[:, TURNS], self._turned)
+        return found
 
     def _velocities(self) -> Array:
         return self._space.velocities(self._bodies)
