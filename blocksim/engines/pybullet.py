@@ -2,7 +2,7 @@
 
 How blocks are put into it is told in `engines.bulletblocks`. How they are moved:
 
-- Impulses are forgotten after every step, so that each step is solved from nothing. The
+- Friction is forgotten after every step, and with links pressures are, too. The
   sweeps this takes hardly depend on the step: long steps, each solved until a sweep changes
   next to nothing.
 - Blocks let go are built anew: Bullet keeps pressures of bodies without links, and
