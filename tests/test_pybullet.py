@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arches import arch_at, held_in, mirrored, shuffled
+from scipy.spatial.transform import Rotation
 from structure_cases import case, scenes
 
 from analysis import rubble
@@ -29,12 +30,14 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Engine
+from blocksim.evidence.motion import lie_still
 from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 
-from blocksim.engines.boxes import Frame
+from blocksim.engines.boxes import Frame, unwound
+from blocksim.engines.bulletspace import State
 from blocksim.engines.pybullet import ENGINE, Bodies
 
 ARCHES = [
@@ -194,6 +197,13 @@ def test_walls(name: str, share: float, expected: Verdict) -> None:
     assert seen.verdict is expected, seen.reason
 
 
+def off_ends(world: Bodies, assembly: Assembly) -> Array:
+    """Distances in the plane from each end of a joint to each point of contact."""
+    places = np.array([contact.place[:2] for contact in world._space.contacts()])
+    ends = assembly.joint_arrays.ends.reshape(-1, 2)
+    return np.hypot(*(ends[:, None] - places[None]).transpose(2, 0, 1))
+
+
 @pytest.mark.parametrize("name", WALLS[:2])
 def test_each_joint_has_two_contacts_at_its_ends(name: str) -> None:
     """And they touch nothing else: one box of each block, whatever lies beside it."""
@@ -202,14 +212,26 @@ def test_each_joint_has_two_contacts_at_its_ends(name: str) -> None:
     world = Bodies(problem, ENGINE.rule(assembly))
     world.hold(1)
     resultants = world.resultants()
-    places = [contact.place[:2] for contact in world._space.contacts()]
-    ends = assembly.joint_arrays.ends.reshape(-1, 2)
-    off = np.hypot(*(ends[:, None] - np.array(places)[None]).transpose(2, 0, 1))
-    assert len(places) == 2 * len(assembly.joints)
+    off = off_ends(world, assembly)
+    assert off.shape[1] == 2 * len(assembly.joints)
     # Two joints may end at the same place.
     assert off.min(axis=0).max() < 1e-6
     assert off.min(axis=1).max() < 1e-6
     assert np.isfinite(resultants).all()
+
+
+NARROW_INTRADOS = Arch(half_angle=math.radians(120), eta=1.99, voussoirs=11).problem(1.5)
+"""Its voussoirs are narrower there than the boxes on their faces."""
+
+
+@pytest.mark.parametrize("problem", [NARROW_INTRADOS, case_at("grid_wall_3", 0.5)])
+def test_let_go_blocks_touch_at_the_ends_of_joints_only(problem: Problem) -> None:
+    world = Bodies(problem, ENGINE.rule(problem.assembly))
+    world.hold(1000)
+    world.advance(1)
+    off = off_ends(world, problem.assembly)
+    assert off.min(axis=0).max() < 1e-6
+    assert off.min(axis=1).max() < 1e-6
 
 
 def test_blocks_stay_in_the_plane() -> None:
@@ -260,3 +282,28 @@ def test_the_thinnest_arches_are_given_up_soon() -> None:
     """Sweeps would grow without end as joints shorten; what few can tell is undecided."""
     arch = Arch(half_angle=math.radians(60), eta=1e-9, voussoirs=3)
     assert observe(arch.problem(1.0), "pybullet").verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1), (0.6, 0, 0.8), (1, 0, 0)])
+@pytest.mark.parametrize("end", [3.2, 2 * math.pi, 20.0])
+def test_whole_turns_are_counted(axis: tuple[float, ...], end: float) -> None:
+    """An orientation is the same after each, and knows half a turn at most."""
+    turned = np.zeros((1, 3))
+    for angle in [*np.arange(0.0, end, 0.5), end]:
+        expected = angle * np.array([axis])
+        seen = Rotation.from_rotvec(expected).as_rotvec()
+        turned = unwound(seen, turned)
+        assert turned == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_block_on_its_head_lies_still() -> None:
+    """Turned by half a turn it may be seen as turned either way, and would rock in numbers."""
+    world = Bodies(THIN.problem(0.6), ENGINE.rule(THIN.assembly()))
+    body, place = world._bodies[0], world._built[0].place
+    poses: list[Array] = []
+    for angle in [*np.arange(0.0, math.pi, 0.1), *[math.pi + 1e-4, math.pi - 1e-4] * 30]:
+        turn = Rotation.from_rotvec([0.0, 0.0, angle]).as_quat().tolist()
+        world._space.put(body, State(place, turn))
+        poses.append(world.poses())
+        assert poses[-1][0, 2] == pytest.approx(angle, abs=1e-9)
+    assert lie_still(THIN.assembly(), poses)

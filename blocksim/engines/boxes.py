@@ -21,13 +21,10 @@ ROD = 1e-4
 """Thickness of the rod in a corner [size]."""
 EDGE = 1e-2
 """The same, of one that stands on its edge [size]."""
-FLAT = 1e-9
-"""Distance within which sides lie on each other."""
-FLUSH = 0.1
-"""Sine of the angle between two sides that do not end each other."""
-TRIM = 3e-4
-"""How far one side of a joint ends short of the other where neither may reach beyond it, in
-units of the joint's length."""
+TURNS = [4, 5, 2]
+"""Columns of the poses that make a rotation vector."""
+LEAST_TURN = 1e-2
+"""Rotation below which that of a block does not tell its axis [rad]."""
 
 
 class Frame:
@@ -90,6 +87,26 @@ class Frame:
         """Return places (blocks, 3) and orientations x, y, z, w (blocks, 4) likewise."""
         since = Rotation.from_quat(quaternions) * self._turned.inv()
         return self.motions(places - self._origin, since.as_rotvec())
+
+
+def unwound(turned: Array, before: Array) -> Array:
+    """Return the rotation vectors of the same orientations that are nearest to earlier ones.
+
+    An orientation tells of no whole turns: of it alone a block that has turned by half a
+    turn is one that rocks from one side to the other.
+
+    Parameters
+    ----------
+    turned, before : (blocks, 3) float
+        Rotation vectors [rad].
+    """
+    far = np.hypot.reduce(turned, axis=1, keepdims=True) > LEAST_TURN
+    # Turned as it was built again it has the axis of before.
+    along = np.where(far, turned, before)
+    length = np.hypot.reduce(along, axis=1, keepdims=True)
+    axis = along / np.maximum(length, LEAST_TURN)
+    missing: Array = ((before - turned) * axis).sum(axis=1, keepdims=True)
+    return turned + 2 * math.pi * np.round(missing / (2 * math.pi)) * axis
 
 
 @dataclass(frozen=True)

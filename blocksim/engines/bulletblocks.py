@@ -17,8 +17,8 @@ How a near-critical arch has to be put into it (each point measured, see
 - Where gravity lies in the plane so does all motion, by symmetry. Sweeps break it, though:
   of two contacts across the plane the first takes more, and walls rock out of the plane
   for as long as they are solved. There inertias out of the plane are beyond reach (`LOCK`),
-  and a joint is so narrow that Bullet makes one contact of two. A lock a million times
-  softer is no lock: it leaves 3e-5 g that no sweeps remove.
+  and a joint is so narrow that Bullet makes one contact of two. A million times the true
+  ones, as others take, leave a hundred times more that no sweeps remove (1e-6 g).
 - Where gravity leans out of the plane inertias are the true ones.
 
 Bullet's x and y are those of the assembly's plane, z is out of it. In that frame the two
@@ -246,16 +246,26 @@ def _reaching(sides: tuple[Side, Side], ends: Array, ways: Array) -> tuple[Side,
 
 
 def _layers(assembly: Assembly) -> Array:
-    """Return where across the plane joints are, so that no two of a block meet, (joints,)."""
-    taken: dict[int, set[int]] = defaultdict(set)
-    found = np.zeros(len(assembly.joints))
-    for index, joint in enumerate(assembly.joints):
-        its = [taken[body] for body in (joint.before, joint.after) if body != SUPPORT]
-        layer = next(k for k in itertools.count() if not any(k in each for each in its))
-        for each in its:
-            each.add(layer)
-        found[index] = layer
-    return found * 2 * NARROW * max(assembly.joint_arrays.length.max(), EDGE)
+    """Return where across the plane joints are, (joints,).
+
+    Of two blocks that meet all sides may touch, not those of their joint alone. So each
+    joint of either is in a layer of its own: sides of others reach into each other where
+    a voussoir is narrow (at eta = 2 the intrados is a point).
+    """
+    joints_of: dict[int, set[int]] = defaultdict(set)
+    meets: dict[int, set[int]] = defaultdict(set)
+    blocks = [{joint.before, joint.after} - {SUPPORT} for joint in assembly.joints]
+    for index, its in enumerate(blocks):
+        for block in its:
+            joints_of[block].add(index)
+            meets[block] |= its
+    found: list[int] = []
+    for its in blocks:
+        near = {joint for one in its for other in meets[one] for joint in joints_of[other]}
+        taken = {found[joint] for joint in near if joint < len(found)}
+        found.append(next(k for k in itertools.count() if k not in taken))
+    spacing = 2 * NARROW * max(assembly.joint_arrays.length.max(), EDGE)
+    return np.array(found) * spacing
 
 
 def _breaking(assembly: Assembly, across: float = 0.0) -> float:

@@ -289,6 +289,20 @@ class Space:
         self._client.resetBasePositionAndOrientation(body, state.place, state.turn)
         self._client.resetBaseVelocity(body, state.shift, state.spin)
 
+    def flatten(self, body: int) -> None:
+        """Put the centre of a body back into the plane, with no velocity out of it."""
+        place, turn, shift, spin = self.state(body)
+        along = self.frame.motions(np.array([shift]), np.array([spin]))[0]
+        self.put(
+            body,
+            State(
+                self.frame.place(self.frame.point(np.array(place))),
+                turn,
+                self.frame.vector(along[0], along[1], 0.0),
+                spin,
+            ),
+        )
+
     def stop(self, body: int) -> None:
         """Let a body rest where it is."""
         self._client.resetBaseVelocity(body, NOTHING, NOTHING)

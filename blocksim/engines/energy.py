@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array
 from blocksim.blocks.problem import Problem
+from blocksim.engines.boxes import TURNS
 
 
 def energy(problem: Problem, poses: Array, velocities: Array) -> float:
@@ -28,10 +29,10 @@ def _kinetic(problem: Problem, poses: Array, velocities: Array) -> float:
         return float((problem.assembly.masses * velocities**2).sum() / 2)
     masses = problem.assembly.spatial_masses
     # Moments of inertia are about axes that turn with the blocks.
-    turned = Rotation.from_rotvec(poses[:, [4, 5, 2]]).inv()
-    spin = turned.apply(velocities[:, [4, 5, 2]])
+    turned = Rotation.from_rotvec(poses[:, TURNS]).inv()
+    spin = turned.apply(velocities[:, TURNS])
     moved = velocities.copy()
-    moved[:, [4, 5, 2]] = spin
+    moved[:, TURNS] = spin
     return float((masses * moved**2).sum() / 2)
 
 

@@ -2,7 +2,7 @@
 
 How blocks are put into it is told in `engines.bulletblocks`. How they are moved:
 
-- Impulses are forgotten after every step, so that each step is solved from nothing. The
+- Friction is forgotten after every step, and with links pressures are, too. The
   sweeps this takes hardly depend on the step: long steps, each solved until a sweep changes
   next to nothing.
 - Blocks let go are built anew: Bullet keeps pressures of bodies without links, and
@@ -22,7 +22,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Quality, Settings
-from blocksim.engines.boxes import Frame
+from blocksim.engines.boxes import TURNS, Frame, unwound
 from blocksim.engines.bulletblocks import (
     breaking_of,
     can_be_layered,
@@ -115,6 +115,7 @@ class Bodies:
             State(place_of(frame, assembly, index), frame.quaternion)
             for index in range(len(assembly.blocks))
         ]
+        self._turned = np.zeros((len(assembly.blocks), len(TURNS)))
         self._is_free = self._is_rubble = False
         self._short, self._held = settings.step, 0
         self._bodies, self._joints = linked(self._space, problem)
@@ -208,6 +209,10 @@ class Bodies:
         self._step()
         self._balance.look(poses, before, self._velocities())
         self._deepest = max(self._deepest, self._space.overlap())
+        if self._problem.is_planar:
+            # Impacts kick blocks out of the plane, by 1e-3 of their velocity.
+            for body in self._bodies:
+                self._space.flatten(body)
 
     def _step(self) -> None:
         """Take a step under gravity and loads."""
@@ -219,7 +224,9 @@ class Bodies:
 
     def poses(self) -> Array:
         """Return places and rotations, shape (blocks, 6)."""
-        return self._space.poses(self._bodies)
+        found = self._space.poses(self._bodies)
+        found[:, TURNS] = self._turned = unwound(found[:, TURNS], self._turned)
+        return found
 
     def _velocities(self) -> Array:
         return self._space.velocities(self._bodies)
