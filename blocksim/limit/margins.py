@@ -223,8 +223,8 @@ class _Search:
         found = most_common(cones, self._problem.pull())
         if found is None:
             return None
-        margin = min(0.0, float(found.x[-1]))
-        inside = cones.forces(found.x[:-1] + margin * cones.bounded)
+        # What all parts have in common is theirs, too: none is needed where no width is.
+        inside = cones.forces(found.x[:-1] + float(found.x[-1]) * cones.bounded)
         if not self._width:
             return inside
         # The same resultants, as forces at the true ends of the joints.
