@@ -113,16 +113,22 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         "dimgap": height / 3,
         "dimdec": 3,
         "dimzin": 0,
+        # ezdxf's own style tells metres in centimetres.
+        "dimlfac": 1.0,
     }
     layer = {"layer": "dimensions"}
     for each in dimensions_of(sheet.problem, shown, scale):
         if isinstance(each, Length):
             note = f" ({each.note})" if each.note else ""
+            beside = each.what == "thickness"
+            turn = math.degrees(math.atan2(each.along[1], each.along[0]))
             made = space.add_linear_dim(
                 base=tuple(each.at),
                 p1=tuple(each.start),
                 p2=tuple(each.end),
-                angle=math.degrees(math.atan2(each.along[1], each.along[0])),
+                # Words that stand on their heads are turned round.
+                angle=turn - 180 if turn > 90 else turn,
+                location=tuple(each.end + each.along * 20 * scale / 1e3) if beside else None,
                 text=f"{each.what} <> m{note}",
                 override=sizes,
                 dxfattribs=layer,
@@ -133,6 +139,7 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
                 center=tuple(each.centre),
                 p1=tuple(each.point(1.0, each.reach)),
                 p2=tuple(each.point(0.0, each.reach)),
+                text="\N{GREEK SMALL LETTER ALPHA} = <>",
                 override={**sizes, "dimadec": 2},
                 dxfattribs=layer,
             )
@@ -141,12 +148,14 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
 
 def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
     """Write title and facts below, and forces where they act."""
+    from ezdxf.enums import TextEntityAlignment
+
     mm = scale / 1e3
     unit, layer = sheet.unit, {"layer": "text"}
 
-    def write(words: str, at: Array, height: float = LETTERS) -> None:
+    def write(words: str, at: Array, height: float = LETTERS, *, before: bool = False) -> None:
         text = space.add_text(words, height=height * mm, dxfattribs=layer)
-        text.set_placement(tuple(at))
+        text.set_placement(tuple(at), align=TextEntityAlignment.RIGHT if before else None)
 
     for each in sheet.reactions:
         across, up = (unit.words(float(part)) for part in each.force)
@@ -156,7 +165,8 @@ def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
     if sheet.thrust is not None:
         index, words = sheet.thrust
         joint = sheet.problem.assembly.joints[index]
-        write(words, np.array([joint.outer[0], float(shown[:, 1].max()) + 3 * mm]))
+        at = np.array([joint.outer[0] - mm, float(shown[:, 1].max()) + 2 * mm])
+        write(words, at, before=True)
     at = np.array([float(shown[:, 0].min()), float(shown[:, 1].min()) - 22 * mm])
     write(sheet.title, at, 2 * LETTERS)
     said = [*sheet.facts, *(f"layer thrust-{line.name}: {line.words}" for line in sheet.lines)]
