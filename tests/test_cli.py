@@ -125,10 +125,10 @@ WRONG = {
     "validate unwritable": ("validate", "--quick", "--out", "/proc/none"),
     "film unwritable": ("render", "semicircle", "--out", "none/film.mp4"),
     "film of a folder": ("render", "semicircle", "--out", "/proc/self"),
-    "picture of no time": ("render", "semicircle", "--out", "x.png", "--at", "1"),
+    "picture of no time": ("render", "semicircle", "--out", "x.png", "--time", "1"),
     "picture not slow": ("render", "semicircle", "--out", "x.png", "--slow", "9"),
     "picture by no engine": ("render", "semicircle", "--out", "x.png", "--method", "direct"),
-    "film of a moment": ("render", "semicircle", "--out", "x.gif", "--at", "1"),
+    "film of a moment": ("render", "semicircle", "--out", "x.gif", "--time", "1"),
     "name too long": ("simulate", *ARCH, "--eta", ".1", "--out", f"{'x' * 300}/x.npz"),
 }
 

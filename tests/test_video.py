@@ -375,7 +375,7 @@ def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:
 def test_command_films_recordings(tmp_path: Path) -> None:
     run = str(tmp_path / "run.npz")
     falling().save(Path(run))
-    done = inside("render", run, "--view", "3d", "--at", "0.2", "--out", f"{tmp_path}/a.png")
+    done = inside("render", run, "--view", "3d", "--time", "0.2", "--out", f"{tmp_path}/a.png")
     assert (done.returncode, done.stderr) == (0, "")
     with Image.open(tmp_path / "a.png") as picture:
         assert picture.size == (1280, 720)
@@ -586,8 +586,8 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         (("RUN", "--height", "241"), "--height = 241: must be an even number"),
         (("RUN", "--slow", "0"), "--slow = 0.0: must be above 0"),
         (("RUN", "--method", "direct"), "--method = 'direct': must be left out"),
-        (("RUN", "--at", "1"), "--at = 1.0: must be left out of a film"),
-        (("RUN", "--at", "-1"), "--at = -1.0: must be 0 or above"),
+        (("RUN", "--time", "1"), "--time = 1.0: must be left out of a film"),
+        (("RUN", "--time", "-1"), "--time = -1.0: must be 0 or above"),
         (("RUN", "--beside", "none.npz"), "an existing .npz file"),
         (("--alpha", "90", "--mu", "0.3"), "eta is missing"),
         (("semicircle", "--method", "limit"), "--method = 'limit'"),

@@ -11,7 +11,15 @@ from typing import Annotated, ClassVar, Literal, TypeVar
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 
 from blocksim.arch.circular import Arch, Weight
+from blocksim.arch.dimensions import (
+    Dimensions,
+    Line,
+    friction_of,
+    require_measured,
+    require_unit_weight,
+)
 from blocksim.arch.modes import Mode
+from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath, require_file, shipped_files
 from blocksim.evidence.verdict import Verdict
@@ -34,26 +42,36 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 
 @dataclass(frozen=True, kw_only=True)
 class ArchTable:
-    """Table `[arch]` of a scenario file; see `Arch` for the fields."""
+    """Table `[arch]` of a scenario file: by angle and ratio, or by what can be measured.
+
+    Either as of `Arch`, its angle in degrees, or `span_m`, `rise_m` and `thickness_m`, which
+    are `at` the intrados if left out; weight is that of the sector then, if left out.
+    """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    half_angle_deg: Annotated[float, Field(gt=0, lt=180, strict=True)]
     voussoirs: Annotated[int, Field(ge=3, le=1000, strict=True)]
+    half_angle_deg: Annotated[float, Field(gt=0, lt=180, strict=True)] | None = None
     eta: Annotated[float, Field(gt=0, le=2, strict=True)] | None = None
-    weight: Literal["centreline", "sector"] = "centreline"
-    radius: Positive = 1.0
+    radius: Positive | None = None
+    span_m: Positive | None = None
+    rise_m: Positive | None = None
+    thickness_m: Positive | None = None
+    at: Literal["intrados", "centreline", "extrados"] | None = None
+    weight: Literal["centreline", "sector"] | None = None
     depth: Positive = 1.0
-    specific_weight: Positive = 20_000.0
+    specific_weight: Positive | None = None
+    unit_weight_kN_per_m3: Positive | None = None  # noqa: N815 - as the unit is written
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactTable:
-    """Table `[contact]`: friction of every joint."""
+    """Table `[contact]`: friction of every joint, as a coefficient or as an angle."""
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    mu: Annotated[float, Field(gt=0, strict=True), BeforeValidator(infinite)]
+    mu: Annotated[float, Field(gt=0, strict=True), BeforeValidator(infinite)] | None = None
+    friction_angle_deg: Annotated[float, Field(gt=0, le=90, strict=True)] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,6 +135,8 @@ class Scenario:
     weight : str
     eta : float or None
         Thickness-to-radius ratio, where the scenario sets one.
+    line : Line or None
+        The line that was measured, where one was.
     radius, depth, specific_weight : float
     lean : float
         Angle by which gravity leans out of the plane [rad].
@@ -137,6 +157,7 @@ class Scenario:
     voussoirs: int
     weight: Weight
     eta: float | None
+    line: Line | None
     radius: float
     depth: float
     specific_weight: float
@@ -153,10 +174,20 @@ class Scenario:
             eta=eta,
             voussoirs=self.voussoirs,
             weight=self.weight,
-            radius=self.radius,
+            radius=self.mean_radius(eta),
             depth=self.depth,
             specific_weight=self.specific_weight,
         )
+
+    def mean_radius(self, eta: float) -> float:
+        """Return the radius of the centreline at a thickness-to-radius ratio [m].
+
+        The centreline stays as it is, wherever it is known. A line that was measured without
+        a thickness says where that line is, and the centreline follows.
+        """
+        if self.line is None or self.eta is not None:
+            return self.radius
+        return self.line.mean_radius(eta)
 
 
 def shipped() -> dict[str, Path]:
@@ -177,7 +208,8 @@ def load_scenario(name: AnyPath) -> Scenario:
     if path.suffix != ".toml" and str(name) in known:
         path = known[str(name)]
     allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
-    return _scenario(path.stem, read_table(path, ScenarioFile, "scenario", allowed))
+    written = read_table(path, ScenarioFile, "scenario", allowed)
+    return _scenario(path.stem, written, str(path))
 
 
 def read_table(path: AnyPath, schema: type[Table], what: str, allowed: str) -> Table:
@@ -227,23 +259,68 @@ def _first_of(error: ValidationError, where: str) -> InputError:
     )
 
 
-def _scenario(name: str, written: ScenarioFile) -> Scenario:
+def _scenario(name: str, written: ScenarioFile, where: str) -> Scenario:
     arch, expect = written.arch, written.expect
+    try:
+        line, half_angle, eta, radius = _shape(arch)
+        _require_one("contact", written.contact, "mu", "friction_angle_deg")
+        if arch.unit_weight_kN_per_m3 is not None:
+            _require_one("arch", arch, "unit_weight_kN_per_m3", "specific_weight")
+            require_unit_weight("arch.unit_weight_kN_per_m3", arch.unit_weight_kN_per_m3)
+    except InputError as error:
+        raise InputError(error.field, error.value, error.allowed, where=where) from None
+    angle, mu = written.contact.friction_angle_deg, written.contact.mu
     return Scenario(
         name=name,
         title=written.title,
         source=written.source,
-        half_angle=math.radians(arch.half_angle_deg),
-        mu=written.contact.mu,
+        half_angle=half_angle,
+        mu=friction_of(angle) if angle is not None else mu or 0.0,
         voussoirs=arch.voussoirs,
-        weight=arch.weight,
-        eta=arch.eta,
-        radius=arch.radius,
+        weight=arch.weight or ("centreline" if line is None else "sector"),
+        eta=eta,
+        line=line,
+        radius=radius,
         depth=arch.depth,
-        specific_weight=arch.specific_weight,
+        specific_weight=1000 * arch.unit_weight_kN_per_m3
+        if arch.unit_weight_kN_per_m3 is not None
+        else arch.specific_weight or 20_000.0,
         lean=math.radians(written.gravity.lean_deg),
         expected_modes=expect.modes if expect else (),
         expected_eta=expect.eta if expect else None,
         expected_verdict=expect.verdict if expect else None,
         quick=written.quick,
     )
+
+
+def _shape(arch: ArchTable) -> tuple[Line | None, float, float | None, float]:
+    """Return the line that was measured, half-angle [rad], eta and mean radius [m]."""
+    measured = {name: getattr(arch, name) for name in ("span_m", "rise_m", "thickness_m", "at")}
+    if all(each is None for each in measured.values()):
+        if arch.half_angle_deg is None:
+            raise InputError("arch.half_angle_deg", MISSING, "given (or span_m and rise_m)")
+        return None, math.radians(arch.half_angle_deg), arch.eta, arch.radius or 1.0
+    for name in ("half_angle_deg", "eta", "radius"):
+        allowed = "left out beside span_m, rise_m and thickness_m"
+        require(getattr(arch, name) is None, f"arch.{name}", getattr(arch, name), allowed)
+    span, rise, thickness = arch.span_m, arch.rise_m, arch.thickness_m
+    if span is None or rise is None:
+        raise InputError("arch.span_m" if span is None else "arch.rise_m", MISSING, "given")
+    line = Line(span=span, rise=rise, at=arch.at or "intrados")
+    try:
+        require_measured(line, thickness)
+    except InputError as error:
+        raise InputError(f"arch.{error.field}_m", error.value, error.allowed) from None
+    if thickness is None:
+        return line, line.half_angle, None, line.radius
+    found = Dimensions(span=span, rise=rise, thickness=thickness, at=line.at)
+    return line, found.half_angle, found.eta, found.radius
+
+
+def _require_one(table: str, written: object, one: str, other: str) -> None:
+    """Raise `InputError` unless exactly one of two keys is given."""
+    first, second = getattr(written, one), getattr(written, other)
+    both = first is not None and second is not None
+    require(not both, f"{table}.{other}", second, f"left out beside {one}")
+    if first is None and second is None:
+        raise InputError(f"{table}.{one}", MISSING, f"given (or {other})")

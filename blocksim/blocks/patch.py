@@ -1,4 +1,4 @@
-"""Loads spread evenly over a width: which blocks bear them, and where."""
+"""Loads at a place or spread evenly over a width: which blocks bear them, and where."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from blocksim.blocks.assembly import Array
 
 Share = tuple[int, float, Array]
 """Body, share of the load, and the point at which that acts [m]."""
+LEVEL = 1e-9
+"""Difference in height that counts as none, over the width of all bodies."""
 
 
 def shares(low: float, high: float, bodies: Sequence[Sequence[Array]]) -> list[Share] | None:
@@ -47,6 +49,35 @@ def shares(low: float, high: float, bodies: Sequence[Sequence[Array]]) -> list[S
         share = float((right - left) / (high - low))
         found.append((index, share, np.array([middle, top])))
     return found
+
+
+def shares_at(x: float, bodies: Sequence[Sequence[Array]]) -> list[Share] | None:
+    """Find what lies uppermost at a place, which bears what is put there.
+
+    Parameters
+    ----------
+    x : float
+        The place [m].
+    bodies : sequence of sequences of (k, 2) float
+        As of `shares`; where a body and others behind it are as high, as at a joint, they
+        share it evenly.
+
+    Returns
+    -------
+    list of (int, float, (2,) float) or None
+        None where there is no body.
+    """
+    corners = np.concatenate([polygon for body in bodies for polygon in body])[:, 0]
+    tops: dict[int, float] = {}
+    for index, body in enumerate(bodies):
+        over = [each for each in body if each[:, 0].min() <= x <= each[:, 0].max()]
+        if over:
+            tops[index] = max(_top(polygon, x) for polygon in over)
+    if not tops:
+        return None
+    least = max(tops.values()) - LEVEL * float(np.ptp(corners))
+    highest = [index for index, top in tops.items() if top >= least]
+    return [(index, 1 / len(highest), np.array([x, tops[index]])) for index in highest]
 
 
 def _top(polygon: Array, x: float) -> float:

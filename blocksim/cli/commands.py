@@ -10,6 +10,7 @@ import typer
 
 from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.check import check as ask_check
+from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.cli.app import app
 from blocksim.cli.console import (
     answer_with,
@@ -19,56 +20,42 @@ from blocksim.cli.console import (
 from blocksim.cli.drawing import write_arch
 from blocksim.cli.filming import (
     HEIGHT,
-    At,
     Beside,
     EngineOption,
     Height,
     RenderOptions,
     Slow,
+    Time,
     View,
     film,
     recordings,
     require_height,
 )
+from blocksim.cli.groups import grouped
 from blocksim.cli.options import (
     EXIT_CODES,
-    Alpha,
-    Amplitude,
-    Depth,
-    Duration,
-    Eta,
     Given,
     Json,
-    Lean,
-    Load,
+    Loading,
     MethodOption,
-    Mu,
     Over,
-    Ratio,
     Reduce,
     Scene,
     Set,
-    Shake,
-    Tilt,
-    Voussoirs,
-    WeightOption,
-    With,
     Within,
-    arch_of,
     named_options,
-    question,
     require_given,
     settings_of,
-    thickness_words,
 )
+from blocksim.cli.question import arch_of, question, thickness_words
 from blocksim.cli.structures import (
     THICKNESS,
-    Loading,
     bracket_structure,
     check_structure,
     draw_structure,
     is_structure,
-    loaded,
+    problem_asked,
+    problem_of_arch,
     say_recorded,
     simulate_structure,
     spread_structure,
@@ -83,6 +70,7 @@ from blocksim.report.answers import (
     check_lines,
     check_record,
 )
+from blocksim.report.sizes import bracket_size_lines, bracket_size_record
 
 FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0
@@ -90,44 +78,26 @@ LONGEST_RECORDING = 600.0
 
 
 @app.command()
+@grouped
 def check(
+    given: Given,
+    loading: Loading,
     scene: Scene = None,
-    parameters: With = None,
-    alpha: Alpha = None,
-    eta: Eta = None,
-    ratio: Ratio = None,
-    mu: Mu = None,
-    voussoirs: Voussoirs = None,
-    weight: WeightOption = None,
-    depth: Depth = None,
     method: MethodOption = "auto",
-    load: Load = None,
-    tilt: Tilt = None,
-    shake: Shake = None,
-    amplitude: Amplitude = None,
-    duration: Duration = None,
-    lean: Lean = None,
     settings: Set = None,
     reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
-    given = Given(
-        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean, parameters=parameters,
-    )  # fmt: skip
-    loading = Loading(
-        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
-    )  # fmt: skip
     if scene is not None and is_structure(scene):
         require(not reduce, "--reduce", reduce, "left out: it is for arches")
         problem = structure(scene, given, loading)
         check_structure(problem, method, settings, as_json=as_json)
     asked = question(scene, given, thick=True)
-    arch = arch_of(asked, ratio)
+    arch = arch_of(asked, given.ratio)
     if loading.given:
         require(not reduce, "--reduce", reduce, "left out with a load or a tilt")
-        problem = loaded(arch.problem(asked.mu, asked.lean), Given(), loading)
+        problem = problem_of_arch(arch, asked, loading)
         check_structure(problem, method, settings, as_json=as_json)
     with named_options(), progress() as report:
         answer = ask_check(
@@ -139,30 +109,20 @@ def check(
             reduce=reduce,
             progress=report,
         )
-    answer = replace(answer, reason=answer.reason + thickness_words(asked, ratio))
-    answer_with(check_record(answer), check_lines(answer), as_json=as_json)
+    answer = replace(answer, reason=answer.reason + thickness_words(asked, given.ratio))
+    at = asked.line and asked.line.at
+    answer_with(check_record(answer), check_lines(answer, at), as_json=as_json)
     raise typer.Exit(EXIT_CODES[answer.verdict])
 
 
 @app.command()
+@grouped
 def bracket(
+    given: Given,
+    loading: Loading,
     scene: Scene = None,
-    parameters: With = None,
-    alpha: Alpha = None,
-    mu: Mu = None,
-    voussoirs: Voussoirs = None,
-    weight: WeightOption = None,
-    depth: Depth = None,
     over: Over = None,
     within: Within = None,
-    eta: Eta = None,
-    ratio: Ratio = None,
-    load: Load = None,
-    tilt: Tilt = None,
-    shake: Shake = None,
-    amplitude: Amplitude = None,
-    duration: Duration = None,
-    lean: Lean = None,
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
@@ -170,24 +130,12 @@ def bracket(
     as_json: Json = False,
 ) -> None:
     """Find the value of a parameter from which on it falls: how thin an arch can be."""
-    given = Given(
-        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean, parameters=parameters,
-    )  # fmt: skip
-    loading = Loading(
-        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
-    )  # fmt: skip
-    if is_structure(scene) or over not in {None, THICKNESS}:
+    if is_structure(scene) or loading.on_road or over not in {None, THICKNESS}:
         require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
-        if scene is not None and is_structure(scene):
-            problem = structure(scene, given, loading)
-        else:
-            asked = question(scene, given, thick=True)
-            built = arch_of(asked, ratio).problem(asked.mu, asked.lean)
-            problem = loaded(built, Given(), loading)
+        problem = problem_asked(scene, given, loading, thick=True)
         bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
         return
-    left = {"eta": eta, "ratio": ratio, **asdict(loading)}
+    left = {"eta": given.eta, "ratio": given.ratio, **asdict(loading)}
     for name, value in left.items():
         require(value is None, f"--{name}", value, "left out over thickness")
     require(within is None, "--within", within, "left out over thickness")
@@ -206,23 +154,20 @@ def bracket(
             reduce=reduce,
             progress=report,
         )
-    answer_with(bracket_record(answer, asked.radius), bracket_lines(answer), as_json=as_json)
+    record = bracket_record(answer, asked.radius) | bracket_size_record(answer, asked)
+    lines = bracket_lines(answer) + bracket_size_lines(answer, asked)
+    answer_with(record, lines, as_json=as_json)
 
 
 @app.command()
+@grouped
 def simulate(
+    given: Given,
+    loading: Loading,
     out: Annotated[
         Path | None, typer.Option(help="Recording to write, .npz; required.")
     ] = None,
     scene: Scene = None,
-    parameters: With = None,
-    alpha: Alpha = None,
-    eta: Eta = None,
-    ratio: Ratio = None,
-    mu: Mu = None,
-    voussoirs: Voussoirs = None,
-    weight: WeightOption = None,
-    depth: Depth = None,
     method: Annotated[
         str, typer.Option(help=f"auto, or an engine: {', '.join(ENGINES)}.")
     ] = "auto",
@@ -232,29 +177,11 @@ def simulate(
     seconds: Annotated[
         float | None, typer.Option(help="Seconds to record; until decided if left out.")
     ] = None,
-    load: Load = None,
-    tilt: Tilt = None,
-    shake: Shake = None,
-    amplitude: Amplitude = None,
-    duration: Duration = None,
-    lean: Lean = None,
     settings: Set = None,
 ) -> None:
     """Let it go and record its motion."""
-    given = Given(
-        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean, parameters=parameters,
-    )  # fmt: skip
-    loading = Loading(
-        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
-    )  # fmt: skip
-    if scene is not None and is_structure(scene):
-        require_given(out=out)
-        problem, size = structure(scene, given, loading), "L"
-    else:
-        asked = question(scene, given, thick=True, out=out)
-        built = arch_of(asked, ratio).problem(asked.mu, asked.lean)
-        problem, size = loaded(built, Given(), loading), "r"
+    problem = problem_asked(scene, given, loading, thick=True, out=out)
+    size = "L" if arch_of_problem(problem) is None else "r"
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require_place(out)
@@ -270,7 +197,10 @@ def simulate(
 
 
 @app.command()
+@grouped
 def render(
+    given: Given,
+    loading: Loading,
     out: Annotated[
         Path | None,
         typer.Option(help="File to write: .mp4, .gif, .png, .svg or .pdf; required."),
@@ -279,24 +209,10 @@ def render(
         str | None,
         typer.Argument(help="Scenario, structure, or a recording: an .npz file."),
     ] = None,
-    parameters: With = None,
-    alpha: Alpha = None,
-    eta: Eta = None,
-    ratio: Ratio = None,
-    mu: Mu = None,
-    voussoirs: Voussoirs = None,
-    weight: WeightOption = None,
-    depth: Depth = None,
-    load: Load = None,
-    tilt: Tilt = None,
-    shake: Shake = None,
-    amplitude: Amplitude = None,
-    duration: Duration = None,
-    lean: Lean = None,
     beside: Beside = None,
     view: View = "2d",
     slow: Slow = None,
-    at: At = None,
+    time: Time = None,
     height: Height = None,
     method: EngineOption = None,
 ) -> None:
@@ -308,13 +224,6 @@ def render(
     recording: a film, a view in 3d, a frame of an .npz file. A scenario is simulated first,
     1 % below its least thickness where none is given.
     """
-    given = Given(
-        alpha=alpha, eta=eta, ratio=ratio, mu=mu, voussoirs=voussoirs, weight=weight,
-        depth=depth, lean=lean, parameters=parameters,
-    )  # fmt: skip
-    loading = Loading(
-        load=load, tilt=tilt, shake=shake, amplitude=amplitude, duration=duration
-    )  # fmt: skip
     if scene is None:
         question(scene, given, out=out)
     require_given(out=out)
@@ -322,12 +231,12 @@ def render(
     kind = picture_kind(out, (*FILMS, "png", "svg", "pdf"))
     filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
-        shown = RenderOptions(view=view, slow=slow, at=at, height=height or HEIGHT)
-        require(at is None or kind not in FILMS, "--at", at, "left out of a film")
+        shown = RenderOptions(view=view, slow=slow, time=time, height=height or HEIGHT)
+        require(time is None or kind not in FILMS, "--time", time, "left out of a film")
         film(out, recordings(scene, given, loading, method, beside), shown)
     else:
-        shown = {"slow": slow, "at": at, "method": method}
-        built = scene is not None and is_structure(scene)
+        shown = {"slow": slow, "time": time, "method": method}
+        built = is_structure(scene) or bool(loading.on_road)
         for name, value in shown.items():
             # The picture of a structure shows the answer of a method.
             free = value is None or (built and name == "method")
@@ -335,8 +244,8 @@ def render(
         if height is not None:
             require(kind == "png", "--height", height, f"left out: a .{kind} has no pixels")
             require_height(height)
-        if scene is not None and built:
-            problem = structure(scene, given, loading)
+        if built:
+            problem = problem_asked(scene, given, loading, thick=True)
             draw_structure(out, kind, problem, method or "auto", height)
         else:
             require(

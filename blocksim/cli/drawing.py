@@ -7,7 +7,8 @@ from pathlib import Path
 from blocksim.arch.theory import least_thickness
 from blocksim.cli.console import picture_kind, save_picture, say
 from blocksim.cli.filming import picture_of_leaning
-from blocksim.cli.options import Given, arch_of, named_options, question
+from blocksim.cli.options import Given, named_options
+from blocksim.cli.question import arch_of, question
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole

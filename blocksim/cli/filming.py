@@ -17,8 +17,8 @@ from blocksim.arch.scenario import Scenario
 from blocksim.ask.methods import SPATIAL
 from blocksim.ask.simulate import simulate
 from blocksim.cli.console import progress, say
-from blocksim.cli.options import Given, arch_of, named_options, question
-from blocksim.cli.structures import Loading, is_structure, loaded, structure
+from blocksim.cli.options import Given, Loading, named_options, option_of
+from blocksim.cli.structures import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES
@@ -45,7 +45,7 @@ Slow = Annotated[
     float | None,
     typer.Option(help="Times slower than it happened (by default it takes about 6 s)."),
 ]
-At = Annotated[
+Time = Annotated[
     float | None,
     typer.Option(
         help="For .png, .svg, .pdf: time since the release, as the clock shows it (the end)."
@@ -77,7 +77,7 @@ class RenderOptions:
 
     view: Literal["2d", "3d"]
     slow: float | None
-    at: float | None
+    time: float | None
     height: int
 
     def __post_init__(self) -> None:
@@ -85,8 +85,8 @@ class RenderOptions:
         require_height(self.height)
         slow = self.slow is None or 0 < self.slow <= SLOWEST
         require(slow, "--slow", self.slow, f"above 0 and at most {SLOWEST:g}")
-        at = self.at is None or 0 <= self.at < math.inf
-        require(at, "--at", self.at, "0 or above")
+        ok = self.time is None or 0 <= self.time < math.inf
+        require(ok, "--time", self.time, "0 or above")
 
 
 def require_height(height: int) -> None:
@@ -104,15 +104,9 @@ def recordings(
     if scene is not None and scene.endswith(".npz"):
         said = {**asdict(given), **asdict(loading), "method": method}
         for name, value in said.items():
-            option = "with" if name == "parameters" else name
-            require(value is None, f"--{option}", value, "left out: the recording says it")
+            require(value is None, option_of(name), value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
-    if scene is not None and is_structure(scene):
-        problem = structure(scene, given, loading)
-    else:
-        asked = question(scene, given)
-        built = arch_of(asked, given.ratio).problem(asked.mu, asked.lean)
-        problem = loaded(built, Given(), loading)
+    problem = problem_asked(scene, given, loading)
     with named_options(), progress() as report:
         until = FALL if problem.shaking is None else None
         run = simulate(problem, method=method or "auto", duration=until, progress=report)
@@ -130,7 +124,7 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
             out,
             view=options.view,
             slow=options.slow,
-            at=options.at,
+            at=options.time,
             height=options.height,
             progress=report,
         )

@@ -1,4 +1,4 @@
-"""The options that questions share, and how they override a scenario."""
+"""The options that questions share, each declared once."""
 
 from __future__ import annotations
 
@@ -6,19 +6,16 @@ import json
 import math
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Annotated
 
 import typer
 
-from blocksim.arch.circular import Arch
-from blocksim.arch.limit import least_thickness
-from blocksim.arch.scenario import Scenario, load_scenario
+from blocksim.arch.dimensions import LINES, friction_of, require_friction_angle
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
-from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.shaking import COLUMNS, SHAPES
-from blocksim.common.checks import is_number, require, require_friction
+from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.evidence.simulation import SETTINGS
 from blocksim.evidence.verdict import Verdict
@@ -31,43 +28,7 @@ Scene = Annotated[
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
-Alpha = Annotated[
-    float | None, typer.Option(help="Half-angle of embrace in degrees, 0 to 180.")
-]
-Eta = Annotated[float | None, typer.Option(help="Thickness-to-radius ratio, up to 2.")]
-Ratio = Annotated[
-    float | None,
-    typer.Option(help="Instead of --eta: thickness over the least that stands, as built."),
-]
-Depth = Annotated[
-    float | None,
-    typer.Option(help="Depth out of the plane in m; 1 if left out, as the radius is."),
-]
-Mu = Annotated[float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")]
-Voussoirs = Annotated[
-    int | None, typer.Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
-]
-WeightOption = Annotated[
-    str | None, typer.Option(help="Where weight acts: centreline (if left out) or sector.")
-]
 MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
-Load = Annotated[float | None, typer.Option(help="Factor on the live loads of a structure.")]
-Tilt = Annotated[
-    float | None,
-    typer.Option(help="Tilt of the table in the plane, in degrees: its right side goes down."),
-]
-Shake = Annotated[
-    str | None,
-    typer.Option(
-        metavar="SHAPE|FILE",
-        help=f"Ground that shakes: {', '.join(SHAPES)}, or a .csv file "
-        f"({','.join(COLUMNS)}); does it survive?",
-    ),
-]
-Amplitude = Annotated[
-    float | None, typer.Option(help="Largest acceleration of the ground, in g.")
-]
-Duration = Annotated[float | None, typer.Option(help="How long the ground shakes, in s.")]
 Over = Annotated[
     str | None,
     typer.Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
@@ -78,24 +39,12 @@ Within = Annotated[
         metavar="LOW HIGH", help="Where to search, instead of where limit analysis says."
     ),
 ]
-Lean = Annotated[
-    float | None,
-    typer.Option(help="Angle by which gravity leans out of the plane, in degrees."),
-]
 Set = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
         help=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
-    ),
-]
-With = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--with",
-        metavar="NAME=VALUE",
-        help="Parameter of a kind of structure (blocksim kinds NAME lists them); repeatable.",
     ),
 ]
 Reduce = Annotated[
@@ -105,138 +54,207 @@ Reduce = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
 
 
-NO_SCENARIO = Scenario(
-    name="",
-    title="",
-    source="",
-    half_angle=math.pi / 2,
-    mu=math.inf,
-    voussoirs=27,
-    weight="centreline",
-    eta=None,
-    radius=1.0,
-    depth=1.0,
-    specific_weight=20_000.0,
-    lean=0.0,
-    expected_modes=(),
-    expected_eta=None,
-    expected_verdict=None,
-    quick=False,
-)
-"""Defaults of the options; half-angle and friction have none and are always replaced."""
-
-
-ASIDE = 0.99
-"""Thickness of a scenario that sets none, over its least: it collapses, in one mode."""
+OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters"}
+"""Options that say how anything is built, not only an arch."""
+LARGEST_FRICTION = 10.0
+"""Coefficient above which, up to 90, one is taken for an angle."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Given:
     """The options that say what is built, as given; None where they are not.
 
-    All but `parameters`, of a kind, and `mu` and `lean` are of symmetric circular arches.
+    All but those of `OF_ANY` are of symmetric circular arches.
     """
 
-    alpha: float | None = None
-    eta: float | None = None
-    ratio: float | None = None
-    mu: float | None = None
-    voussoirs: int | None = None
-    weight: str | None = None
-    depth: float | None = None
-    lean: float | None = None
-    parameters: list[str] | None = None
+    alpha: Annotated[
+        float | None, typer.Option(help="Half-angle of embrace in degrees, 0 to 180.")
+    ] = None
+    eta: Annotated[float | None, typer.Option(help="Thickness-to-radius ratio, up to 2.")] = (
+        None
+    )
+    span: Annotated[
+        float | None,
+        typer.Option(
+            help="Instead of --alpha and --eta: distance between the springings in m."
+        ),
+    ] = None
+    rise: Annotated[
+        float | None, typer.Option(help="Beside --span: height of the crown above them in m.")
+    ] = None
+    thickness: Annotated[
+        float | None, typer.Option(help="Beside --span: thickness of the arch in m.")
+    ] = None
+    at: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LINE",
+            help=f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
+            "which gives the clear span.",
+        ),
+    ] = None
+    ratio: Annotated[
+        float | None,
+        typer.Option(
+            help="Instead of --eta or --thickness: thickness over the least that stands, "
+            "as built."
+        ),
+    ] = None
+    mu: Annotated[
+        float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")
+    ] = None
+    friction_angle: Annotated[
+        float | None, typer.Option(help="Instead of --mu: angle of friction in degrees.")
+    ] = None
+    voussoirs: Annotated[
+        int | None, typer.Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
+    ] = None
+    weight: Annotated[
+        str | None,
+        typer.Option(
+            help="Where weight acts: centreline, or sector, as it does in true voussoirs. "
+            "If left out: sector with --span, else centreline."
+        ),
+    ] = None
+    unit_weight: Annotated[
+        float | None,
+        typer.Option(help="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
+    ] = None
+    depth: Annotated[
+        float | None,
+        typer.Option(help="Depth out of the plane in m; 1 if left out, as the radius is."),
+    ] = None
+    lean: Annotated[
+        float | None,
+        typer.Option(help="Angle by which gravity leans out of the plane, in degrees."),
+    ] = None
+    parameters: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--with",
+            metavar="NAME=VALUE",
+            help="Parameter of a kind of structure (blocksim kinds NAME lists them); "
+            "repeatable.",
+        ),
+    ] = None
 
     @property
     def of_arches(self) -> dict[str, object]:
         """Those that say how an arch is built."""
-        others = {"mu", "lean", "parameters"}
-        return {name: each for name, each in asdict(self).items() if name not in others}
+        return {name: each for name, each in asdict(self).items() if name not in OF_ANY}
+
+    @property
+    def measured(self) -> dict[str, object]:
+        """Those that give an arch in metres; empty where none is given."""
+        names = ("span", "rise", "thickness", "at")
+        found = {name: getattr(self, name) for name in names}
+        return {name: each for name, each in found.items() if each is not None}
+
+    @property
+    def friction(self) -> float | None:
+        """Friction coefficient, given as such or as an angle.
+
+        Raises
+        ------
+        InputError
+            If both are given, or one is out of range or looks like the other.
+        """
+        mu, angle = self.mu, self.friction_angle
+        if angle is None:
+            slip = mu is not None and LARGEST_FRICTION < mu < 90
+            words = f"a coefficient: as an angle it would be --friction-angle {mu or 0:g}"
+            require(not slip, "--mu", mu, words)
+            return mu
+        require(mu is None, "--friction-angle", angle, "left out where --mu is given")
+        require_friction_angle("--friction-angle", angle)
+        smooth = angle < math.pi / 2
+        words = f"in degrees: as a coefficient it would be --mu {angle:g}, in radians "
+        words += f"--friction-angle {math.degrees(angle):.4g}"
+        require(not smooth, "--friction-angle", angle, words)
+        return friction_of(angle)
 
 
-def require_given(**options: object) -> None:
-    """Name all options that are missing at once."""
-    absent = [f"--{name}" for name, value in options.items() if value is None]
+@dataclass(frozen=True, kw_only=True)
+class Loading:
+    """What acts besides gravity, as given on the command line; None where it is not.
+
+    What is on the road, fill or loads, goes straight down to the blocks below.
+    """
+
+    fill: Annotated[
+        float | None,
+        typer.Option(help="Of arches and portals: height of fill over the crown in m."),
+    ] = None
+    fill_unit_weight: Annotated[
+        float | None,
+        typer.Option(help="Unit weight of the fill in kN/m3; that of the blocks if left out."),
+    ] = None
+    point_load: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="X KN",
+            help="Weight on the road at x (m from the crown of an arch; else from the "
+            "structure's origin), live. It goes straight down to the block below; fill does "
+            "not spread it.",
+        ),
+    ] = None
+    patch_load: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2."),
+    ] = None
+    load: Annotated[
+        float | None,
+        typer.Option(
+            help="Factor on the live loads; if left out 1 with --point-load or --patch-load, "
+            "else what the file says."
+        ),
+    ] = None
+    tilt: Annotated[
+        float | None,
+        typer.Option(
+            help="Tilt of the table in the plane, in degrees: its right side goes down."
+        ),
+    ] = None
+    shake: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SHAPE|FILE",
+            help=f"Ground that shakes: {', '.join(SHAPES)}, or a .csv file "
+            f"({','.join(COLUMNS)}); does it survive?",
+        ),
+    ] = None
+    amplitude: Annotated[
+        float | None, typer.Option(help="Largest acceleration of the ground, in g.")
+    ] = None
+    duration: Annotated[
+        float | None, typer.Option(help="How long the ground shakes, in s.")
+    ] = None
+
+    @property
+    def given(self) -> bool:
+        """Whether there is any of it."""
+        return self != Loading()
+
+    @property
+    def on_road(self) -> dict[str, object]:
+        """Those that lie on the road; empty where none is given."""
+        names = ("fill", "fill_unit_weight", "point_load", "patch_load")
+        found = {name: getattr(self, name) for name in names}
+        return {name: each for name, each in found.items() if each is not None}
+
+
+def require_given(instead: str = "", /, **options: object) -> None:
+    """Name all options that are missing at once, and what may stand in their place."""
+    absent = [name for name, value in options.items() if value is None]
     if absent:
-        listed = " and ".join(filter(None, (", ".join(absent[:-1]), absent[-1])))
-        raise InputError(listed, MISSING if len(absent) == 1 else ALL_MISSING, "given")
+        named = [option_of(name) for name in absent]
+        listed = " and ".join(filter(None, (", ".join(named[:-1]), named[-1])))
+        raise InputError(listed, MISSING if len(named) == 1 else ALL_MISSING, f"given{instead}")
 
 
-def question(
-    scene: str | None, given: Given, *, thick: bool = False, **needed: object
-) -> Scenario:
-    """Merge a scenario, where there is one, with the options that override it.
-
-    Parameters
-    ----------
-    scene : str or None
-    given : Given
-    thick : bool
-        Whether a thickness has to be given where there is no scenario.
-    needed : object
-        Other options that have to be given, by name.
-    """
-    if scene is None:
-        eta = given.eta if given.ratio is None else given.ratio
-        thickness = {"eta": eta} if thick else {}
-        require_given(**needed, alpha=given.alpha, mu=given.mu, **thickness)
-    require_given(**needed)
-    no_kind = "left out: it is for kinds of structures"
-    require(given.parameters is None, "--with", " ".join(given.parameters or ()), no_kind)
-    alpha, lean, depth = given.alpha, given.lean, given.depth
-    if alpha is not None:
-        ok = is_number(alpha, 0, math.nextafter(180, 0))
-        require(ok, "--alpha", alpha, "above 0 and below 180 deg")
-    if lean is not None:
-        ok = is_number(lean, -90, math.nextafter(90, 0))
-        require(ok, "--lean", lean, "above -90 and below 90 deg")
-    both = given.eta is not None and given.ratio is not None
-    require(not both, "--ratio", given.ratio, "left out where --eta is given")
-    asked = load_scenario(scene) if scene is not None else NO_SCENARIO
-    changes: dict[str, object] = {
-        "half_angle": None if alpha is None else math.radians(alpha),
-        "mu": given.mu,
-        "voussoirs": given.voussoirs,
-        "weight": given.weight,
-        "depth": depth,
-        "eta": given.eta,
-        "lean": None if lean is None else math.radians(lean),
-    }
-    return replace(asked, **{key: value for key, value in changes.items() if value is not None})
-
-
-def arch_of(asked: Scenario, ratio: float | None) -> Arch:
-    """Return the arch asked about.
-
-    At a share of the least thickness as built where that is given, else at the scenario's
-    thickness, else at `ASIDE` of the least.
-    """
-    with named_options():
-        if asked.eta is not None and ratio is None:
-            return asked.arch(asked.eta)
-        if ratio is not None:
-            require(is_number(ratio, 0, 100), "--ratio", ratio, "above 0 and at most 100")
-        require_friction(asked.mu)
-        # Checked by the arch before anything is made of them.
-        asked.arch(1.0)
-        arch = asked.half_angle, asked.mu, asked.voussoirs, asked.weight
-        least = least_thickness(*arch).eta
-        if least is None:
-            field = "--eta" if ratio is None else "--ratio"
-            value = MISSING if ratio is None else ratio
-            allowed = "given" if ratio is None else "left out for --eta"
-            raise InputError(field, value, f"{allowed}: no thickness up to 2 stands here")
-        eta = (ratio or ASIDE) * least
-        if ratio is not None:
-            require(eta <= ETA_MAX, "--ratio", ratio, f"at most {ETA_MAX / least:.6g}, eta = 2")
-        return asked.arch(eta)
-
-
-def thickness_words(asked: Scenario, ratio: float | None) -> str:
-    """Say which thickness was taken where none was given, to be added to a reason."""
-    if asked.eta is not None or ratio is not None:
-        return ""
-    return f"; no thickness was given, so it is {ASIDE:g} of the least as built"
+def option_of(field: str) -> str:
+    """Return the option of a field."""
+    return "--with" if field == "parameters" else f"--{field.replace('_', '-')}"
 
 
 def parameters_of(given: list[str] | None) -> dict[str, object]:
@@ -268,6 +286,11 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
 
 
 OPTIONS = {
+    "span",
+    "rise",
+    "thickness",
+    "at",
+    "fill",
     "shake",
     "amplitude",
     "duration",
@@ -290,8 +313,7 @@ def named_options() -> Generator[None]:
         yield
     except InputError as error:
         if error.where is None and error.field in OPTIONS:
-            option = error.field.replace("_", "-")
-            raise InputError(f"--{option}", error.value, error.allowed) from None
+            raise InputError(option_of(error.field), error.value, error.allowed) from None
         if error.where is None and error.field.startswith("settings"):
             _, _, name = error.field.partition(".")
             value = f"{name}={error.value:g}" if name else error.value

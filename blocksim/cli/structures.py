@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import typer
 
+from blocksim.arch.circular import Arch
+from blocksim.arch.dimensions import require_unit_weight
+from blocksim.arch.scenario import Scenario
+from blocksim.arch.structure import structure_of_arch
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
@@ -20,11 +24,15 @@ from blocksim.cli.console import answer_with, progress, save_picture, say
 from blocksim.cli.options import (
     EXIT_CODES,
     Given,
+    Loading,
     named_options,
+    option_of,
     parameters_of,
     require_given,
     settings_of,
 )
+from blocksim.cli.question import arch_of, question
+from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_place
@@ -36,6 +44,7 @@ from blocksim.kinds.files import (
     load_structure,
     shipped_structures,
     structure_of,
+    weighed,
 )
 from blocksim.report.structures import (
     bracket_lines,
@@ -50,22 +59,6 @@ LEAST_ROTATION = 1e-3
 """Rotation of a block from which on a recording is said to have turned one [rad]."""
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Loading:
-    """What acts on a structure, as given on the command line; None where it is not."""
-
-    load: float | None = None
-    tilt: float | None = None
-    shake: str | None = None
-    amplitude: float | None = None
-    duration: float | None = None
-
-    @property
-    def given(self) -> bool:
-        """Whether there is any of it."""
-        return self != Loading()
 
 
 def is_structure(scene: str | None) -> bool:
@@ -86,6 +79,31 @@ def is_structure(scene: str | None) -> bool:
     return "blocks" in table or "kind" in table
 
 
+def problem_asked(
+    scene: str | None, given: Given, loading: Loading, *, thick: bool = False, **needed: object
+) -> Problem:
+    """Return the structure or the arch asked about, and what the options put on it.
+
+    Parameters
+    ----------
+    scene, given, thick, needed
+        As of `question`.
+    loading : Loading
+    """
+    if scene is not None and is_structure(scene):
+        require_given(**needed)
+        return structure(scene, given, loading)
+    asked = question(scene, given, thick=thick, **needed)
+    return problem_of_arch(arch_of(asked, given.ratio), asked, loading)
+
+
+def problem_of_arch(arch: Arch, asked: Scenario, loading: Loading) -> Problem:
+    """Return an arch asked about, with what the options put on it."""
+    # Fill and loads on the road are borne by a structure, of the arch's kind.
+    made = structure_of_arch if loading.on_road else Arch.problem
+    return loaded(made(arch, asked.mu, asked.lean), Given(), loading)
+
+
 def structure(scene: str, given: Given, loading: Loading) -> Problem:
     """Read or make a structure and put on it what the options say.
 
@@ -96,15 +114,20 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
     """
     for name, value in given.of_arches.items():
         allowed = "left out: the file or --with says what is built"
-        require(value is None, f"--{name}", value, allowed)
+        require(value is None, option_of(name), value, allowed)
     changes = parameters_of(given.parameters)
+    heavy = given.unit_weight
+    if heavy is not None:
+        require_unit_weight("--unit-weight", heavy)
+    density = None if heavy is None else 1000 * heavy
     try:
         if scene in KINDS:
-            require_given(mu=given.mu)
+            require_given(mu=given.friction)
             # Friction is put on with the loads.
-            built = structure_of(changed({"kind": scene, "friction": 0.0}, changes))
+            table = changed({"kind": scene, "friction": 0.0}, changes)
+            built = structure_of(table if density is None else weighed(table, density))
         else:
-            built = load_structure(scene, changes)
+            built = load_structure(scene, changes, density)
     except InputError as error:
         name = error.field.partition("[")[0]
         if name not in changes:
@@ -116,8 +139,10 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
 def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
     """Put on a problem what the options say: friction, load, tilt, lean."""
     with named_options():
-        if given.mu is not None:
-            problem = problem.with_friction(given.mu)
+        if given.friction is not None:
+            problem = problem.with_friction(given.friction)
+        if loading.on_road:
+            problem = under_road(problem, loading)
         if loading.load is not None:
             require(bool(problem.live), "--load", loading.load, "left out: no live loads")
             problem = problem.with_load(loading.load)

@@ -10,7 +10,7 @@ import json
 import tomllib
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, cast
@@ -27,7 +27,7 @@ from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import require_file, shipped_files
 from blocksim.kinds import KINDS
-from blocksim.kinds.base import Kind, kind_of
+from blocksim.kinds.base import Kind, kind_of, parameters_of
 
 LARGEST_FILE = 50_000_000
 """Bytes; a larger file is not read."""
@@ -40,7 +40,9 @@ def shipped_structures() -> dict[str, Path]:
 
 
 def load_structure(
-    path: Path | str, changes: Mapping[str, object] = MappingProxyType({})
+    path: Path | str,
+    changes: Mapping[str, object] = MappingProxyType({}),
+    density: float | None = None,
 ) -> Problem:
     """Read a structure file.
 
@@ -50,6 +52,8 @@ def load_structure(
         Ends in .json or .toml, or the name of a shipped one.
     changes : mapping of str to object
         Parameters of its kind instead of those it says; `arch.thickness`: of its arch.
+    density : float, optional
+        Weight per volume instead of what it says [N/m^3].
 
     Raises
     ------
@@ -57,7 +61,8 @@ def load_structure(
         In one line: file, entry, value, and what would be accepted.
     """
     with named_file(path) as data:
-        return structure_of(changed(data, changes) if changes else data)
+        table = changed(data, changes) if changes else data
+        return structure_of(table if density is None else weighed(table, density))
 
 
 @contextmanager
@@ -108,6 +113,24 @@ def changed(data: object, changes: Mapping[str, object]) -> dict[str, Any]:
         nested = bool(rest) and isinstance(inside, Mapping | None)
         table[here] = {**(inside or {}), rest: value} if nested else value
     return table
+
+
+def weighed(data: object, density: float) -> object:
+    """Return what a structure file says with another weight per volume [N/m^3].
+
+    Raises
+    ------
+    InputError
+        If a block has a weight of its own.
+    """
+    if not isinstance(data, dict):
+        return data
+    table = cast("dict[str, Any]", data)
+    for at, block in enumerate(table.get("blocks") or ()):
+        own = block.get("weight") if isinstance(block, dict) else None  # pyright: ignore
+        allowed = "left out where a unit weight is given: it is of this block alone"
+        require(own is None, f"blocks[{at}].weight", own, allowed)
+    return {**table, "density": density}
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -247,14 +270,70 @@ def with_parameter(problem: Problem, name: str, value: float) -> Problem:
         If it is out of range, or changes the number of blocks.
     """
     kind = cast(Kind, kind_behind(problem)).changed(name, value)
-    density = float(cast(Mapping[str, Any], problem.origin)["density"])
-    made = problem_of(kind, Around(friction=0.0, density=density))
+    made = _remade(problem, kind)
     blocks = len(problem.assembly.blocks)
     same = len(made.assembly.blocks) == blocks
     require(same, name, value, f"a value that leaves {blocks} blocks, on which loads act")
+    return made
+
+
+def with_fill(problem: Problem, height: float, share: float) -> Problem:
+    """Return a problem of an arch or of arches on piers with fill above them.
+
+    Parameters
+    ----------
+    problem : Problem
+        Made from a kind.
+    height : float
+        Of the fill over the highest point of the extrados [m].
+    share : float
+        Density of the fill over that of the blocks.
+
+    Raises
+    ------
+    InputError
+        If it is of no arch, or a value is out of range.
+    """
+    kind = kind_behind(problem)
+    known = {} if kind is None else parameters_of(type(kind))
+    own = "fill" in known
+    require(own or "arch" in known, "fill", height, "left out: it is for arches and portals")
+    path = "" if own else "arch."
+    kind = cast(Kind, kind).changed(f"{path}fill", height).changed(f"{path}fill_density", share)
+    before = cast(Kind, kind_behind(problem)).made(1.0).fills
+    return _remade(problem, kind, len(before))
+
+
+@dataclass(frozen=True, kw_only=True)
+class FillAbove:
+    """Fill: its height over the highest point of the extrados [m], its weight [N]."""
+
+    height: float
+    weight: float
+
+
+def fill_of(problem: Problem) -> FillAbove | None:
+    """Return the fill on a structure; None where it has none."""
+    kind = kind_behind(problem)
+    height = getattr(getattr(kind, "arch", kind), "fill", None)
+    if kind is None or height is None:
+        return None
+    fills = kind.made(density_of(problem)).fills
+    return FillAbove(height=height, weight=sum(each.weight for each in fills))
+
+
+def _remade(problem: Problem, kind: Kind, fills: int | None = None) -> Problem:
+    """Return a problem of another kind, or of other parameters, under the same loads.
+
+    The first of its dead loads are the weight of fill, as many as before unless said.
+    """
+    made = problem_of(kind, Around(friction=0.0, density=density_of(problem)))
+    others = problem.dead[len(made.dead) if fills is None else fills :]
     return replace(
-        problem,
-        assembly=made.assembly,
-        dead=(*made.dead, *problem.dead[len(made.dead) :]),
-        origin=made.origin,
+        problem, assembly=made.assembly, dead=(*made.dead, *others), origin=made.origin
     )
+
+
+def density_of(problem: Problem) -> float:
+    """Weight per volume of a problem made from a kind [N/m^3]; 1 where none was given."""
+    return float(cast(Mapping[str, Any], problem.origin)["density"])

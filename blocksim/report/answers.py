@@ -7,9 +7,11 @@ import math
 from blocksim.arch.bracket import Bracket
 from blocksim.arch.check import ArchCheck
 from blocksim.arch.circular import GRAVITY
+from blocksim.arch.dimensions import At
 from blocksim.arch.modes import Mode
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.motion import EARLY
+from blocksim.report.sizes import size_lines, size_record
 
 
 def check_record(answer: ArchCheck) -> dict[str, object]:
@@ -29,6 +31,7 @@ def check_record(answer: ArchCheck) -> dict[str, object]:
         "weight": arch.weight,
         "radius": arch.radius,
         "depth": arch.depth,
+        **size_record(arch, answer.mu),
         "lean_deg": math.degrees(answer.lean),
         "eta_limit": answer.eta_limit,
         "eta_theory": answer.eta_theory,
@@ -85,14 +88,15 @@ def _degrees(angle: float | None) -> float | None:
     return None if angle is None else math.degrees(angle)
 
 
-def check_lines(answer: ArchCheck) -> list[str]:
-    """Return a check in words."""
+def check_lines(answer: ArchCheck, at: At | None = None) -> list[str]:
+    """Return a check in words; `at` is the line that was measured, if one was."""
     arch = answer.arch
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
         f"mu {answer.mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}, "
         f"depth {arch.depth / arch.radius:g} r{lean_words(answer.lean)}",
+        *size_lines(arch, answer.mu, at),
         f"  because {answer.reason}",
         _exact("least  ", answer),
     ]

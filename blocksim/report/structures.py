@@ -14,6 +14,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import shaking_record
 from blocksim.kinds.files import kind_behind
+from blocksim.report.sizes import problem_size_lines, problem_size_record
 
 SHOWN = 8
 """Joints and blocks told in a line of text."""
@@ -41,6 +42,7 @@ def check_record(answer: ProblemCheck) -> dict[str, object]:
             **tilt_and_lean(problem),
             "load": problem.load,
             "shake": None if problem.shaking is None else shaking_record(problem.shaking),
+            **problem_size_record(problem),
         },
         "load_factor": answer.load_factor,
         "rest": answer.rest,
@@ -78,6 +80,7 @@ def check_lines(answer: ProblemCheck) -> list[str]:
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  what    {_described(problem)}",
+        *problem_size_lines(problem),
         f"  because {answer.reason}",
     ]
     if answer.load_factor is not None:

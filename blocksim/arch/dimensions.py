@@ -1,0 +1,201 @@
+"""Span, rise and thickness of a circular arch: what engineers measure, to and from `Arch`.
+
+A circle through the two ends of a line of span s and its top, f above them, has the radius
+(s^2/4 + f^2)/(2f) and spans tan(alpha/2) = 2f/s to each side. Both hold for segments, where
+f < s/2, and for horseshoes alike: there the span is that between the springings, not the
+widest. The half-angle is the same at intrados, centreline and extrados.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from blocksim.arch.circular import Arch
+from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.common.checks import is_number, require
+
+At = Literal["intrados", "centreline", "extrados"]
+LINES: tuple[str, ...] = get_args(At)
+OFFSET: dict[str, float] = {"intrados": -0.5, "centreline": 0.0, "extrados": 0.5}
+"""How far each line is outside the centreline, over the thickness."""
+ALMOST = 1 + 1e-12
+"""Round-off allowed of arches that are as thick as can be."""
+LONGEST = 1000.0
+"""Longest span that is believed to be in metres."""
+HEAVIEST, NEWTONS = 200.0, 8000.0
+"""Largest unit weight that is believed to be in kN/m^3, gold having 189; from the second on
+one is taken for N/m^3, below it for a density in kg/m^3."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """One of the three arcs of an arch.
+
+    Parameters
+    ----------
+    span, rise : float
+        Between its ends, and of its top above them [m].
+    at : {"intrados", "centreline", "extrados"}
+        Which one it is.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+
+    span: float
+    rise: float
+    at: At = "intrados"
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        for field in ("span", "rise"):
+            require_length(field, getattr(self, field))
+        require(self.at in LINES, "at", self.at, f"one of {', '.join(LINES)}")
+
+    @property
+    def half_angle(self) -> float:
+        """Half-angle of embrace alpha [rad]."""
+        return 2 * math.atan2(2 * self.rise, self.span)
+
+    @property
+    def radius(self) -> float:
+        """Radius of this line [m]."""
+        return (self.span * (self.span / self.rise) / 4 + self.rise) / 2
+
+    def mean_radius(self, eta: float) -> float:
+        """Radius of the centreline of an arch of a thickness-to-radius ratio [m].
+
+        Infinite where the intrados was measured and eta = 2 makes a point of it.
+        """
+        share = 1 + OFFSET[self.at] * eta
+        return self.radius / share if share else math.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dimensions:
+    """Span, rise and thickness of an arch.
+
+    Parameters
+    ----------
+    span, rise : float
+        Of one of its lines [m].
+    thickness : float
+        [m]
+    at : {"intrados", "centreline", "extrados"}
+        Which line was measured.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the thickness is beyond eta = 2.
+    """
+
+    span: float
+    rise: float
+    thickness: float
+    at: At = "intrados"
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        require_length("thickness", self.thickness)
+        radius, inside = self.line.radius, OFFSET[self.at] + 0.5
+        allowed = f"at most {radius / (inside or 1.0):.6g} m, which is eta = 2"
+        fits = inside * self.thickness <= radius * ALMOST
+        require(fits, "thickness", self.thickness, allowed)
+
+    @property
+    def line(self) -> Line:
+        """The line that was measured."""
+        return Line(span=self.span, rise=self.rise, at=self.at)
+
+    @property
+    def half_angle(self) -> float:
+        """Half-angle of embrace alpha [rad]."""
+        return self.line.half_angle
+
+    @property
+    def radius(self) -> float:
+        """Radius r of the centreline [m]."""
+        return self.line.radius - OFFSET[self.at] * self.thickness
+
+    @property
+    def eta(self) -> float:
+        """Thickness-to-radius ratio t/r."""
+        return min(2.0, self.thickness / self.radius)
+
+
+def dimensions_of(arch: Arch, at: At = "intrados") -> Dimensions:
+    """Return the dimensions of an arch at one of its lines.
+
+    Raises
+    ------
+    InputError
+        If that is no line: the intrados of an arch of eta = 2.
+    """
+    radius = arch.radius + OFFSET[at] * arch.thickness
+    require(radius > 0, "eta", arch.eta, "below 2: the intrados is a point")
+    return Dimensions(
+        span=2 * radius * math.sin(arch.half_angle),
+        rise=2 * radius * math.sin(arch.half_angle / 2) ** 2,
+        thickness=arch.thickness,
+        at=at,
+    )
+
+
+def friction_of(angle: float) -> float:
+    """Return the friction coefficient of an angle in degrees; inf at a right angle."""
+    return math.inf if angle == 90 else math.tan(math.radians(angle))
+
+
+def friction_angle(mu: float) -> float:
+    """Return the angle of a friction coefficient in degrees."""
+    return math.degrees(math.atan(mu))
+
+
+def require_length(field: str, value: object) -> None:
+    """Raise `InputError` unless a value is a length."""
+    finite = is_number(value, 0, math.inf) and value != math.inf
+    require(finite, field, value, "above 0 and finite, in m")
+
+
+def require_measured(line: Line, thickness: float | None) -> None:
+    """Raise `InputError` for dimensions that nobody has measured, as of a wrong unit.
+
+    Parameters
+    ----------
+    line : Line
+    thickness : float or None
+        [m]
+    """
+    span, rise = line.span, line.rise
+    millimetres = f"at most {LONGEST:g} m (in mm it would be {span / 1000:g} m)"
+    require(span <= LONGEST, "span", span, millimetres)
+    closed = (
+        f"at most the span, {span:g} m (a horseshoe beyond that: by its half-angle and eta)"
+    )
+    require(rise <= span, "rise", rise, closed)
+    if thickness is None:
+        return
+    radius = Dimensions(span=span, rise=rise, thickness=thickness, at=line.at).radius
+    thick = f"at most the mean radius, {radius:.6g} m, which is eta = 1 (is it in m?)"
+    require(thickness <= radius, "thickness", thickness, thick)
+
+
+def require_friction_angle(field: str, angle: object) -> None:
+    """Raise `InputError` unless a value is an angle of friction in degrees."""
+    require(
+        is_number(angle, 0, 90), field, angle, "above 0 and at most 90 deg (90: no sliding)"
+    )
+
+
+def require_unit_weight(field: str, value: float) -> None:
+    """Raise `InputError` unless a value is a unit weight in kN/m^3."""
+    allowed = f"above 0 and at most {HEAVIEST:g} kN/m3"
+    if is_number(value, HEAVIEST, math.inf):
+        unit, share = ("N/m3", 1e-3) if value >= NEWTONS else ("kg/m3", STANDARD_GRAVITY / 1000)
+        allowed += f" ({value:g} {unit} would be {value * share:.4g})"
+    require(is_number(value, 0, HEAVIEST), field, value, allowed)

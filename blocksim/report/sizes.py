@@ -1,0 +1,144 @@
+"""Dimensions in answers: metres beside ratios, an angle beside the friction coefficient."""
+
+from __future__ import annotations
+
+import math
+
+from blocksim.arch.bracket import Bracket
+from blocksim.arch.circular import Arch
+from blocksim.arch.dimensions import At, dimensions_of, friction_angle
+from blocksim.arch.scenario import Scenario
+from blocksim.arch.structure import arch_behind
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.kinds.files import fill_of
+
+
+def size_record(arch: Arch, mu: float) -> dict[str, object]:
+    """Return the dimensions of an arch, span and rise of its intrados, for JSON.
+
+    At eta = 2 the intrados is a point, without span and rise.
+    """
+    clear = dimensions_of(arch) if arch.eta < 2 else None
+    return {
+        "span_m": clear and clear.span,
+        "rise_m": clear and clear.rise,
+        "thickness_m": arch.thickness,
+        "radius_m": arch.radius,
+        "depth_m": arch.depth,
+        "unit_weight_kN_per_m3": arch.specific_weight / 1000,
+        "friction_angle_deg": friction_angle(mu),
+    }
+
+
+def size_lines(arch: Arch, mu: float, at: At | None = None) -> list[str]:
+    """Return the dimensions of an arch in words.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+    at : str, optional
+        The line that was measured; the intrados if none was. An arch with a radius of 1
+        of which none was measured is told in radii.
+    """
+    metric = at is not None or arch.radius != 1
+    unit, at = ("m" if metric else "r"), at or "intrados"
+    said: list[str] = []
+    if arch.eta < 2 or at != "intrados":
+        found = dimensions_of(arch, at)
+        said.append(f"span {found.span:.6g} {unit}, rise {found.rise:.6g} {unit} ({at})")
+    said.append(f"thickness {arch.thickness:.6g} {unit}")
+    if metric:
+        said.append(f"r {arch.radius:.6g} m, depth {arch.depth:.6g} m")
+        said.append(f"unit weight {arch.specific_weight / 1000:.6g} kN/m3")
+    said.append(f"friction angle {friction_angle(mu):.6g} deg")
+    return [f"  size    {', '.join(said)}"]
+
+
+def problem_size_record(problem: Problem) -> dict[str, object]:
+    """Return weights of a structure, and of a circular arch its dimensions, for JSON."""
+    arch, fill = arch_behind(problem), fill_of(problem)
+    return {
+        **({} if arch is None else size_record(arch, problem.mu)),
+        "friction_angle_deg": friction_angle(problem.mu),
+        "weight_kN": weight_of(problem) / 1000,
+        "fill_m": None if fill is None else fill.height,
+        "fill_weight_kN": None if fill is None else fill.weight / 1000,
+        "live_weight_kN": -_live(problem) / 1000,
+    }
+
+
+def problem_size_lines(problem: Problem) -> list[str]:
+    """Return the dimensions of a circular arch, and what lies on its road, in words."""
+    arch, fill = arch_behind(problem), fill_of(problem)
+    lines = [] if arch is None else size_lines(arch, problem.mu)
+    live = -_live(problem)
+    said: list[str] = []
+    if fill is not None:
+        said.append(f"fill {fill.height:.6g} m over the crown, {fill.weight / 1000:.6g} kN")
+    if live and any(load.point is not None for load in problem.live):
+        said.append(f"live loads {live / 1000:.6g} kN times {problem.load:g}")
+    if said:
+        said.append("straight down to the blocks below: fill spreads no load")
+        lines.append(f"  road    {', '.join(said)}")
+    return lines
+
+
+def weight_of(problem: Problem) -> float:
+    """Weight of all blocks [N]."""
+    return sum(block.mass for block in problem.assembly.blocks) * STANDARD_GRAVITY
+
+
+def _live(problem: Problem) -> float:
+    """Vertical live loads in all at a factor of 1, upwards [N]; body forces are none."""
+    loads = [load for load in problem.live if not load.per_weight]
+    return float(sum(load.force[1] * len(load.blocks) for load in loads))
+
+
+def bracket_size_record(answer: Bracket, asked: Scenario) -> dict[str, object]:
+    """Return a bracket in metres, for JSON: span and rise are those that stay as they are."""
+    record: dict[str, object] = {
+        f"thickness_{end}_m": _thickness(asked, getattr(answer, f"eta_{end}"))
+        for end in ("low", "high", "limit", "theory")
+    }
+    if asked.line is not None:
+        line = asked.line
+        record |= {"span_m": line.span, "rise_m": line.rise, "at": line.at}
+    fixed = _fixed(asked)
+    radius = asked.radius if fixed == "centreline" else None
+    return {
+        **record,
+        "fixed_line": fixed,
+        "radius_m": radius,
+        "depth_m": asked.depth,
+        "friction_angle_deg": friction_angle(asked.mu),
+    }
+
+
+def bracket_size_lines(answer: Bracket, asked: Scenario) -> list[str]:
+    """Return a bracket in metres, in words; nothing where no length was given."""
+    if asked.line is None and asked.radius == 1:
+        return []
+    low, high = (_thickness(asked, eta) for eta in (answer.eta_low, answer.eta_high))
+    if high is None or math.isinf(high):
+        return []
+    least = f"{high:.6g} m" if low == high else f"{low or 0:.6g} to {high:.6g} m"
+    said = [f"least thickness {least}, the {_fixed(asked)} staying where it is"]
+    if asked.line is not None:
+        line = asked.line
+        said.append(f"span {line.span:.6g} m, rise {line.rise:.6g} m ({line.at})")
+    if asked.eta is not None:
+        said.append(f"thickness given {asked.eta * asked.radius:.6g} m")
+    said.append(f"friction angle {friction_angle(asked.mu):.6g} deg")
+    return [f"  size    {', '.join(said)}"]
+
+
+def _fixed(asked: Scenario) -> str:
+    """Line that stays where it is as the thickness varies."""
+    if asked.line is None or asked.eta is not None:
+        return "centreline"
+    return asked.line.at
+
+
+def _thickness(asked: Scenario, eta: float | None) -> float | None:
+    return None if eta is None else eta * asked.mean_radius(eta)

@@ -1,0 +1,321 @@
+"""Span, rise and thickness in, both forms out; nonsense refused in one line."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+from running import inside
+
+from blocksim import load_recording
+from blocksim.arch import limit
+from blocksim.arch.circular import Arch, arch_of
+from blocksim.arch.dimensions import LINES, At, Dimensions, Line, dimensions_of
+from blocksim.arch.scenario import load_scenario
+from blocksim.common.errors import InputError
+
+EXACT = 1e-14
+SIZE = ("--span", "8", "--rise", "3", "--thickness", "0.45")
+ASKED = (*SIZE, "--voussoirs", "31", "--friction-angle", "35")
+ALPHA = math.acos(7 / 25)
+"""Half-angle of a line of 8 by 3 m: its radius is 25/6 m, and 25/6 - 3 = 7/6."""
+
+lines = st.sampled_from(LINES)
+angles = st.floats(math.radians(0.5), math.radians(179.5))
+
+
+@given(angles, st.floats(1e-4, 2.0), st.floats(1e-2, 1e3), lines)
+@example(math.pi / 2, 2.0, 1.0, "centreline")
+@example(3.1, 2.0, 1.0, "extrados")
+@example(1e-3, 1.999999, 7.0, "intrados")
+def test_an_arch_is_the_same_after_being_measured(
+    half_angle: float, eta: float, radius: float, at: At
+) -> None:
+    assume(at != "intrados" or eta < 2)
+    arch = Arch(half_angle=half_angle, eta=eta, voussoirs=9, radius=radius)
+    found = dimensions_of(arch, at)
+    assert found.half_angle == pytest.approx(half_angle, rel=EXACT)
+    assert found.radius == pytest.approx(radius, rel=EXACT)
+    assert found.eta == pytest.approx(eta, rel=EXACT)
+    assert found.thickness == arch.thickness
+
+
+@given(st.floats(0.1, 1e3), st.floats(1e-3, 20.0), st.floats(1e-3, 0.99), lines)
+def test_measures_are_the_same_of_the_arch_they_make(
+    span: float, slender: float, thick: float, at: At
+) -> None:
+    """From rises of a thousandth of the span to horseshoes of twenty spans."""
+    line = Line(span=span, rise=slender * span, at=at)
+    given = Dimensions(**vars(line), thickness=thick * line.radius)
+    arch = Arch(half_angle=given.half_angle, eta=given.eta, voussoirs=9, radius=given.radius)
+    found = dimensions_of(arch, at)
+    # A long line that nearly closes has a short span: round-off is that of its radius.
+    near = EXACT * max(1.0, line.radius / span)
+    assert found.span == pytest.approx(given.span, rel=near)
+    assert found.rise == pytest.approx(given.rise, rel=EXACT)
+    assert found.thickness == pytest.approx(given.thickness, rel=EXACT)
+
+
+@pytest.mark.parametrize("at", LINES)
+@pytest.mark.parametrize("degrees", [5, 60, 90, 125, 170])
+def test_a_tape_on_the_voussoirs_measures_the_same(degrees: float, at: At) -> None:
+    """Span and rise of the corners that the generator puts there."""
+    arch = Arch(half_angle=math.radians(degrees), eta=0.3, voussoirs=8, radius=5.0)
+    joints = arch.assembly().joints
+    corner = {
+        "intrados": lambda joint: joint.inner,
+        "centreline": lambda joint: (joint.inner + joint.outer) / 2,
+        "extrados": lambda joint: joint.outer,
+    }[at]
+    left, crown, right = (corner(joints[k]) for k in (0, 4, 8))
+    found = dimensions_of(arch, at)
+    assert found.span == pytest.approx(float(np.hypot(*(right - left))), rel=1e-13)
+    assert found.rise == pytest.approx(float(crown[1] - left[1]), rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("given", "field"),
+    [
+        ({"span": 0.0, "rise": 1.0, "thickness": 0.1}, "span"),
+        ({"span": 1.0, "rise": math.nan, "thickness": 0.1}, "rise"),
+        ({"span": 1.0, "rise": 1.0, "thickness": -0.1}, "thickness"),
+        ({"span": 2.0, "rise": 1.0, "thickness": 1.01, "at": "extrados"}, "thickness"),
+        ({"span": 2.0, "rise": 1.0, "thickness": 2.01, "at": "centreline"}, "thickness"),
+        ({"span": 2.0, "rise": 1.0, "thickness": 0.1, "at": "middle"}, "at"),
+    ],
+)
+def test_what_is_no_arch_is_refused(given: dict[str, object], field: str) -> None:
+    with pytest.raises(InputError) as refused:
+        Dimensions(**given)  # type: ignore[arg-type]
+    assert refused.value.field == field
+
+
+def test_an_engineers_arch_in_one_command() -> None:
+    done = inside("check", *ASKED, "--json")
+    assert done.returncode == 0
+    told = json.loads(done.stdout)
+    radius = 25 / 6 + 0.45 / 2
+    expected = {
+        "span_m": 8.0,
+        "rise_m": 3.0,
+        "thickness_m": 0.45,
+        "radius_m": radius,
+        "half_angle_deg": math.degrees(ALPHA),
+        "eta": 0.45 / radius,
+        "mu": math.tan(math.radians(35)),
+        "friction_angle_deg": 35.0,
+        "unit_weight_kN_per_m3": 20.0,
+        "depth_m": 1.0,
+    }
+    assert {key: told[key] for key in expected} == pytest.approx(expected, rel=EXACT)
+    assert (told["voussoirs"], told["weight"]) == (31, "sector")
+    least = limit.least_thickness(ALPHA, expected["mu"], 31, "sector").eta
+    assert told["eta_limit"] == pytest.approx(least, rel=1e-12)
+
+
+def test_words_give_both_forms() -> None:
+    said = " ".join(inside("check", *ASKED, "--unit-weight", "22").stdout.split())
+    assert "alpha 73.7398 deg, eta 0.102467, mu 0.700208, 31 voussoirs" in said
+    assert "span 8 m, rise 3 m (intrados), thickness 0.45 m, r 4.39167 m" in said
+    assert "unit weight 22 kN/m3, friction angle 35 deg" in said
+    outside = inside("check", *ASKED, "--at", "extrados").stdout
+    assert "span 8 m, rise 3 m (extrados)" in outside
+    # Where nothing was measured there are no metres.
+    said = inside("check", "--alpha", "90", "--eta", "0.2", "--mu", "1").stdout
+    assert "span 1.8 r, rise 0.9 r (intrados), thickness 0.2 r, friction angle 45 deg" in said
+
+
+@pytest.mark.parametrize(
+    ("at", "radius"),
+    [("intrados", 25 / 6 + 0.225), ("centreline", 25 / 6), ("extrados", 25 / 6 - 0.225)],
+)
+def test_the_line_that_was_measured_is_said(at: str, radius: float) -> None:
+    told = json.loads(inside("check", *ASKED, "--at", at, "--json").stdout)
+    assert told["radius_m"] == pytest.approx(radius, rel=EXACT)
+    assert told["half_angle_deg"] == pytest.approx(math.degrees(ALPHA), rel=EXACT)
+    # What is told is the clear span, whichever was given.
+    assert told["span_m"] == pytest.approx(8 * (radius - 0.225) / (25 / 6), rel=EXACT)
+
+
+def test_both_forms_are_one_question() -> None:
+    radius = 25 / 6 + 0.225
+    others = ("--mu", repr(math.tan(math.radians(35))), "--voussoirs", "31")
+    ratios = ("--alpha", repr(math.degrees(ALPHA)), "--eta", repr(0.45 / radius))
+    one = json.loads(inside("check", *ASKED, "--json").stdout)
+    two = json.loads(inside("check", *ratios, *others, "--weight", "sector", "--json").stdout)
+    for key in ("eta_limit", "eta_theory", "mode_limit", "verdict"):
+        assert (
+            one[key] == pytest.approx(two[key], rel=1e-12)
+            if key[:3] == "eta"
+            else (one[key] == two[key])
+        )
+    told = json.loads(inside("check", *ASKED, "--weight", "centreline", "--json").stdout)
+    assert told["weight"] == "centreline"
+
+
+def test_a_bracket_answers_in_metres() -> None:
+    told = json.loads(inside("bracket", *ASKED, "--json").stdout)
+    radius = 25 / 6 + 0.225
+    assert told["fixed_line"] == "centreline"
+    assert told["radius_m"] == pytest.approx(radius, rel=EXACT)
+    assert told["thickness_limit_m"] == pytest.approx(told["eta_limit"] * radius, rel=EXACT)
+    said = inside("bracket", *ASKED).stdout
+    assert f"least thickness {told['thickness_high_m']:.6g} m, the centreline staying" in said
+
+
+def test_without_a_thickness_the_line_that_was_measured_stays() -> None:
+    asked = ("--span", "8", "--rise", "3", "--friction-angle", "35", "--voussoirs", "31")
+    told = json.loads(inside("bracket", *asked, "--json").stdout)
+    assert told["fixed_line"] == "intrados"
+    thickness = told["thickness_limit_m"]
+    # On the same intrados an arch of that thickness has that ratio.
+    found = Dimensions(span=8, rise=3, thickness=thickness)
+    assert found.eta == pytest.approx(told["eta_limit"], rel=1e-13)
+    at_ratio = json.loads(inside("check", *asked, "--ratio", "1.5", "--json").stdout)
+    assert at_ratio["eta"] == pytest.approx(1.5 * told["eta_limit"], rel=1e-13)
+    assert at_ratio["span_m"] == pytest.approx(8, rel=EXACT)
+    assert at_ratio["rise_m"] == pytest.approx(3, rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (
+            "--alpha 1.5708 --eta 0.1 --mu 1",
+            "--alpha = 1.5708: must be in degrees: 1.5708 deg is nearly flat, "
+            "in radians it would be 90 deg",
+        ),
+        ("--alpha 90 --eta 0.1 --mu 35", "--mu = 35.0: .*--friction-angle 35"),
+        ("--alpha 90 --eta 0.1 --friction-angle 0.7", "--friction-angle = 0.7: .*--mu 0.7"),
+        ("--alpha 90 --eta 0.1 --friction-angle 95", "--friction-angle = 95.0: .*90 deg"),
+        ("--alpha 90 --eta 0.1 --mu 1 --friction-angle 45", "--friction-angle = 45.0: .*--mu"),
+        ("--span 8 --rise 9 --thickness 0.4 --mu 1", "--rise = 9.0: .*the span, 8 m"),
+        ("--span 8 --rise 3 --thickness 450 --mu 1", "--thickness = 450.0: .*mean radius"),
+        (
+            "--span 8000 --rise 3000 --thickness 450 --mu 1",
+            r"--span = 8000.0: must be at most 1000 m \(in mm it would be 8 m\)",
+        ),
+        ("--span 8 --rise 3 --thickness 0.4 --alpha 90 --mu 1", "--alpha = 90.0: .*--span"),
+        ("--span 8 --rise 3 --eta 0.1 --thickness 0.4 --mu 1", "--eta = 0.1: .*--span"),
+        ("--span 8 --rise 3 --thickness 0.4 --ratio 2 --mu 1", "--ratio = 2.0: .*--thickness"),
+        ("--span 8 --rise 3 --mu 1", "--thickness is missing"),
+        ("--span 8", "--rise, --mu and --thickness are missing"),
+        ("--mu 1", "--alpha and --eta are missing: must be given .or --span, --rise"),
+        ("--span -8 --rise 3 --thickness 0.4 --mu 1", "--span = -8.0"),
+        ("--span 8 --rise nan --thickness 0.4 --mu 1", "--rise = nan"),
+        ("--span 8 --rise 3 --thickness 0.4 --mu 1 --at middle", "--at = 'middle'"),
+        (
+            "--span 8 --rise 3 --thickness 0.4 --mu 1 --unit-weight 22000",
+            r"--unit-weight = 22000.0: .*\(22000 N/m3 would be 22\)",
+        ),
+        ("semicircle --thickness 0.4", "--span and --rise are missing"),
+        ("portal --mu 0.7 --span 8", "--span = 8.0: must be left out"),
+        ("portal --mu 40", "--mu = 40.0: .*--friction-angle 40"),
+        ("portal --mu 1 --unit-weight 0", "--unit-weight = 0.0"),
+        ("portal --mu 1 --unit-weight 2200", r"--unit-weight = 2200.0: .*kg/m3 would be 21.58"),
+    ],
+)
+def test_nonsense_is_one_line_with_the_way_out(options: str, said: str) -> None:
+    done = inside("check", *options.split())
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(rf"blocksim: .*{said}[^\n]*\n", done.stderr), done.stderr
+
+
+SCENARIO = """
+title = "A bridge"
+source = "measured"
+
+[arch]
+voussoirs = 31
+span_m = 8.0
+rise_m = 3.0
+thickness_m = 0.45
+unit_weight_kN_per_m3 = 22.0
+
+[contact]
+friction_angle_deg = 35.0
+"""
+
+
+def test_a_scenario_in_metres(tmp_path: Path) -> None:
+    path = tmp_path / "bridge.toml"
+    path.write_text(SCENARIO)
+    found = load_scenario(path)
+    assert found.half_angle == pytest.approx(ALPHA, rel=EXACT)
+    assert (found.weight, found.specific_weight) == ("sector", 22_000)
+    one = json.loads(inside("check", str(path), "--json").stdout)
+    two = json.loads(inside("check", *ASKED, "--unit-weight", "22", "--json").stdout)
+    assert {**one, "wall_s": 0} == {**two, "wall_s": 0}
+    # One measure given instead of the file's: the others stay.
+    told = json.loads(inside("check", str(path), "--thickness", "0.6", "--json").stdout)
+    wanted = {"span_m": 8.0, "rise_m": 3.0, "thickness_m": 0.6}
+    assert {key: told[key] for key in wanted} == pytest.approx(wanted, rel=EXACT)
+    told = json.loads(inside("check", str(path), "--alpha", "90", "--json").stdout)
+    assert told["half_angle_deg"] == 90
+    assert told["radius_m"] == found.radius
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("span_m = 8.0", "half_angle_deg = 90\nspan_m = 8.0"), "arch.half_angle_deg = 90.0"),
+        (("span_m = 8.0\n", ""), "arch.span_m is missing"),
+        (("rise_m = 3.0", "rise_m = 9.0"), r"arch.rise_m = 9.0: .*the span"),
+        (("thickness_m = 0.45", "thickness_m = 450.0"), "arch.thickness_m = 450.0"),
+        (("thickness_m = 0.45", "eta = 0.1"), "arch.eta = 0.1: .*span_m"),
+        (("angle_deg = 35.0", "angle_deg = 35.0\nmu = 0.7"), "contact.friction_angle_deg"),
+        (("friction_angle_deg = 35.0", ""), "contact.mu is missing: must be given .or fric"),
+        (("= 22.0", "= 22000.0"), "arch.unit_weight_kN_per_m3 = 22000.0"),
+        (("= 22.0", "= 22.0\nspecific_weight = 1.0"), "arch.specific_weight = 1.0"),
+    ],
+)
+def test_a_wrong_scenario_in_metres_is_one_line(
+    change: tuple[str, str], said: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "bridge.toml"
+    path.write_text(SCENARIO.replace(*change))
+    done = inside("check", str(path))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(rf"blocksim: {path}: {said}[^\n]*\n", done.stderr), done.stderr
+
+
+def test_arches_in_metres_are_let_go_and_drawn(tmp_path: Path) -> None:
+    run = tmp_path / "run.npz"
+    options = (*SIZE[:4], "--thickness", "0.2", "--mu", "0.7", "--depth", "2")
+    done = inside("simulate", *options, "--seconds", "0.05", "--out", str(run))
+    assert done.returncode == 0, done.stderr
+    arch = arch_of(load_recording(run).problem)
+    assert arch is not None
+    assert (arch.radius, arch.depth) == (pytest.approx(25 / 6 + 0.1), 2)
+    picture = tmp_path / "arch.svg"
+    assert inside("render", *options, "--out", str(picture)).returncode == 0
+    assert "73.7398" in picture.read_text()
+
+
+def test_structures_take_an_angle_of_friction_and_a_unit_weight(tmp_path: Path) -> None:
+    def told(*options: str) -> dict[str, object]:
+        return json.loads(inside("check", *options, "--json").stdout)
+
+    heavy = told("column", "--friction-angle", "35", "--unit-weight", "25")
+    light = told("column", "--mu", "0.5")
+    assert heavy["problem"]["mu"] == pytest.approx(math.tan(math.radians(35)), rel=EXACT)  # type: ignore[index]
+    pairs = zip(heavy["joints"], light["joints"], strict=True)  # type: ignore[call-overload]
+    for one, other in pairs:
+        assert one["normal_force"] == pytest.approx(25_000 * other["normal_force"], rel=1e-9)
+    # In a file of blocks, unless they have weights of their own.
+    block = {"id": "b", "vertices": [[0, 0], [2, 0], [2, 1], [0, 1]], "depth": 0.5}
+    floor = {"id": "f", "vertices": [[-1, -1], [3, -1], [3, 0], [-1, 0]], "fixed": True}
+    path = tmp_path / "block.json"
+    path.write_text(json.dumps({"friction": 0.5, "blocks": [floor, block]}))
+    bed = told(str(path), "--unit-weight", "20")["joints"][0]  # type: ignore[index]
+    assert bed["normal_force"] == pytest.approx(20_000 * 2 * 0.5, rel=1e-9)
+    path.write_text(json.dumps({"friction": 0.5, "blocks": [floor, {**block, "weight": 5}]}))
+    done = inside("check", str(path), "--unit-weight", "20")
+    assert done.returncode == 2
+    assert "blocks[1].weight = 5: must be left out where a unit weight is given" in done.stderr

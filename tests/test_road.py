@@ -1,0 +1,319 @@
+"""Fill and loads on the road: weights by hand, statics, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from running import inside
+from scipy.integrate import quad
+
+from blocksim import load_recording
+from blocksim.arch.circular import Arch
+from blocksim.arch.structure import arch_behind, structure_of_arch
+from blocksim.blocks.assembly import SUPPORT
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import on_road
+from blocksim.kinds.files import fill_of, structure_of, with_fill
+from blocksim.limit import collapse, equilibrium
+
+HEAVY, FILL = 22_000.0, 18_000.0
+RADIUS, THICK, DEPTH, HEIGHT = 25 / 6 + 0.225, 0.45, 2.0, 0.5
+"""Of an arch of 8 by 3 by 0.45 m, 2 m deep, under half a metre of fill."""
+ALPHA = math.acos(7 / 25)
+BRIDGE = Arch(
+    half_angle=ALPHA,
+    eta=THICK / RADIUS,
+    voussoirs=31,
+    weight="sector",
+    radius=RADIUS,
+    depth=DEPTH,
+    specific_weight=HEAVY,
+)
+OPTIONS = (
+    *("--span", "8", "--rise", "3", "--thickness", "0.45", "--voussoirs", "31"),
+    *("--depth", "2", "--friction-angle", "35", "--unit-weight", "22"),
+)
+UNDER = (*OPTIONS, "--fill", "0.5", "--fill-unit-weight", "18")
+PORTAL: dict[str, Any] = {
+    "kind": "portal",
+    "friction": 0.7,
+    "density": HEAVY,
+    "pier_width": 1.2,
+    "arch": {"kind": "circular-arch", "left_deg": 70, "right_deg": 70, "voussoirs": 14},
+}
+
+
+def reaction(problem: Problem) -> np.ndarray:
+    """Force and moment about the origin by which supports hold the blocks [N, N m]."""
+    forces = equilibrium(problem).forces
+    assert forces is not None
+    total = np.zeros(3)
+    for joint, ends in zip(problem.assembly.joints, forces, strict=True):
+        if SUPPORT not in (joint.before, joint.after):
+            continue
+        side = 1.0 if joint.before == SUPPORT else -1.0
+        for point, (normal, tangent) in zip((joint.inner, joint.outer), ends, strict=True):
+            x, y = side * problem.unit_force * (normal * joint.normal + tangent * joint.tangent)
+            total += [x, y, point[0] * y - point[1] * x]
+    return total
+
+
+def weights(problem: Problem) -> np.ndarray:
+    """The same of all that acts on the blocks, summed one by one."""
+    total = np.zeros(3)
+    acting = [
+        (block.centre, np.array([0.0, -9.81 * block.mass])) for block in problem.assembly.blocks
+    ]
+    acting += [(load.point, load.force) for load in problem.dead]
+    acting += [(load.point, problem.load * load.force) for load in problem.live]
+    for point, (x, y) in acting:
+        assert point is not None
+        total += [x, y, point[0] * y - point[1] * x]
+    return total
+
+
+def above(outer: float, half_angle: float, height: float) -> float:
+    """Area between an extrados and the road, by quadrature [m^2]."""
+    reach = outer * math.sin(half_angle)
+    return quad(
+        lambda x: outer + height - math.sqrt(outer**2 - x**2), -reach, reach, epsabs=1e-13
+    )[0]
+
+
+def test_an_arch_under_fill_and_loads_is_held_by_what_it_weighs() -> None:
+    built = with_fill(structure_of_arch(BRIDGE, 0.7), HEIGHT, FILL / HEAVY)
+    live = (
+        *on_road(built.assembly, 50_000, 2.0, 2.0),
+        *on_road(built.assembly, 30_000, -1.5, -0.3),
+    )
+    problem = Problem(**{**vars_of(built), "live": live, "load": 1.0})
+    ring = ALPHA * ((RADIUS + THICK / 2) ** 2 - (RADIUS - THICK / 2) ** 2)
+    own = HEAVY * DEPTH * ring
+    fill = FILL * DEPTH * above(RADIUS + THICK / 2, ALPHA, HEIGHT)
+    known = fill_of(problem)
+    assert known is not None
+    assert known.weight == pytest.approx(fill, rel=1e-9)
+    held = reaction(problem)
+    assert held[1] == pytest.approx(own + fill + 80_000, rel=1e-9)
+    # Sideways nothing pushes, and moments balance about any point.
+    scale = own + fill
+    assert held + weights(problem) == pytest.approx(np.zeros(3), abs=1e-9 * scale * RADIUS)
+
+
+def vars_of(problem: Problem) -> dict[str, Any]:
+    names = ("assembly", "mu", "gravity", "dead", "origin")
+    return {name: getattr(problem, name) for name in names}
+
+
+def test_a_portal_under_fill_is_held_by_what_it_weighs() -> None:
+    built = with_fill(structure_of(PORTAL), 0.4, FILL / HEAVY)
+    live = on_road(built.assembly, 12_000, -1.7, 1.6)
+    problem = Problem(**{**vars_of(built), "live": live, "load": 1.0})
+    angle, outer, inner = math.radians(70), 1.1, 0.9
+    # Beside the springings the fill goes down to the skewbacks, as far as the piers' edges.
+    edge, spring = inner * math.sin(angle) + 1.2, outer * math.cos(angle)
+    beside = (edge - outer * math.sin(angle)) * (outer + 0.4 - spring)
+    fill = FILL * (above(outer, angle, 0.4) + 2 * beside)
+    known = fill_of(problem)
+    assert known is not None
+    assert known.weight == pytest.approx(fill, rel=1e-9)
+    # Piers, skewbacks below and beside the springings, and the ring.
+    low = inner * math.cos(angle)
+    pier = 1.2 * 1.0
+    skew = 1.2 * (spring - low) - (outer - inner) * math.sin(angle) * (spring - low) / 2
+    own = HEAVY * (2 * pier + 2 * skew + angle * (outer**2 - inner**2))
+    assert reaction(problem)[1] == pytest.approx(own + fill + 12_000, rel=1e-9)
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+def test_an_arch_and_its_kind_are_the_same_blocks(weight: Any) -> None:
+    """Two generators, written apart: masses, centres, inertias and joints agree."""
+    arch = Arch(half_angle=2.0, eta=0.3, voussoirs=8, weight=weight, radius=3.0, depth=0.5)
+    made = structure_of_arch(arch, math.inf)
+    one, two = arch.assembly(), made.assembly
+    for mine, other in zip(one.blocks, two.blocks, strict=True):
+        assert other.mass == pytest.approx(mine.mass, rel=1e-12)
+        assert other.inertia == pytest.approx(mine.inertia, rel=1e-10)
+        assert other.centre == pytest.approx(mine.centre, abs=1e-12)
+    for mine, other in zip(one.joints, two.joints, strict=True):
+        assert other.inner == pytest.approx(mine.inner, abs=1e-12)
+        assert other.outer == pytest.approx(mine.outer, abs=1e-12)
+    assert made.mu == math.inf
+    assert arch_behind(made) == arch
+
+
+def test_the_command_line_says_the_same() -> None:
+    done = inside(
+        "check",
+        *UNDER,
+        "--point-load",
+        "2",
+        "50",
+        "--patch-load",
+        "-1.5",
+        "-0.3",
+        "30",
+        "--json",
+    )
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    problem = told["problem"]
+    ring = ALPHA * ((RADIUS + THICK / 2) ** 2 - (RADIUS - THICK / 2) ** 2)
+    wanted = {
+        "span_m": 8.0,
+        "rise_m": 3.0,
+        "thickness_m": 0.45,
+        "depth_m": 2.0,
+        "unit_weight_kN_per_m3": 22.0,
+        "weight_kN": HEAVY * DEPTH * ring / 1000,
+        "fill_m": 0.5,
+        "fill_weight_kN": FILL * DEPTH * above(RADIUS + THICK / 2, ALPHA, HEIGHT) / 1000,
+        "live_weight_kN": 80.0,
+        "load": 1.0,
+    }
+    assert {key: problem[key] for key in wanted} == pytest.approx(wanted, rel=1e-9)
+    said = inside("check", *UNDER, "--point-load", "2", "50", "--load", "0.5").stdout
+    assert f"fill 0.5 m over the crown, {wanted['fill_weight_kN']:.6g} kN" in said
+    assert "live loads 50 kN times 0.5, straight down to the blocks below" in said
+
+
+def test_a_load_factor_is_that_of_the_same_load_in_a_file(tmp_path: Path) -> None:
+    """The file names the voussoir and the point; the options find them."""
+    told = json.loads(inside("check", *UNDER, "--point-load", "2", "50", "--json").stdout)
+    angles = BRIDGE.joint_angles
+    outer = RADIUS + THICK / 2
+    place = int(np.searchsorted(outer * np.sin(angles), 2.0))
+    table = {
+        "kind": "circular-arch",
+        "friction": math.tan(math.radians(35)),
+        "density": HEAVY,
+        "radius": RADIUS,
+        "thickness": THICK,
+        "depth": DEPTH,
+        "voussoirs": 31,
+        "left_deg": math.degrees(ALPHA),
+        "right_deg": math.degrees(ALPHA),
+        "fill": 0.5,
+        "fill_density": FILL / HEAVY,
+        "live": [{"block": str(place), "point": [2.0, 3.8], "force": [0, -50_000]}],
+    }
+    path = tmp_path / "bridge.json"
+    path.write_text(json.dumps(table))
+    other = json.loads(inside("check", str(path), "--json").stdout)
+    assert told["load_factor"] == pytest.approx(other["load_factor"], rel=1e-9)
+    assert 1 < told["load_factor"] < 10
+    # Seen from behind it is the same bridge.
+    behind = json.loads(inside("check", *UNDER, "--point-load", "-2", "50", "--json").stdout)
+    assert behind["load_factor"] == pytest.approx(told["load_factor"], rel=1e-9)
+
+
+@pytest.mark.parametrize(("share", "code"), [(0.999, 0), (1.001, 1)])
+def test_an_engine_falls_where_the_load_factor_says(share: float, code: int) -> None:
+    load = ("--point-load", "2", "50")
+    factor = json.loads(inside("check", *UNDER, *load, "--json").stdout)["load_factor"]
+    done = inside("check", *UNDER, *load, "--load", str(share * factor), "--method", "direct")
+    assert done.returncode == code
+
+
+def test_a_weight_on_a_joint_is_shared_by_both_sides() -> None:
+    even = structure_of_arch(Arch(half_angle=1.2, eta=0.2, voussoirs=8), 0.7)
+    loads = on_road(even.assembly, 10.0, 0.0, 0.0)
+    assert [load.blocks for load in loads] == [(3,), (4,)]
+    assert [load.force[1] for load in loads] == [-5.0, -5.0]
+    (load,) = on_road(even.assembly, 10.0, 0.1, 0.1)
+    assert load.blocks == (4,)
+    # On the chord of the extrados, from (0, 1.1) to the next joint.
+    end = 1.1 * np.array([math.sin(0.3), math.cos(0.3)])
+    height = 1.1 + 0.1 / end[0] * (end[1] - 1.1)
+    assert load.point == pytest.approx([0.1, height], abs=1e-12)
+
+
+def test_a_patch_is_a_row_of_weights() -> None:
+    built = structure_of_arch(Arch(half_angle=1.2, eta=0.2, voussoirs=9), 0.7)
+    places = np.linspace(-0.55, 0.25, 1001)
+    middles = (places[1:] + places[:-1]) / 2
+    patch = Problem(**{**vars_of(built), "live": on_road(built.assembly, 1.0, -0.55, 0.25)})
+    row = [load for x in middles.tolist() for load in on_road(built.assembly, 1 / 1000, x, x)]
+    weighed = [sum(patch.of_load(load) for load in each) for each in (patch.live, row)]
+    # But for the thousandth that stands on either side of a joint.
+    cell = 1 / 1000 / built.unit_force
+    assert weighed[0] == pytest.approx(weighed[1], abs=cell)
+    assert abs(weighed[0]).max() > 100 * cell
+
+
+def test_loads_in_a_file_of_blocks_stand_where_its_own_x_says(tmp_path: Path) -> None:
+    blocks = [
+        {"id": "floor", "vertices": [[9, -1], [15, -1], [15, 0], [9, 0]], "fixed": True},
+        {"id": "low", "vertices": [[10, 0], [12, 0], [12, 1], [10, 1]]},
+        {"id": "top", "vertices": [[11.5, 1], [13.5, 1], [13.5, 2], [11.5, 2]], "depth": 1},
+    ]
+    path = tmp_path / "step.json"
+    path.write_text(json.dumps({"friction": 0.6, "blocks": blocks, "density": 20_000}))
+    # The upper block, 40 kN at 0.5 m beyond its edge, needs a weight on its tail.
+    assert inside("check", str(path)).returncode == 1
+    done = inside("check", str(path), "--point-load", "11.5", "45", "--json")
+    # About the edge at x = 12: 40 kN times 0.5 m against F times 0.5 m.
+    told = json.loads(done.stdout)
+    assert done.returncode == 0
+    assert told["problem"]["live_weight_kN"] == pytest.approx(45)
+    assert inside("check", str(path), "--point-load", "11.5", "39").returncode == 1
+    assert inside("check", str(path), "--point-load", "11", "45").returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ((*OPTIONS, "--point-load", "9", "50"), "--point-load = '9 m': must be above blocks"),
+        ((*OPTIONS, "--patch-load", "4", "9", "5"), "--patch-load = '4 to 9 m': .*reach from"),
+        ((*OPTIONS, "--patch-load", "1", "0", "5"), "--patch-load = '1 0': .*left one first"),
+        ((*OPTIONS, "--point-load", "0", "-5"), "--point-load = '-5 kN': .*above 0"),
+        ((*OPTIONS, "--point-load", "nan", "5"), "--point-load"),
+        ((*OPTIONS, "--fill", "-1"), "--fill = -1.0"),
+        ((*OPTIONS, "--fill", "500000"), "--fill = 500000.0: must be 0 to 1000 m"),
+        ((*OPTIONS, "--fill-unit-weight", "18"), "--fill-unit-weight = 18.0: .*--fill"),
+        ((*UNDER[:-1], "1800"), "--fill-unit-weight = 1800.0: .*kg/m3"),
+        (
+            ["--alpha", "120", "--eta", "0.2", "--mu", "1", "--fill", "1"],
+            "--fill = 1.0: .*extrados turns back",
+        ),
+        (["wall", "--mu", "0.7", "--fill", "1"], "--fill = 1.0: .*arches and portals"),
+        (
+            ["portal", "--mu", "0.7", "--point-load", "0", "5"],
+            "--unit-weight is missing: must be given beside --point-load",
+        ),
+        (
+            ["jack_arch_load", "--unit-weight", "20", "--point-load", "0", "5"],
+            "--point-load = .*live loads of its own",
+        ),
+    ],
+)
+def test_what_no_road_can_be_is_one_line(options: tuple[str, ...], said: str) -> None:
+    done = inside("check", *options)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(rf"blocksim: .*{said}[^\n]*\n", done.stderr), done.stderr
+
+
+def test_what_is_on_the_road_is_let_go_drawn_and_bracketed(tmp_path: Path) -> None:
+    load = ("--point-load", "2", "300")
+    run, picture = tmp_path / "run.npz", tmp_path / "arch.svg"
+    done = inside("simulate", *UNDER, *load, "--seconds", "0.05", "--out", str(run))
+    assert done.returncode == 0, done.stderr
+    problem = load_recording(run).problem
+    assert problem.load == 1
+    assert [each.force[1] for each in problem.live] == [-300_000]
+    assert inside("render", *UNDER, *load, "--out", str(picture)).returncode == 0
+    drawn = picture.read_text()
+    assert len(re.findall('id="live-', drawn)) == 1
+    assert len(re.findall('id="dead-', drawn)) == 31
+    assert "collapses, by limit" in drawn
+    told = json.loads(inside("bracket", *UNDER, *load, "--over", "load", "--json").stdout)
+    assert told["low"] < collapse(problem).load_factor < told["high"]  # type: ignore[operator]
+    thin = json.loads(inside("bracket", *UNDER, "--json").stdout)
+    assert (thin["over"], thin["unit"]) == ("thickness", "m")
+    assert thin["low"] < 0.45
