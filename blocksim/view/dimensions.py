@@ -105,9 +105,7 @@ class Angle:
         return self.centre + far * np.array([math.sin(turn), math.cos(turn)])
 
 
-def dimensions_of(
-    problem: Problem, shown: Array, scale: float
-) -> list[Length | Angle]:
+def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length | Angle]:
     """Choose what is measured on the drawing of a problem.
 
     Parameters

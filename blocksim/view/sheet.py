@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from blocksim.arch.circular import arch_of
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.assembly import SUPPORT
 from blocksim.limit import Reaction, reactions, resultants
 from blocksim.view.drawing import friction_words, loading_words
 from blocksim.view.structure import supports_shown
@@ -141,7 +140,7 @@ def sheet_of(
     )
 
 
-def _statics(problem: Problem, states: States, unit: ForceUnit) -> dict[str, object]:
+def _statics(problem: Problem, states: States, unit: ForceUnit) -> dict[str, Any]:
     """Lines, thrust and reactions, as far as there are such."""
     forces, joint = states.margins.forces, states.joint
     if forces is None:
@@ -252,7 +251,11 @@ def _factor_words(states: States) -> list[str]:
     """Say the geometrical factor of safety."""
     factor = geometrical_factor(states)
     # Of a wall or a flat arch it says nothing.
-    return [] if factor is None or factor > LARGEST else [f"geometrical factor of safety {factor:.4g}"]
+    return (
+        []
+        if factor is None or factor > LARGEST
+        else [f"geometrical factor of safety {factor:.4g}"]
+    )
 
 
 def geometrical_factor(states: States) -> float | None:

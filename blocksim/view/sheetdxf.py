@@ -12,11 +12,12 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
 from blocksim.blocks.outlines import signed_area
+from blocksim.common.errors import InputError
 from blocksim.view.dimensions import Length, dimensions_of
 from blocksim.view.drawing import HINGES, outer_sides
 from blocksim.view.sheet import A4, Sheet, scale_for
-from blocksim.blocks.joints import JointState
 
 LAYERS = {
     "blocks": 7,
@@ -47,6 +48,11 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     ----------
     sheet : Sheet
     file : BinaryIO
+
+    Raises
+    ------
+    InputError
+        If a body has more than one outline.
     """
     # ezdxf takes a second to import, which nothing else need wait for.
     import ezdxf
@@ -58,10 +64,16 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
         document.layers.add(name, color=colour)
     space: Any = document.modelspace()
     problem = sheet.problem
-    corners = [outline(block.polygons) for block in problem.assembly.blocks]
+    corners = [
+        _named(block.polygons, f"block {block.name or index}")
+        for index, block in enumerate(problem.assembly.blocks)
+    ]
     for each in corners:
         _polyline(space, each, "blocks", close=True)
-    bodies = [outline(support.polygons) for support in problem.assembly.supports]
+    bodies = [
+        _named(support.polygons, f"support {support.name or index}")
+        for index, support in enumerate(problem.assembly.supports)
+    ]
     known = len(bodies)
     bodies += [outline(parts) for parts in sheet.supports[known:]]
     for each in bodies:
@@ -82,6 +94,14 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     text = io.StringIO()
     document.write(text)
     file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
+
+
+def _named(polygons: tuple[Array, ...], name: str) -> Array:
+    try:
+        return outline(polygons)
+    except ValueError:
+        allowed = "without holes, and one body: polylines of DXF have one outline"
+        raise InputError(name, f"{len(polygons)} polygons", allowed) from None
 
 
 def _polyline(space: Any, points: Array, layer: str, *, close: bool) -> None:

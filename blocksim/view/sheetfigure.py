@@ -18,6 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Patch
 from matplotlib.transforms import Bbox
 
+from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.version import __version__
 from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
@@ -32,7 +33,6 @@ from blocksim.view.structure import (
     edge_width,
 )
 from blocksim.view.style import FONT, FRICTION, INK, MODES, QUIET, THRUST
-from blocksim.arch.modes import Mode
 
 INCH = 25.4
 """In millimetres."""
@@ -96,7 +96,7 @@ class Layout:
         self, axes: Axes, at: Array, words: str, away: tuple[float, float], **style: Any
     ) -> None:
         """Write words at a place [m], or as far away from it as others leave free."""
-        looks = {"color": INK, "zorder": 10, "bbox": dict(CLEAR)}
+        looks: dict[str, Any] = {"color": INK, "zorder": 10, "bbox": dict(CLEAR)}
         text = axes.text(float(at[0]), float(at[1]), words, **{**looks, **style})
         step = STEP * self.mm * np.asarray(away)
         for _ in range(TRIES):
@@ -158,7 +158,10 @@ def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> 
         axes.set_xlim(float(layout.low[0]), float(layout.high[0]))
         axes.set_ylim(float(layout.low[1]), float(layout.high[1]))
         for each in dimensions_of(problem, points, layout.scale):
-            (_draw_length if isinstance(each, Length) else _draw_angle)(axes, each, layout)
+            if isinstance(each, Length):
+                _draw_length(axes, each, layout)
+            else:
+                _draw_angle(axes, each, layout)
         _draw_thrust(axes, sheet, layout, float(high[1]))
         _draw_reactions(axes, sheet, layout, float(low[1]))
         _draw_words(figure, axes, sheet, layout, bare=column is not None)
@@ -293,7 +296,7 @@ def _draw_thrust(axes: Axes, sheet: Sheet, layout: Layout, top: float) -> None:
     joint, mm = sheet.problem.assembly.joints[index], layout.mm
     head = joint.outer if joint.outer[1] > joint.inner[1] else joint.inner
     foot = np.array([head[0], top + 3.5 * mm])
-    lead = np.array([head + [0, 0.8 * mm], foot])
+    lead = np.array([head + np.array([0.0, 0.8 * mm]), foot])
     axes.plot(*lead.T, color=QUIET, lw=0.5, zorder=9, gid="thrust-lead")
     # The half-angle is told to the right of the crown.
     side = "center" if half_angle_of(sheet.problem) is None else "right"

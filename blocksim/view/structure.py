@@ -138,7 +138,7 @@ def _closed(polygon: Array) -> Array:
 
 
 def supports_shown(problem: Problem) -> list[list[Array]]:
-    """Convex parts of each support near the blocks; one not known is a strip behind its joint."""
+    """Cut supports off near the blocks, into convex parts; one not known is a strip."""
     assembly = problem.assembly
     box, extent = _around(problem)
     bodies = [
