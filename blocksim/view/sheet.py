@@ -178,7 +178,10 @@ def at_joints(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
     for index, joint in enumerate(problem.assembly.joints):
         if SUPPORT in (joint.before, joint.after) and not np.isnan(carried.point[index, 0]):
             force = carried.force[index] * (1 if joint.before == SUPPORT else -1)
-            found.append(Reaction(name="", force=force, point=carried.point[index]))
+            name = problem.assembly.blocks[joint.bears].name or str(joint.bears)
+            found.append(
+                Reaction(name=f"under block {name}", force=force, point=carried.point[index])
+            )
     return tuple(found)
 
 
