@@ -73,10 +73,10 @@ def write_still(
         )
         return
     require(method is None, "--method", method, "left out: the picture is of no motion")
-    lean = "lean" if asked.lean else "a least thickness"
-    require(
-        kind != "dxf", "--out", str(out), f"a .png, .svg or .pdf: it is a picture of {lean}"
-    )
+    flat = "a .png, .svg or .pdf: it leans" if asked.lean else (
+        "a .png, .svg or .pdf where no thickness is given"
+    )  # fmt: skip
+    require(kind != "dxf", "--out", str(out), flat)
     if asked.lean:
         picture_of_leaning(out, kind, arch_of(asked, given.ratio), asked, height)
         return

@@ -13,6 +13,8 @@ OPENING = re.compile(r"<svg\b[^>]*>")
 BOX = re.compile(r'viewBox="[^"]*"')
 STYLE = re.compile(r'style="[^"]*"')
 COLOUR = re.compile(r"#([0-9a-f]{6})\b")
+FILL = re.compile(r'(<rect [^>]*)fill="#([0-9a-f]{6})"')
+"""Of hatching, the one colour that is no style."""
 LINK = re.compile(rf'<a xlink:href="(?:{re.escape(PAGE)})?#row-(\d+)"(?: target="_blank")?')
 DARKEST, LIGHTEST = 0.12, 0.93
 """Lightness of what is white and black by day, in the dark."""
@@ -76,6 +78,7 @@ def inline_picture(svg: bytes, name: str, role: str) -> tuple[str, dict[str, str
     said = f'role="{role}" aria-labelledby="{name}-words"'
     head = f'<svg class="{name}" {box[0] if box else ""} {said}>'
     text = OPENING.sub(head, text, count=1)
+    text = FILL.sub(r'\1style="fill: #\2"', text)
     found = {colour for style in STYLE.findall(text) for colour in COLOUR.findall(style)}
     text = STYLE.sub(lambda style: COLOUR.sub(rf"var(--{name}-\1)", style[0]), text)
     return text, {colour: _dark(colour) for colour in sorted(found)}

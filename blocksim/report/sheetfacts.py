@@ -39,7 +39,6 @@ class Fact(NamedTuple):
 class JointRow:
     """What a joint carries, as the table says it."""
 
-    number: int
     name: str
     normal: str
     friction: str
@@ -225,8 +224,9 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
     if len({len(each) for each in borne}) != 1 or len(borne[0]) > MANY_SUPPORTS:
         return [], []
     rows = [
-        [each[0].name] + [sheet.unit.number(float(part)) for one in each for part in one.force]
-        for each in zip(*borne, strict=True)
+        [first.name]
+        + [sheet.unit.number(float(part)) for each in borne for part in each[place].force]
+        for place, first in enumerate(borne[0])
     ]
     return [name for name, _ in columns], rows
 
@@ -234,9 +234,7 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
 def _reactions(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
     named = reactions(problem, forces)
     single = at_joints(problem, forces) if is_chained(problem) else named
-    if len(single) == len(named):
-        return named
-    return single
+    return named if len(single) == len(named) else single
 
 
 def joint_rows(sheet: Sheet) -> list[JointRow]:
@@ -252,16 +250,15 @@ def joint_rows(sheet: Sheet) -> list[JointRow]:
     names, worst = joint_names(problem.assembly), int(carried.used.argmax())
     return [
         JointRow(
-            number=int(k),
             name=names[k],
             normal=unit.number(float(carried.normal[k])),
             friction=unit.number(float(carried.friction[k])),
             eccentricity="-" if np.isnan(off[k]) else f"{1e3 * off[k] + 0.0:.0f}",
             width_used=_percent(float(carried.width_used[k])),
             friction_used=_percent(float(carried.friction_used[k])),
-            worst=int(k) == worst,
+            worst=k == worst,
         )
-        for k in chosen.tolist()
+        for k in map(int, chosen)
     ]
 
 

@@ -33,11 +33,11 @@ from blocksim.report.sheetfacts import (
 from blocksim.report.structures import joint_names
 from blocksim.studies.questions import Drawn
 from blocksim.view import style
-from blocksim.view.drawing import save_figure, words_of
+from blocksim.view.drawing import save_figure, state_of_any, words_of
 from blocksim.view.sheet import Sheet, sheet_of
 from blocksim.view.sheetfigure import sheet_figure
 
-COLUMN = (182.0, 92.0)
+COLUMN = (182.0, 128.0)
 """Width and most height of the drawing on the page [mm]."""
 BELOW = 0.999
 """Share of its least thickness at which it is shown how an arch would fall."""
@@ -50,6 +50,7 @@ class Fall:
     drawing: Drawing
     caption: str
     words: str
+    states: tuple[JointState, ...]
 
 
 def structure_page(
@@ -107,6 +108,11 @@ def structure_page(
             described=", ".join(line.words for line in sheet.lines),
             colours=dark,
             fall=_fall(answer),
+            state_words={
+                each.value: words_of(each, is_arch=False)[0]
+                for each in JointState
+                if each in style.JOINTS
+            },
             notes=problem.notes,
             version=__version__,
             made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
@@ -122,12 +128,14 @@ def structure_page(
 
 def _verdicts(answer: ProblemCheck, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
     """Return method, verdict and reason: by limit analysis, and by the method asked for."""
-    asked = (answer.method, answer.verdict, answer.reason)
+    words = "limit analysis"
+    method = words if answer.method == "limit" else answer.method
+    asked = (method, answer.verdict, answer.reason)
     if answer.method == "limit" or sheet.states is None:
         return [asked]
     static = answer.forces is not None
     reason = "forces of equilibrium exist" if static else "no forces of equilibrium exist"
-    return [("limit", Verdict.STANDS if static else Verdict.COLLAPSES, reason), asked]
+    return [(words, Verdict.STANDS if static else Verdict.COLLAPSES, reason), asked]
 
 
 def _active(answer: ProblemCheck) -> list[Fact]:
@@ -183,5 +191,11 @@ def _shown(drawn: Drawn, caption: str) -> Fall:
         for index, state in enumerate(drawn.states)
         if state is not JointState.CLOSED
     ]
+    seen = {state_of_any(state) for state in drawn.states} - {JointState.CLOSED}
     words = f"Joints that take part: {', '.join(active)}." if active else "Blocks move."
-    return Fall(drawing=mechanism_drawing(drawn), caption=f"{caption}, enlarged", words=words)
+    return Fall(
+        drawing=mechanism_drawing(drawn),
+        caption=f"{caption}, enlarged",
+        words=words,
+        states=tuple(sorted(seen)),
+    )

@@ -36,8 +36,10 @@ from blocksim.view.style import FONT, FRICTION, INK, MODES, QUIET, THRUST
 
 INCH = 25.4
 """In millimetres."""
-MARGIN = 12.0
-"""Around the page [mm]."""
+MARGIN, NARROW = 12.0, 2.0
+"""Around the page, and around what is put into a page [mm]."""
+WIDE, COLUMNS = 250.0, 2
+"""Width of a page that has room for a scale beside the legend [mm], and its columns."""
 SIDE, ABOVE, BELOW, BARE = 22.0, 14.0, 24.0, 5.0
 """Room for dimensions beside and above what is drawn, for reactions below it; for nothing."""
 LINE, TITLE = 4.2, 8.0
@@ -73,6 +75,8 @@ class Layout:
         A millimetre on paper is so many millimetres.
     low : (2,) float
         What lies at the lower left corner of the page [m].
+    edge, bar : float
+        Width of the margin, and height of the scale's bar above the page's lower edge [mm].
     words : list of Bbox
         Boxes of the words so far, in dots.
     """
@@ -80,6 +84,8 @@ class Layout:
     paper: Paper
     scale: float
     low: Array
+    edge: float
+    bar: float
     words: list[Bbox] = field(default_factory=list[Bbox])
 
     @property
@@ -166,9 +172,9 @@ def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> 
         _draw_reactions(axes, sheet, layout, float(low[1]))
         _draw_words(figure, axes, sheet, layout, bare=column is not None)
         if entries:
-            at = (MARGIN / layout.paper.width, (MARGIN - 2) / layout.paper.height)
+            at = layout.edge / layout.paper.width, layout.edge / layout.paper.height
             figure.legend(entries.values(), entries.keys(), loc="lower left", frameon=False,
-                          bbox_to_anchor=Bbox.from_bounds(*at, 0, 0), ncols=_columns(layout),
+                          bbox_to_anchor=Bbox.from_bounds(*at, 0, 0), ncols=COLUMNS,
                           borderpad=0, borderaxespad=0, fontsize=SMALLER,
                           handlelength=3.2, labelspacing=0.45)  # fmt: skip
     return figure
@@ -180,10 +186,6 @@ def _entries(axes: Axes) -> dict[str, Patch | Line2D]:
     return dict(zip(names, handles, strict=True))  # type: ignore[arg-type]
 
 
-def _columns(layout: Layout) -> int:
-    return 2 if layout.paper.width > 160 else 1
-
-
 def _layout(
     sheet: Sheet,
     low: Array,
@@ -192,26 +194,33 @@ def _layout(
     column: tuple[float, float] | None,
 ) -> Layout:
     """Choose paper and scale so that all has room, and lay the drawing in the middle of it."""
-    side = np.array([SIDE, SIDE])
     above, below = ABOVE, BELOW if sheet.reactions else BARE + SIDE / 2
+    edge = MARGIN if column is None else NARROW
     tries: list[Layout] = []
-    papers = A4 if column is None else (Paper("", *column),)
-    for paper in papers:
-        rows = math.ceil(entries / (2 if paper.width > 160 else 1))
-        foot = MARGIN + LINE * max(rows, 2) + 2
+    for paper in A4 if column is None else (Paper("", *column),):
+        tall = paper.height
+        rows = max(LINE * math.ceil(entries / COLUMNS), 2 * LINE)
+        # Where the legend may be as wide as the page, the scale stands above it.
+        bar = edge + (LINE if paper.width > WIDE else rows + LINE)
+        foot = max(edge + rows, bar + LINE) + 2
         lines = sum(len(_wrapped(fact, paper)) for fact in sheet.facts)
-        head = MARGIN + TITLE + LINE * lines + 2 if column is None else 2.0
-        edge = MARGIN if column is None else 1.0
-        room = np.array([
-            paper.width - 2 * edge - side.sum(), paper.height - head - foot - above - below
-        ])  # fmt: skip
+        head = edge + TITLE + LINE * lines + 2 if column is None else 0.0
+        room = np.array([paper.width - 2 * (edge + SIDE), tall - head - foot - above - below])
         scale = scale_for(high - low, room)
         drawn = 1e3 * (high - low) / scale
         if column is not None:
-            paper = Paper("", paper.width, paper.height - float(room[1] - drawn[1]))  # noqa: PLW2901
+            tall -= float(room[1] - drawn[1])
             room[1] = drawn[1]
-        corner = np.array([edge + side[0], foot + below]) + (room - drawn) / 2
-        tries.append(Layout(paper=paper, scale=scale, low=low - corner * scale / 1e3))
+        corner = np.array([edge + SIDE, foot + below]) + (room - drawn) / 2
+        tries.append(
+            Layout(
+                paper=Paper(paper.name, paper.width, tall),
+                scale=scale,
+                low=low - corner * scale / 1e3,
+                edge=edge,
+                bar=bar,
+            )
+        )
     return min(tries, key=lambda each: each.scale)
 
 
@@ -358,8 +367,8 @@ def _draw_words(
                 level -= LINE
                 write(MARGIN, level + 2, line, color=QUIET, fontsize=SMALL)
     length = round_length(45 * mm)
-    right = float(layout.high[0]) - (MARGIN if not bare else 2) * mm
-    level = float(layout.low[1]) + (MARGIN + LINE) * mm
+    right = float(layout.high[0]) - layout.edge * mm
+    level = float(layout.low[1]) + layout.bar * mm
     axes.plot([right - length, right], [level, level], color=INK, lw=1.2, marker="|", ms=6,
               gid="scale")  # fmt: skip
     axes.text(right - length / 2, level + 1.2 * mm, f"{length:g} m", ha="center", va="bottom",

@@ -112,7 +112,8 @@ def thrust_lines(problem: Problem, forces: Array) -> list[Array]:
                 if block != SUPPORT:
                     at[block].append((index, sign * down))
     links: dict[int, list[int]] = {}
-    for touching in at:
+    through: dict[int, set[int]] = {}
+    for block, touching in enumerate(at):
         brings = [joint for joint, down in touching if down > 0]
         bears = [joint for joint, down in touching if down <= 0]
         if len(touching) == MEETING:
@@ -121,14 +122,18 @@ def thrust_lines(problem: Problem, forces: Array) -> list[Array]:
             for other in bears:
                 links.setdefault(one, []).append(other)
                 links.setdefault(other, []).append(one)
-    return [carried.point[path] for path in _paths(links)]
+                through.setdefault(one, set()).add(block)
+                through.setdefault(other, set()).add(block)
+    # A line goes on where it comes from one block and leads into another.
+    passed = {joint for joint in links if len(links[joint]) == len(through[joint]) == MEETING}
+    return [carried.point[path] for path in _paths(links, passed)]
 
 
-def _paths(links: dict[int, list[int]]) -> list[list[int]]:
+def _paths(links: dict[int, list[int]], passed: set[int]) -> list[list[int]]:
     """Walk all links once, from where lines end or meet."""
     left = {(one, other) for one, others in links.items() for other in others}
     # What ends or meets comes first, and rings, which have no such place, last.
-    starts = sorted(links, key=lambda joint: (len(links[joint]) == MEETING, joint))
+    starts = sorted(links, key=lambda joint: (joint in passed, joint))
     paths: list[list[int]] = []
     for start in starts:
         for step in links[start]:
@@ -137,7 +142,7 @@ def _paths(links: dict[int, list[int]]) -> list[list[int]]:
                 left -= {(here, ahead), (ahead, here)}
                 path.append(ahead)
                 further = [each for each in links[ahead] if (ahead, each) in left]
-                if len(links[ahead]) != MEETING or not further:
+                if ahead not in passed or not further:
                     break
                 here, ahead = ahead, further[0]
             if len(path) > 1:
