@@ -92,7 +92,7 @@ def test_figures_of_an_arch_are_those_of_limit_analysis(pages: Path) -> None:
     assert said["by limit analysis"].startswith("stands")
     # The whole weight, from the area of the sector.
     weight = 20 * 0.45 * arch.radius * 2 * arch.half_angle
-    assert value(said["weight of all blocks"]) == pytest.approx(weight, rel=2e-4)
+    assert value(said["weight of all blocks"]) == pytest.approx(weight, rel=5e-4)
     built = least_thickness(arch.half_angle, mu, 31, "sector").eta
     assert built is not None
     assert value(said["least thickness"]) == pytest.approx(built * arch.radius, abs=5e-4)
@@ -106,17 +106,17 @@ def test_figures_of_an_arch_are_those_of_limit_analysis(pages: Path) -> None:
     ends = thrust_range(problem, joint)
     assert ends is not None
     unit = problem.unit_force / 1e3
-    assert value(said["least thrust"]) == pytest.approx(ends[0].thrust * unit, rel=2e-4)
-    assert value(said["greatest thrust"]) == pytest.approx(ends[1].thrust * unit, rel=2e-4)
+    assert value(said["least thrust"]) == pytest.approx(ends[0].thrust * unit, rel=5e-4)
+    assert value(said["greatest thrust"]) == pytest.approx(ends[1].thrust * unit, rel=5e-4)
     assert "kN/m" in said["least thrust"]
     # Each support bears half the weight in every state, and the thrust.
     left = [float(each) for each in said["support 1"].split(" | ")]
-    assert left[1::2] == pytest.approx([weight / 2] * 3, rel=2e-4)
+    assert left[1::2] == pytest.approx([weight / 2] * 3, rel=5e-4)
     across = [ends[0].thrust * unit, ends[1].thrust * unit]
-    assert left[0:4:2] == pytest.approx(across, rel=2e-4)
+    assert left[0:4:2] == pytest.approx(across, rel=5e-4)
     assert needed.forces is not None
     bears = reactions(problem, needed.forces)[0]
-    assert left[4] == pytest.approx(bears.force[0] / 1e3, rel=2e-4)
+    assert left[4] == pytest.approx(bears.force[0] / 1e3, rel=5e-4)
 
 
 def test_every_joint_is_in_the_table(pages: Path) -> None:
@@ -216,7 +216,8 @@ def test_it_fits_the_paper(browser: Any, pages: Path, name: str) -> None:
         assert box["height"] == pytest.approx(share * box["width"], abs=1.0)
         # What may not be cut is no taller than a page.
         heights = page.evaluate("""() => [...document.querySelectorAll(
-          "table, figure, section:not(#joints)")].map((e) => e.getBoundingClientRect().height)""")
+          "table, figure, section:not(#joints)")].map((each) =>
+          each.getBoundingClientRect().height)""")
         assert max(heights) < PAPER[1] * MM
         ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
         assert ground == "rgb(255, 255, 255)"

@@ -39,6 +39,8 @@ from blocksim.view.sheetfigure import sheet_figure
 
 COLUMN = (182.0, 128.0)
 """Width and most height of the drawing on the page [mm]."""
+FEW = 8
+"""Joints up to which their table is not halved."""
 BELOW = 0.999
 """Share of its least thickness at which it is shown how an arch would fall."""
 
@@ -100,7 +102,7 @@ def structure_page(
             reactions=reactions,
             forces=force_words(sheet.unit),
             unit=sheet.unit.name,
-            joints=(rows[:half], rows[half:]) if len(rows) > 1 else (rows,),
+            joints=(rows[:half], rows[half:]) if len(rows) > FEW else (rows,),
             joint_count=len(problem.assembly.joints),
             most=MOST,
             active=_active(answer),
