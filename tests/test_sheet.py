@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import math
 import re
 import xml.etree.ElementTree as ET
@@ -26,9 +27,9 @@ from blocksim.common.errors import InputError
 from blocksim.kinds.files import load_structure
 from blocksim.kinds.files import structure_of as kind_of
 from blocksim.view.drawing import save_figure
-from blocksim.view.sheet import Sheet, scale_for, scale_words, sheet_of
+from blocksim.view.sheet import A4, Sheet, scale_for, scale_words, sheet_of
 from blocksim.view.sheetdxf import LAYERS, outline, write_dxf
-from blocksim.view.sheetfigure import sheet_figure
+from blocksim.view.sheetfigure import Layout, sheet_figure
 from blocksim.view.thrustlines import is_chained, states_of, thrust_lines
 from blocksim.view.units import force_unit
 
@@ -217,6 +218,23 @@ def test_no_words_cover_others_or_leave_the_page(name: str) -> None:
         assert box.y1 < tall, words
         for others, other in boxes[at + 1 :]:
             assert not box.overlaps(other), (words, others)
+
+
+def test_words_make_way_for_others() -> None:
+    sheet, _ = drawn("column")
+    figure = sheet_figure(sheet)
+    low = np.array([figure.axes[0].get_xlim()[0], figure.axes[0].get_ylim()[0]])
+    layout = Layout(paper=A4[1], scale=20.0, low=low, edge=12.0, bar=16.0)
+    axes = figure.axes[0]
+    for _ in range(3):
+        layout.write(axes, low + 1.0, "thrust 1.000 kN/m", (0.0, 1.0), ha="center")
+    boxes = layout.words
+    assert len(boxes) == 3
+    assert not any(one.overlaps(two) for one, two in itertools.combinations(boxes, 2))
+    # Out of the way as told: upwards, no further than they have to.
+    assert len({box.x0 for box in boxes}) == 1
+    assert boxes[0].y1 < boxes[1].y0 < boxes[1].y1 < boxes[2].y0
+    assert boxes[2].y0 - boxes[1].y1 < boxes[0].height
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -153,6 +153,8 @@ def _margin_facts(problem: Problem, states: States) -> list[Fact]:
         f"more than {LARGEST:g}" if factor > LARGEST else f"{factor:.5g}"
     )  # fmt: skip
     what = "joints' width over what a line of thrust needs, about their middles"
+    if needed.width == 0:
+        said, what = "\N{INFINITY}", "no width is needed"
     facts = [Fact("geometrical factor of safety", said, what)]
     share = needed.friction
     if share is None:
