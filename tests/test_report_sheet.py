@@ -256,8 +256,10 @@ def test_it_moves_and_can_be_seen_on_a_screen(browser: Any, pages: Path, scheme:
         for each in inks:
             light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
             assert (light < 0.5) is (scheme == "light")
-        hatched = page.evaluate("""() => [...document.querySelectorAll("svg.sheet pattern rect")]
-          .map((each) => getComputedStyle(each).fill)""")
+        hatched = page.evaluate("""() =>
+          [...document.querySelectorAll("svg.sheet pattern rect")].map((each) =>
+          getComputedStyle(each).fill)""")
+        assert hatched
         assert hatched
         for each in hatched:
             light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765

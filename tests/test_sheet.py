@@ -384,6 +384,24 @@ def test_dxf_has_the_blocks_it_was_drawn_from(name: str, tmp_path: Path) -> None
     assert {each.dxf.layer for each in document.modelspace()} <= set(LAYERS)
 
 
+@pytest.mark.parametrize("name", ["engineer's", "horseshoe", "portal", "wall"])
+def test_dxf_is_read_as_the_structure_it_was_drawn_from(name: str, tmp_path: Path) -> None:
+    """From its layers `blocks` and `supports` alone, the same joints are found."""
+    sheet, _ = drawn(name)
+    document = read(sheet, tmp_path)
+    blocks = [
+        {"id": f"{layer}{index}", "vertices": each.tolist(), "fixed": layer == "supports"}
+        for layer in ("blocks", "supports")
+        for index, each in enumerate(polygons(document, layer))
+    ]
+    again = structure_of({"friction": 0.7, "blocks": blocks}).assembly
+    built = sheet.problem.assembly
+    sides = [{(j.before, j.after) for j in each.joints} for each in (again, built)]
+    assert {frozenset(pair) for pair in sides[0]} == {frozenset(pair) for pair in sides[1]}
+    lengths = [sorted(joint.length for joint in each.joints) for each in (again, built)]
+    assert lengths[0] == pytest.approx(lengths[1], rel=1e-6)
+
+
 def test_dxf_has_true_dimensions(tmp_path: Path) -> None:
     """Dimension entities: what they measure, and what they show."""
     document = read(drawn("engineer's")[0], tmp_path)
