@@ -8,27 +8,44 @@ if interrupts.is_program():
     # Before the imports below, which take a second.
     interrupts.install()
 
-from blocksim.arch.bracket import Bracket as Bracket
-from blocksim.arch.bracket import bracket as bracket
-from blocksim.arch.check import ArchCheck as ArchCheck
-from blocksim.arch.check import check as check
-from blocksim.arch.circular import Arch as Arch
-from blocksim.arch.modes import Mode as Mode
-from blocksim.arch.motion import load_recording as load_recording
-from blocksim.arch.motion import simulate as simulate
-from blocksim.blocks.assembly import Assembly as Assembly
-from blocksim.blocks.assembly import Block as Block
-from blocksim.blocks.assembly import Joint as Joint
-from blocksim.blocks.joints import JointState as JointState
-from blocksim.blocks.problem import Load as Load
-from blocksim.blocks.problem import Problem as Problem
-from blocksim.common.errors import BlocksimError as BlocksimError
-from blocksim.common.errors import InputError as InputError
-from blocksim.common.errors import MissingPart as MissingPart
-from blocksim.common.version import __version__ as __version__
-from blocksim.evidence.recording import Recording as Recording
-from blocksim.evidence.verdict import Verdict as Verdict
-from blocksim.kinds.files import load_structure as load_structure
-from blocksim.kinds.files import structure_of as structure_of
-from blocksim.limit import collapse as collapse
-from blocksim.limit import equilibrium as equilibrium
+from blocksim.arch.bracket import Bracket, bracket
+from blocksim.arch.check import ArchCheck, check
+from blocksim.arch.circular import Arch
+from blocksim.arch.modes import Mode
+from blocksim.arch.motion import load_recording, simulate
+from blocksim.blocks.assembly import Assembly, Block, Joint
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Load, Problem
+from blocksim.common.errors import BlocksimError, InputError, MissingPart
+from blocksim.common.version import __version__
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.files import load_structure, structure_of
+from blocksim.limit import collapse, equilibrium
+
+__all__ = [
+    "Arch",
+    "ArchCheck",
+    "Assembly",
+    "Block",
+    "BlocksimError",
+    "Bracket",
+    "InputError",
+    "Joint",
+    "JointState",
+    "Load",
+    "MissingPart",
+    "Mode",
+    "Problem",
+    "Recording",
+    "Verdict",
+    "__version__",
+    "bracket",
+    "check",
+    "collapse",
+    "equilibrium",
+    "load_recording",
+    "load_structure",
+    "simulate",
+    "structure_of",
+]

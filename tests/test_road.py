@@ -19,7 +19,7 @@ from blocksim.arch.structure import arch_behind, structure_of_arch
 from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import on_road
-from blocksim.kinds.files import fill_of, structure_of, with_fill
+from blocksim.kinds.files import fill_of, structure_of, with_fill, with_parameter, with_road
 from blocksim.limit import collapse, equilibrium
 
 HEAVY, FILL = 22_000.0, 18_000.0
@@ -234,6 +234,21 @@ def test_a_weight_on_a_joint_is_shared_by_both_sides() -> None:
     assert load.point == pytest.approx([0.1, height], abs=1e-12)
 
 
+def test_a_weight_stays_where_it_is_as_an_arch_grows_thinner() -> None:
+    """The ends of radial joints move along the road: another voussoir may come below it."""
+    thick = Arch(half_angle=1.2, eta=0.4, voussoirs=9)
+    built = with_road(structure_of_arch(thick, 0.7), [(0.45, 0.45, 5.0), (-0.2, 0.1, 3.0)])
+    thin = with_parameter(built, "thickness", 0.05)
+    assert thin.origin["road"] == [[0.45, 0.45, 5.0], [-0.2, 0.1, 3.0]]
+    for problem, outer in ((built, 1.2), (thin, 1.025)):
+        angle = math.asin(0.45 / outer)
+        place = int(np.searchsorted(thick.joint_angles, angle)) - 1
+        assert problem.live[0].blocks == (place,)
+        assert problem.live[0].point[0] == 0.45  # type: ignore[index]
+        assert sum(load.force[1] for load in problem.live) == pytest.approx(-8, rel=1e-14)
+    assert built.live[0].blocks != thin.live[0].blocks
+
+
 def test_a_patch_is_a_row_of_weights() -> None:
     built = structure_of_arch(Arch(half_angle=1.2, eta=0.2, voussoirs=9), 0.7)
     places = np.linspace(-0.55, 0.25, 1001)
@@ -307,6 +322,7 @@ def test_what_is_on_the_road_is_let_go_drawn_and_bracketed(tmp_path: Path) -> No
     problem = load_recording(run).problem
     assert problem.load == 1
     assert [each.force[1] for each in problem.live] == [-300_000]
+    assert problem.origin["road"] == [[2, 2, 300_000]]
     assert inside("render", *UNDER, *load, "--out", str(picture)).returncode == 0
     drawn = picture.read_text()
     assert len(re.findall('id="live-', drawn)) == 1

@@ -15,6 +15,7 @@ from blocksim.ask.methods import choose, chosen_words
 from blocksim.ask.search import ETA_MAX, THINNEST
 from blocksim.common.checks import is_number, require, require_friction
 from blocksim.common.progress import Progress, silent
+from blocksim.common.shown import Shown
 from blocksim.evidence.observation import Held, hold, reduced_words
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
 
@@ -22,7 +23,7 @@ ANY_THICKNESS = "two joints on each half, and a line of thrust through the middl
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bracket:
+class Bracket(Shown):
     """Least thickness between two ratios that were both tried.
 
     Parameters
@@ -90,6 +91,12 @@ class Bracket:
     wall_s: float = 0.0
     lean: float = 0.0
     depth: float = 1.0
+
+    def __repr__(self) -> str:
+        return (
+            f"Bracket(eta {_ends(self.eta_low, self.eta_high)}, by {self.method}, "
+            f"half_angle={self.half_angle:g}, mu={self.mu:g}, voussoirs={self.voussoirs})"
+        )
 
     @property
     def centre(self) -> float | None:
@@ -234,6 +241,11 @@ def bracket(
             answer = replace(answer, reason=f"{answer.reason}; {words}")
     reason = answer.reason + given_words(settings) + chosen_words(method, rung)
     return replace(answer, reason=reason, wall_s=time.perf_counter() - started)
+
+
+def _ends(low: float | None, high: float | None) -> str:
+    said = ["none" if each is None else f"{each:.9g}" for each in (low, high)]
+    return " to ".join(dict.fromkeys(said))
 
 
 def _inner(angles: tuple[float, ...]) -> float | None:

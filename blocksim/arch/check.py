@@ -55,6 +55,13 @@ class ArchCheck(Check):
     mode_limit: Mode | None
     mode_theory: Mode
 
+    def __repr__(self) -> str:
+        arch = self.arch
+        return (
+            f"ArchCheck({self.verdict}, by {self.method}, half_angle={arch.half_angle:g}, "
+            f"eta={arch.eta:g}, mu={self.mu:g}, voussoirs={arch.voussoirs})"
+        )
+
 
 def check(
     arch: Arch,

@@ -12,6 +12,7 @@ from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY as GRAVITY
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import is_number, require, require_friction
+from blocksim.common.shown import Shown
 
 Weight = Literal["centreline", "sector"]
 WEIGHTS: tuple[str, ...] = get_args(Weight)
@@ -23,7 +24,7 @@ KIND = "circular-arch"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Arch:
+class Arch(Shown):
     """A symmetric circular arch; the crown is at angle 0, x to the right, y up.
 
     Parameters

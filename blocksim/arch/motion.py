@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 from blocksim.arch.circular import Arch
 from blocksim.ask.simulate import simulate as simulate_problem
 from blocksim.blocks.record import to_record
+from blocksim.common.files import AnyPath
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.recording import FORMAT, Recording, read_recording
 from blocksim.evidence.simulation import BY_RULE, Overrides
@@ -61,7 +61,7 @@ def simulate(
     )
 
 
-def load_recording(path: Path) -> Recording:
+def load_recording(path: AnyPath) -> Recording:
     """Read a recording, also one of format 1, which knew arches only.
 
     Raises

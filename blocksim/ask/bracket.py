@@ -14,6 +14,7 @@ from blocksim.ask.spread import Happening, Spreading
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
+from blocksim.common.shown import Shown
 from blocksim.evidence.observation import Held, Observation, conclude, hold
 from blocksim.evidence.shaken import shake
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
@@ -64,7 +65,7 @@ class Search:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bracket:
+class Bracket(Shown):
     """Where a family of problems changes from standing to falling, between two values tried.
 
     Parameters
@@ -100,6 +101,16 @@ class Bracket:
     reason: str
     wall_s: float
     events: tuple[Happening, ...] | None = None
+
+    def __repr__(self) -> str:
+        low, high = (
+            "none" if each is None else f"{each:.9g}" for each in (self.low, self.high)
+        )
+        unit = f" {self.unit}" if self.unit else ""
+        return (
+            f"Bracket({self.over} {low} to {high}{unit}, stands at {self.stands}, "
+            f"by {self.method})"
+        )
 
 
 def bracket(

@@ -13,6 +13,7 @@ from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.common.shown import Shown
 from blocksim.engines.base import Method
 from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import PROBE
@@ -23,7 +24,7 @@ from blocksim.limit import Equilibrium, collapse, equilibrium
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Check:
+class Check(Shown):
     """Answer to *does it stand*, with its evidence.
 
     Parameters
@@ -90,6 +91,9 @@ class ProblemCheck(Check):
     forces: Array | None
     mechanism: Array | None
     shaken: Shaken | None = None
+
+    def __repr__(self) -> str:
+        return f"ProblemCheck({self.verdict}, by {self.method}, of {self.problem!r})"
 
 
 def check(

@@ -12,6 +12,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
 from blocksim.blocks.shaking import Shaking
 from blocksim.common.checks import is_number, require, require_lean
+from blocksim.common.shown import Shown, short
 
 STANDARD_GRAVITY = 9.81
 """To turn weight into mass [m/s^2]."""
@@ -74,7 +75,7 @@ class Move:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Problem:
+class Problem(Shown):
     """Blocks and everything that acts on them.
 
     Parameters
@@ -126,6 +127,14 @@ class Problem:
         finite = is_number(self.load, -math.inf, math.inf) and math.isfinite(self.load)
         require(finite, "load", self.load, "a finite number")
         object.__setattr__(self, "gravity", frozen(self.gravity, (3,)))
+
+    def __repr__(self) -> str:
+        assembly = self.assembly
+        name = f"{short(self.title)!r}, " if self.title else ""
+        return (
+            f"Problem({name}{len(assembly.blocks)} blocks, {len(assembly.joints)} joints, "
+            f"mu={self.mu:g})"
+        )
 
     @cached_property
     def friction(self) -> Array:

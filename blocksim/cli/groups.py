@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import wraps
 from inspect import Parameter, Signature, signature
-from typing import Any, get_type_hints
+from typing import Any, get_args, get_type_hints
 
 
 def grouped(command: Callable[..., None]) -> Callable[..., None]:
@@ -15,7 +15,8 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
     Parameters
     ----------
     command : callable
-        Parameters whose type is a dataclass get one; its fields are annotated as options are.
+        Parameters whose type is a dataclass get one; its fields are annotated as options are,
+        and shown in the help below its `heading`.
 
     Returns
     -------
@@ -30,9 +31,11 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
         if is_dataclass(hint) and isinstance(hint, type):
             groups[each.name] = hint
             own = get_type_hints(hint, include_extras=True)
-            shown += [
-                _option(field.name, own[field.name], field.default) for field in fields(hint)
-            ]
+            for field in fields(hint):
+                for told in get_args(own[field.name])[1:]:
+                    # A heading of their own in the help.
+                    told.rich_help_panel = getattr(hint, "heading", None)
+                shown.append(_option(field.name, own[field.name], field.default))
         else:
             shown.append(_option(each.name, hint, each.default))
 

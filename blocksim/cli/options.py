@@ -7,7 +7,7 @@ import math
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import typer
 
@@ -66,6 +66,8 @@ class Given:
 
     All but those of `OF_ANY` are of symmetric circular arches.
     """
+
+    heading: ClassVar[str] = "What is built"
 
     alpha: Annotated[
         float | None, typer.Option(help="Half-angle of embrace in degrees, 0 to 180.")
@@ -180,6 +182,8 @@ class Loading:
 
     What is on the road, fill or loads, goes straight down to the blocks below.
     """
+
+    heading: ClassVar[str] = "What acts on it"
 
     fill: Annotated[
         float | None,

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.arch.structure import LEAST_DENSITY
 from blocksim.blocks.outlines import signed_area
-from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
-from blocksim.blocks.road import on_road
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.options import Loading, option_of
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import MISSING, InputError
-from blocksim.kinds.files import density_of, with_fill
+from blocksim.kinds.files import density_of, with_fill, with_road
 
 HIGHEST_FILL = 1000.0
 """[m]"""
@@ -49,7 +47,7 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
         ("--point-load", loading.point_load and (loading.point_load[0], *loading.point_load)),
         ("--patch-load", loading.patch_load),
     ]
-    live: list[Load] = []
+    loads: dict[str, tuple[float, float, float]] = {}
     for option, load in placed:
         if load is None:
             continue
@@ -60,5 +58,7 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
         require(ok, option, f"{weight:g} kN", "a weight above 0, in kN")
         spread = option == "--point-load" or low < high
         require(spread, option, f"{low:g} {high:g}", "two places, the left one first")
-        live += on_road(problem.assembly, 1000 * weight, low, high, option)
-    return replace(problem, live=tuple(live), load=1.0) if live else problem
+        loads[option] = low, high, 1000 * weight
+    if not loads:
+        return problem
+    return with_road(problem, list(loads.values()), list(loads)).with_load(1.0)

@@ -18,7 +18,7 @@ from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
 from blocksim.ask.simulate import simulate
 from blocksim.ask.spread import Spreading
-from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.cli.console import answer_with, progress, say
 from blocksim.cli.options import (
@@ -36,7 +36,6 @@ from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.evidence.recording import Recording
-from blocksim.evidence.shaken import rocking_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import (
     changed,
@@ -45,6 +44,7 @@ from blocksim.kinds.files import (
     structure_of,
     weighed,
 )
+from blocksim.report.recordings import recording_lines
 from blocksim.report.structures import (
     bracket_lines,
     bracket_record,
@@ -54,8 +54,6 @@ from blocksim.report.structures import (
 
 THICKNESS = "thickness"
 """The parameter of `bracket` that is left out: of arches."""
-LEAST_ROTATION = 1e-3
-"""Rotation of a block from which on a recording is said to have turned one [rad]."""
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
 
@@ -249,32 +247,5 @@ def spread_structure(
 
 def say_recorded(out: Path, recording: Recording, unit: str) -> None:
     """Say what was written."""
-    say(
-        f"{out}: {len(recording.times)} frames, "
-        f"{recording.seconds(STANDARD_GRAVITY)[-1]:.2f} s, "
-        f"moved {recording.displacement[-1]:.2g} {unit}, state {recording.state_hash}"
-    )
-    kept, rocking, problem = recording.quality, rocking_of(recording), recording.problem
-    said: list[str] = []
-    if problem.shaking is not None:
-        said.append(problem.shaking.words)
-    if rocking.rotation >= LEAST_ROTATION:
-        name = problem.assembly.blocks[rocking.block].name or str(rocking.block)
-        said.append(f"block {name} turned by {math.degrees(rocking.rotation):.3g} deg at most")
-    if rocking.impact is not None:
-        said.append(
-            f"a joint first closed again after {rocking.impact * problem.seconds:.4g} s"
-        )
-    if said:
-        say("  " + ", ".join(said))
-    said = []
-    if kept.penetration is not None:
-        said.append(f"blocks overlap by at most {kept.penetration:.1e} {unit}")
-    if kept.gain is not None:
-        said.append(
-            f"energy at most {kept.gain:.2%} of what fell above that at the release"
-            if kept.gain
-            else "energy never above that at the release"
-        )
-    if said:
-        say("  " + ", ".join(said))
+    first, *others = recording_lines(recording, unit)
+    say("\n".join([f"{out}: {first}", *others]))

@@ -21,6 +21,7 @@ from blocksim.blocks.record import from_record, to_record
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, json_text, require_file, write_whole
+from blocksim.common.shown import Shown
 from blocksim.engines.base import Quality, Settings
 
 FORMAT = 2
@@ -48,7 +49,7 @@ _UNREADABLE = (
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Recording:
+class Recording(Shown):
     """The motion of blocks in one engine.
 
     Lengths are in units of the assembly's size, which is the radius r of an arch.
@@ -74,6 +75,12 @@ class Recording:
     times: Array
     poses: Array
     quality: Quality = field(default_factory=Quality)
+
+    def __repr__(self) -> str:
+        return (
+            f"Recording({len(self.times)} frames, {self.times[-1]:.4g} sqrt(size/g), "
+            f"by {self.engine}, of {self.problem!r})"
+        )
 
     @property
     def assembly(self) -> Assembly:
@@ -138,12 +145,12 @@ Header = dict[str, Any]
 """What a recording says beside its arrays."""
 
 
-def read_recording(path: Path, renew: Callable[[Header], Header] = dict) -> Recording:
+def read_recording(path: AnyPath, renew: Callable[[Header], Header] = dict) -> Recording:
     """Read a recording and check that it is one.
 
     Parameters
     ----------
-    path : Path
+    path : str or path
     renew : callable, optional
         Makes the header of an older format one of today's.
 

@@ -23,9 +23,10 @@ from blocksim.blocks.entries import AROUND, Around, around_of
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
+from blocksim.blocks.road import on_road
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_file, shipped_files
+from blocksim.common.files import AnyPath, require_file, shipped_files
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, kind_of, parameters_of
 
@@ -40,7 +41,7 @@ def shipped_structures() -> dict[str, Path]:
 
 
 def load_structure(
-    path: Path | str,
+    path: AnyPath,
     changes: Mapping[str, object] = MappingProxyType({}),
     density: float | None = None,
 ) -> Problem:
@@ -48,7 +49,7 @@ def load_structure(
 
     Parameters
     ----------
-    path : Path or str
+    path : str or path
         Ends in .json or .toml, or the name of a shipped one.
     changes : mapping of str to object
         Parameters of its kind instead of those it says; `arch.thickness`: of its arch.
@@ -66,7 +67,7 @@ def load_structure(
 
 
 @contextmanager
-def named_file(path: Path | str) -> Generator[object]:
+def named_file(path: AnyPath) -> Generator[object]:
     """Give what a structure file says; what is wrong with it is said with the file's name.
 
     Raises
@@ -245,9 +246,14 @@ def assembly_as_made(
     )
 
 
+ASIDE = ("density", "road")
+"""What the origin of a problem says beside the table of its kind: its density [N/m^3], and
+live loads on its road, each from one x to another [m] and its weight [N]."""
+
+
 def kind_behind(problem: Problem) -> Kind | None:
     """Return the kind a problem was made from; None where its blocks were given."""
-    table = {key: value for key, value in problem.origin.items() if key != "density"}
+    table = {key: value for key, value in problem.origin.items() if key not in ASIDE}
     try:
         return kind_of(table, ALL)
     except InputError:
@@ -329,9 +335,44 @@ def _remade(problem: Problem, kind: Kind, fills: int | None = None) -> Problem:
     """
     made = problem_of(kind, Around(friction=0.0, density=density_of(problem)))
     others = problem.dead[len(made.dead) if fills is None else fills :]
-    return replace(
+    road = cast(Mapping[str, Any], problem.origin).get("road")
+    remade = replace(
         problem, assembly=made.assembly, dead=(*made.dead, *others), origin=made.origin
     )
+    return remade if road is None else with_road(remade, road)
+
+
+def with_road(
+    problem: Problem,
+    loads: Sequence[tuple[float, float, float]],
+    fields: Sequence[str] = (),
+) -> Problem:
+    """Return a problem with these live loads on the road in place of any others.
+
+    Where it was made from a kind they stay where they are as its parameters change, on
+    whatever blocks are uppermost there then.
+
+    Parameters
+    ----------
+    problem : Problem
+    loads : sequence of (float, float, float)
+        From one x to another [m], the same at a point, and the weight [N].
+    fields : sequence of str
+        What to call each in messages.
+
+    Raises
+    ------
+    InputError
+        If one is not above blocks that move.
+    """
+    names = fields or ["road"] * len(loads)
+    live = [
+        each
+        for (low, high, weight), name in zip(loads, names, strict=True)
+        for each in on_road(problem.assembly, weight, low, high, name)
+    ]
+    kept = {"road": [list(load) for load in loads]} if "kind" in problem.origin else {}
+    return replace(problem, live=tuple(live), origin={**problem.origin, **kept})
 
 
 def density_of(problem: Problem) -> float:

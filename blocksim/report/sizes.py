@@ -13,7 +13,7 @@ from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.kinds.files import fill_of
 
 
-def size_record(arch: Arch, mu: float) -> dict[str, object]:
+def size_record(arch: Arch, mu: float | None = None) -> dict[str, object]:
     """Return the dimensions of an arch, span and rise of its intrados, for JSON.
 
     At eta = 2 the intrados is a point, without span and rise.
@@ -26,17 +26,17 @@ def size_record(arch: Arch, mu: float) -> dict[str, object]:
         "radius_m": arch.radius,
         "depth_m": arch.depth,
         "unit_weight_kN_per_m3": arch.specific_weight / 1000,
-        "friction_angle_deg": friction_angle(mu),
+        **({} if mu is None else {"friction_angle_deg": friction_angle(mu)}),
     }
 
 
-def size_lines(arch: Arch, mu: float, at: At | None = None) -> list[str]:
+def size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -> list[str]:
     """Return the dimensions of an arch in words.
 
     Parameters
     ----------
     arch : Arch
-    mu : float
+    mu : float, optional
     at : str, optional
         The line that was measured; the intrados if none was. An arch with a radius of 1
         of which none was measured is told in radii.
@@ -51,7 +51,8 @@ def size_lines(arch: Arch, mu: float, at: At | None = None) -> list[str]:
     if metric:
         said.append(f"r {arch.radius:.6g} m, depth {arch.depth:.6g} m")
         said.append(f"unit weight {arch.specific_weight / 1000:.6g} kN/m3")
-    said.append(f"friction angle {friction_angle(mu):.6g} deg")
+    if mu is not None:
+        said.append(f"friction angle {friction_angle(mu):.6g} deg")
     return [f"  size    {', '.join(said)}"]
 
 
@@ -96,7 +97,9 @@ def _live(problem: Problem) -> float:
 
 
 def bracket_size_record(answer: Bracket, asked: Scenario) -> dict[str, object]:
-    """Return a bracket in metres, for JSON: span and rise are those that stay as they are."""
+    """Return a bracket in metres, for JSON; nothing where no length was given."""
+    if asked.line is None and asked.radius == 1:
+        return {}
     record: dict[str, object] = {
         f"thickness_{end}_m": _thickness(asked, getattr(answer, f"eta_{end}"))
         for end in ("low", "high", "limit", "theory")

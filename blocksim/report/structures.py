@@ -79,7 +79,7 @@ def check_lines(answer: ProblemCheck) -> list[str]:
     problem = answer.problem
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
-        f"  what    {_described(problem)}",
+        f"  what    {described(problem)}",
         *problem_size_lines(problem),
         f"  because {answer.reason}",
     ]
@@ -226,7 +226,8 @@ def _movers(rates: Array, assembly: Assembly) -> list[str]:
     return [assembly.blocks[k].name or str(k) for k in order]
 
 
-def _described(problem: Problem) -> str:
+def described(problem: Problem) -> str:
+    """Say what a problem is, in a line."""
     turned = tilt_and_lean(problem)
     assembly = problem.assembly
     said = [problem.title] if problem.title else []

@@ -158,13 +158,17 @@ class Canvas:
             artist.draw(self._agg.get_renderer())
         return np.array(self._agg.buffer_rgba())
 
-    def save(self, file: BinaryIO, kind: str) -> None:
-        """Write the picture as png, svg or pdf."""
+    def figure(self) -> Figure:
+        """Return the picture as a figure, which ends its use for frames."""
         for order, artist in enumerate([*self._still, *self._moving]):
             artist.set_zorder(order)
             self._figure.add_artist(artist)
+        return self._figure
+
+    def save(self, file: BinaryIO, kind: str) -> None:
+        """Write the picture as png, svg or pdf."""
         height = round(self._figure.get_figheight() * DOTS)
-        save_figure(self._figure, file, kind, height=height)
+        save_figure(self.figure(), file, kind, height=height)
 
 
 def _artists(parts: Sequence[Part], labels: Sequence[Label]) -> list[Artist]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import BinaryIO, Literal, Protocol
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from blocksim.arch.circular import GRAVITY, arch_of
@@ -154,13 +155,28 @@ class Film:
         at : float, optional
             Time since the release in the unit of the clock; by default the end.
         """
+        self._pose(at)
+        self._canvas.save(file, kind)
+
+    def figure(self, at: float | None = None) -> Figure:
+        """Return one frame as a figure; the film is at its end with that.
+
+        Parameters
+        ----------
+        at : float, optional
+            As of `still`.
+        """
+        self._pose(at)
+        return self._canvas.figure()
+
+    def _pose(self, at: float | None) -> None:
+        """Draw one frame with a legend of what is seen in it."""
         seconds = min(self.seconds, self.seconds if at is None else at * self._tick)
         moments = [stage.at(seconds / _unit(stage.recording)) for stage in self._stages]
         seen = {state for moment in moments for state in moment.joints}
         at_rest = any(moment.statics > 0 for moment in moments)
         self._canvas.keep(*self._still(seen, thrust=at_rest))
         self._draw(seconds)
-        self._canvas.save(file, kind)
 
     def _draw(self, seconds: float) -> None:
         seconds = min(max(seconds, 0.0), self.seconds)

@@ -65,6 +65,7 @@ def problem_figure(
     forces: Array | None = None,
     mechanism: Array | None = None,
     states: Sequence[JointState] | None = None,
+    facts: Sequence[str] | None = None,
 ) -> Figure:
     """Draw a structure as it was built, and what is known of it.
 
@@ -83,6 +84,8 @@ def problem_figure(
         `Collapse.mechanism` have them; drawn enlarged to a readable size.
     states : sequence of JointState, optional
         Of each joint.
+    facts : sequence of str, optional
+        What is said below the title instead of friction and loading.
 
     Returns
     -------
@@ -111,7 +114,7 @@ def problem_figure(
         shown += draw_loads(axes, problem, extent)
         shown += draw_gravity(axes, problem, np.concatenate(shown))
         _frame(figure, axes, np.concatenate(shown))
-        _title(axes, problem, verdict)
+        _title(axes, problem, verdict, facts)
         handles, names = axes.get_legend_handles_labels()
         entries = dict(zip(names, handles, strict=True))
         figure.legend(
@@ -280,7 +283,7 @@ def _frame(figure: Figure, axes: Axes, shown: Array) -> None:
     axes.set_ylim(level - 0.25 * inch, top)
 
 
-def _title(axes: Axes, problem: Problem, verdict: str) -> None:
+def _title(axes: Axes, problem: Problem, verdict: str, told: Sequence[str] | None) -> None:
     blocks = len(problem.assembly.blocks)
     count = f"{blocks} block" if blocks == 1 else f"{blocks} blocks"
     title = textwrap.fill(problem.title or count, LINE)
@@ -288,8 +291,7 @@ def _title(axes: Axes, problem: Problem, verdict: str) -> None:
     facts = [
         verdict,
         count if problem.title else "",
-        friction_words(problem.mu),
-        *loading_words(problem),
+        *([friction_words(problem.mu), *loading_words(problem)] if told is None else told),
     ]
     below = ", ".join(word for word in facts if word)
     axes.annotate(below, (0, 1), xytext=(0, 8), xycoords="axes fraction",

@@ -1,0 +1,229 @@
+"""How things draw, tell and show themselves in a notebook; see `blocksim.common.shown`.
+
+Answers tell what the command line prints of them. Drawing takes a second to import, which
+happens when something is drawn first.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+from blocksim.arch.bracket import Bracket as ArchBracket
+from blocksim.arch.check import ArchCheck
+from blocksim.arch.circular import Arch, arch_of
+from blocksim.arch.theory import least_thickness
+from blocksim.ask.bracket import Bracket
+from blocksim.ask.check import ProblemCheck
+from blocksim.ask.search import ETA_MAX
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.structure import structure_record
+from blocksim.common.files import json_text
+from blocksim.evidence.recording import Recording
+from blocksim.report import answers, structures
+from blocksim.report.recordings import recording_lines, recording_record
+from blocksim.report.sizes import problem_size_lines, size_lines, size_record
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LABEL = 10
+"""Letters of a line of an answer before its words: two blanks and what it is about."""
+TALL = 400
+"""Height of a frame [pixels]."""
+THIN = 0.02
+"""Thickness-to-radius ratio drawn of an arch that stands at any."""
+
+
+def dict_of(shown: object) -> dict[str, Any]:
+    """Return a thing as JSON has it.
+
+    Parameters
+    ----------
+    shown : Arch, Problem, Check, Bracket or Recording
+
+    Returns
+    -------
+    dict
+        Of an answer what `--json` prints; of a problem its structure file; of a recording
+        what it shows, without its poses.
+    """
+    found: dict[type, Callable[[Any], dict[str, object]]] = {
+        Arch: _arch_record,
+        Problem: structure_record,
+        ArchCheck: answers.check_record,
+        ProblemCheck: structures.check_record,
+        ArchBracket: answers.bracket_record,
+        Bracket: structures.bracket_record,
+        Recording: recording_record,
+    }
+    return json.loads(json_text(found[type(shown)](shown)))
+
+
+def lines_of(shown: object) -> list[str]:
+    """Return a thing in words, as the command line prints it: a head and labelled lines."""
+    found: dict[type, Callable[[Any], list[str]]] = {
+        Arch: lambda arch: [_arch_words(arch), *size_lines(arch)],
+        Problem: lambda problem: [
+            problem.title or "Structure",
+            f"  what    {structures.described(replace(problem, title=''))}",
+            *problem_size_lines(problem),
+        ],
+        ArchCheck: answers.check_lines,
+        ProblemCheck: structures.check_lines,
+        ArchBracket: answers.bracket_lines,
+        Bracket: structures.bracket_lines,
+        Recording: lambda run: [
+            f"Recording by {run.engine}",
+            *(f"  motion  {line.strip()}" for line in _recording_lines(run)),
+            f"  what    {structures.described(run.problem)}",
+        ],
+    }
+    return found[type(shown)](shown)
+
+
+def figure_of(shown: object) -> Figure:
+    """Draw a thing.
+
+    Parameters
+    ----------
+    shown : Arch, Problem, Check, Bracket or Recording
+
+    Returns
+    -------
+    Figure
+        Of a check with its forces or its mechanism; of the least thickness of an arch the
+        arch of that thickness; of a recording its last frame.
+    """
+    found: dict[type, Callable[[Any], Figure]] = {
+        Arch: _arch_figure,
+        Problem: _problem_figure,
+        ArchCheck: _arch_check_figure,
+        ProblemCheck: _check_figure,
+        ArchBracket: _arch_bracket_figure,
+        Bracket: _bracket_figure,
+        Recording: _recording_figure,
+    }
+    return found[type(shown)](shown)
+
+
+@lru_cache(maxsize=1)
+def svg_of(shown: object) -> str:
+    """Return the drawing of a thing as one SVG element.
+
+    The last one is kept: a notebook asks for it alone and within the page.
+    """
+    from blocksim.view.drawing import save_figure
+
+    file = BytesIO()
+    save_figure(figure_of(shown), file, "svg")
+    text = file.getvalue().decode()
+    # Without the prologue, which has no place within a page.
+    return text[text.index("<svg") :]
+
+
+def html_of(shown: object) -> str:
+    """Return the words of a thing as a table, and its drawing below."""
+    head, *lines = (html.escape(line) for line in lines_of(shown))
+    rows = "".join(
+        f"<tr><th style='text-align:left'>{line[:LABEL].strip()}</th>"
+        f"<td style='text-align:left'>{line[LABEL:].strip()}</td></tr>"
+        for line in lines
+    )
+    return f"<div><strong>{head.strip()}</strong><table>{rows}</table>{svg_of(shown)}</div>"
+
+
+def _recording_lines(recording: Recording) -> list[str]:
+    return recording_lines(recording, "L" if arch_of(recording.problem) is None else "r")
+
+
+def _arch_words(arch: Arch) -> str:
+    return (
+        f"Arch: alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
+        f"{arch.voussoirs} voussoirs, weight {arch.weight}"
+    )
+
+
+def _arch_record(arch: Arch) -> dict[str, object]:
+    return {
+        "half_angle_deg": math.degrees(arch.half_angle),
+        "eta": arch.eta,
+        "voussoirs": arch.voussoirs,
+        "weight": arch.weight,
+        **size_record(arch),
+    }
+
+
+def _arch_figure(arch: Arch) -> Figure:
+    from blocksim.view.structure import problem_figure
+
+    titled = replace(arch.problem(math.inf), title=_arch_words(arch))
+    # An arch alone has no friction to tell.
+    return problem_figure(titled, facts=())
+
+
+def _problem_figure(problem: Problem) -> Figure:
+    from blocksim.view.structure import problem_figure
+
+    return problem_figure(problem)
+
+
+def _arch_check_figure(answer: ArchCheck) -> Figure:
+    from blocksim.view.archfigure import arch_figure, picture_of_arch
+    from blocksim.view.structure import problem_figure
+
+    if answer.method == "limit" and not answer.lean:
+        return arch_figure([picture_of_arch(answer.arch, answer.mu)])
+    problem = answer.arch.problem(answer.mu, answer.lean)
+    states = tuple(joint.state for joint in answer.joints)
+    return problem_figure(
+        problem, verdict=f"{answer.verdict}, by {answer.method}", states=states
+    )
+
+
+def _check_figure(answer: ProblemCheck) -> Figure:
+    from blocksim.view.structure import problem_figure
+
+    return problem_figure(
+        answer.problem,
+        verdict=f"{answer.verdict}, by {answer.method}",
+        forces=answer.forces,
+        mechanism=answer.mechanism,
+        states=tuple(joint.state for joint in answer.joints),
+    )
+
+
+def _arch_bracket_figure(answer: ArchBracket) -> Figure:
+    from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
+
+    if answer.method == "theory" and answer.eta_high is not None:
+        shape = answer.half_angle, answer.mu, answer.weight
+        critical = least_thickness(*shape)
+        return arch_figure([picture_of_theory(critical, critical.mode, *shape)])
+    eta = ETA_MAX if answer.eta_high is None else answer.eta_high or THIN
+    arch = Arch(
+        half_angle=answer.half_angle,
+        eta=eta,
+        voussoirs=answer.voussoirs,
+        weight=answer.weight,
+        depth=answer.depth,
+    )
+    return arch_figure([picture_of_arch(arch, answer.mu)])
+
+
+def _bracket_figure(answer: Bracket) -> Figure:
+    from blocksim.view.rangefigure import range_figure
+
+    return range_figure(answer)
+
+
+def _recording_figure(recording: Recording) -> Figure:
+    from blocksim.view.film import Film
+
+    return Film([recording], height=TALL).figure()

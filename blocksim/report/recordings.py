@@ -1,0 +1,68 @@
+"""Recordings as JSON objects and as text for people: what they show, not every pose."""
+
+from __future__ import annotations
+
+import math
+
+from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.record import to_record
+from blocksim.evidence.recording import Recording
+from blocksim.evidence.shaken import rocking_of
+
+LEAST_ROTATION = 1e-3
+"""Rotation of a block from which on a recording is said to have turned one [rad]."""
+
+
+def recording_record(recording: Recording) -> dict[str, object]:
+    """Return what a recording shows, without its poses."""
+    rocking, problem = rocking_of(recording), recording.problem
+    size = recording.assembly.size
+    return {
+        "engine": recording.engine,
+        "engine_version": recording.engine_version,
+        "settings": to_record(recording.settings),
+        "title": problem.title,
+        "blocks": len(recording.assembly.blocks),
+        "mu": recording.mu,
+        "size_m": size,
+        "frames": len(recording.times),
+        "recorded_s": float(recording.seconds(STANDARD_GRAVITY)[-1]),
+        "moved_m": float(recording.displacement[-1]) * size,
+        "largest_rotation_deg": math.degrees(rocking.rotation),
+        "quality": to_record(recording.quality),
+        "state_hash": recording.state_hash,
+    }
+
+
+def recording_lines(recording: Recording, unit: str) -> list[str]:
+    """Return a recording in words; `unit` is that of lengths in which it has been made."""
+    lines = [
+        f"{len(recording.times)} frames, "
+        f"{recording.seconds(STANDARD_GRAVITY)[-1]:.2f} s, "
+        f"moved {recording.displacement[-1]:.2g} {unit}, state {recording.state_hash}"
+    ]
+    kept, rocking, problem = recording.quality, rocking_of(recording), recording.problem
+    said: list[str] = []
+    if problem.shaking is not None:
+        said.append(problem.shaking.words)
+    if rocking.rotation >= LEAST_ROTATION:
+        name = problem.assembly.blocks[rocking.block].name or str(rocking.block)
+        said.append(f"block {name} turned by {math.degrees(rocking.rotation):.3g} deg at most")
+    if rocking.impact is not None:
+        said.append(
+            f"a joint first closed again after {rocking.impact * problem.seconds:.4g} s"
+        )
+    if said:
+        lines.append("  " + ", ".join(said))
+    said = []
+    if kept.penetration is not None:
+        said.append(f"blocks overlap by at most {kept.penetration:.1e} {unit}")
+    if kept.gain is not None:
+        said.append(
+            f"energy at most {kept.gain:.2%} of what fell above that at the release"
+            if kept.gain
+            else "energy never above that at the release"
+        )
+    if said:
+        lines.append("  " + ", ".join(said))
+    return lines
