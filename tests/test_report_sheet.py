@@ -57,6 +57,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("thin", (*ASKED, *FRICTION, "--thickness", "0.2"), 1),
         ("pushed", (str(folder / "pushed.json"), "--method", "direct"), 0),
         ("wall", ("wall", "--mu", "0.6"), 0),
+        ("road", (*ASKED, *FRICTION, "--fill", "0.5", "--point-load", "1", "20"), 0),
     ):
         found = inside("report", *asked, "--out", str(folder / f"{name}.html"))
         assert found.returncode == code, found.stderr
@@ -159,6 +160,22 @@ def test_loads_and_the_method_asked_for(pages: Path) -> None:
     assert value(said["unit weight"]) == pytest.approx(24.0)
 
 
+def test_supports_bear_blocks_fill_and_loads(pages: Path) -> None:
+    """The fill by hand: 20 kN/m3 below a level 0.5 m over the extrados, above it."""
+    said = rows_of(pages / "road.html")
+    assert said["unit weight"].startswith("20 kN/m")
+    borne = [float(said[name].split(" | ")[1]) for name in ("left", "right")]
+    outer = INNER + 0.45
+    reach = outer * 4 / INNER
+    level = outer + 0.5
+    circle = outer**2 * math.asin(reach / outer) + reach * math.sqrt(outer**2 - reach**2)
+    fill = 20 * (2 * reach * level - circle)
+    assert value(said["dead loads"]) == pytest.approx(fill, rel=1e-3)
+    assert said["live loads"] == "20.00 kN/m | together, times 1, the load factor"
+    weight = value(said["weight of all blocks"])
+    assert sum(borne) == pytest.approx(weight + fill + 20, rel=1e-3)
+
+
 def test_weights_that_were_not_given_are_no_kilonewtons(pages: Path) -> None:
     text = (pages / "wall.html").read_text(encoding="utf-8")
     assert "weights are for 1 N/m³: no unit weight was given" in text
@@ -180,11 +197,30 @@ def test_names_are_escaped_and_nothing_is_loaded(pages: Path) -> None:
     assert "blocksim report" in html.unescape(text)
 
 
+def test_a_thickness_that_was_not_given_is_told(tmp_path: Path) -> None:
+    out = tmp_path / "semicircle.html"
+    assert inside("report", "semicircle", "--out", str(out)).returncode == 1
+    because = rows_of(out)["by limit analysis"]
+    assert "no thickness was given, so it is 0.99 of the least as built" in because
+
+
 def test_wrong_input_is_one_line(tmp_path: Path) -> None:
     for asked, words in (
         (("semicircle", "--eta", "0.12", "--out", str(tmp_path / "x.pdf")), "ending in .html"),
         (("--alpha", "90", "--mu", "0.7", "--out", str(tmp_path / "x.html")), "--eta"),
         (("semicircle", "--eta", "0.12"), "--out"),
+        (
+            (
+                "semicircle",
+                "--eta",
+                "0.12",
+                "--method",
+                "theory",
+                "--out",
+                str(tmp_path / "x.html"),
+            ),
+            "of the blocks as built",
+        ),
     ):
         found = inside("report", *asked)
         assert found.returncode == 2
@@ -198,7 +234,7 @@ PAPER = (182, 273)
 MM = 96 / 25.4
 
 
-@pytest.mark.parametrize("name", ["arch", "thin", "pushed", "wall"])
+@pytest.mark.parametrize("name", ["arch", "thin", "pushed", "wall", "road"])
 def test_it_fits_the_paper(browser: Any, pages: Path, name: str) -> None:
     page = browser.new_page(viewport={"width": round(PAPER[0] * MM), "height": 900})
     try:

@@ -96,6 +96,8 @@ def _write_sheet(
     out: Path, kind: str, problem: Problem, method: str | None, height: int | None
 ) -> None:
     """Draw a problem to scale, with its answer."""
+    as_built = "limit or an engine: it is drawn as built"
+    require(method != "theory", "--method", method, as_built)
     # Drawing takes a second to import, which other commands need not wait for.
     from blocksim.view.sheet import sheet_of
     from blocksim.view.sheetdxf import write_dxf

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -26,7 +27,8 @@ from blocksim.cli.options import (
     require_given,
     settings_of,
 )
-from blocksim.cli.structures import problem_asked
+from blocksim.cli.question import question, thickness_words
+from blocksim.cli.structures import is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import require_place, write_whole
 from blocksim.evidence.verdict import Verdict
@@ -48,12 +50,17 @@ def report(
     out = out or Path()
     require(out.suffix == ".html", "--out", str(out), "a file name ending in .html")
     require_place(out)
+    as_built = "limit or an engine: it is of the blocks as built"
+    require(method != "theory", "--method", method, as_built)
     own = settings_of(settings)
     # Drawing takes a second to import, which other commands need not wait for.
     from blocksim.report.sheetpage import structure_page
 
     with named_options(), progress() as told:
         answer = check(problem, method=method, settings=own, progress=told)
+    if not is_structure(scene):
+        said = thickness_words(question(scene, given), given.ratio)
+        answer = replace(answer, reason=answer.reason + said)
     arch = arch_of_problem(problem)
     falls = answer.verdict is Verdict.COLLAPSES and problem.is_planar
     page = structure_page(

@@ -10,11 +10,13 @@ import numpy as np
 
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import arch_of
+from blocksim.arch.structure import arch_behind
 from blocksim.ask.check import ProblemCheck
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit import Reaction, reactions, resultants
 from blocksim.report.structures import joint_names, tilt_and_lean
+from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
 from blocksim.view.sheet import LARGEST, Sheet, at_joints, geometrical_factor
 from blocksim.view.thrustlines import States, is_chained, thrust_of
@@ -51,7 +53,7 @@ class JointRow:
 def built_facts(sheet: Sheet) -> list[Fact]:
     """Tell dimensions and weights of what is built."""
     problem, unit = sheet.problem, sheet.unit
-    assembly, arch = problem.assembly, arch_of(problem)
+    assembly, arch = problem.assembly, arch_behind(problem)
     corners = np.concatenate([block.vertices for block in assembly.blocks])
     facts: list[Fact] = []
     for each in dimensions_of(problem, corners, 1.0):
@@ -75,6 +77,15 @@ def built_facts(sheet: Sheet) -> list[Fact]:
         facts.append(Fact("unit weight", f"{heavy / 1e3:.4g} {CUBIC}"))
     weight = problem.unit_force * len(assembly.blocks)
     facts.append(Fact("weight of all blocks", unit.words(weight), unit.note))
+    factor = f"times {problem.load:g}, the load factor"
+    for name, loads, note in (
+        ("dead loads", problem.dead, "besides own weight, together"),
+        ("live loads", problem.live, f"together, {factor}"),
+    ):
+        forces = [force for load in loads for _, force in forces_of(problem, load)]
+        if forces:
+            total = float(np.hypot(*np.sum(forces, axis=0)))
+            facts.append(Fact(name, unit.words(total), note))
     return facts
 
 

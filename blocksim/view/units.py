@@ -9,6 +9,7 @@ import numpy as np
 from blocksim.arch.circular import arch_of
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.kinds.files import density_of, kind_behind
 
 KILO = 1e3
 NOT_GIVEN = (0.8, 1.25)
@@ -59,9 +60,13 @@ def unit_weight(problem: Problem) -> float | None:
 
     The median, where blocks differ; None where none was given.
     """
-    arch = arch_of(problem)
+    arch, kind = arch_of(problem), kind_behind(problem)
     if arch is not None:
         return arch.specific_weight
+    low, high = NOT_GIVEN
+    if kind is not None:
+        density = density_of(problem)
+        return None if low <= density <= high else density
     weights = [
         block.mass
         * STANDARD_GRAVITY
@@ -69,7 +74,6 @@ def unit_weight(problem: Problem) -> float | None:
         for block in problem.assembly.blocks
     ]
     middle = float(np.median(weights))
-    low, high = NOT_GIVEN
     return None if low <= middle <= high else middle
 
 
