@@ -72,6 +72,17 @@ def test_unbounded_friction_is_told_as_the_coefficient_it_takes() -> None:
     )
 
 
+def test_the_safest_state_of_what_needs_nothing_bears_its_weight() -> None:
+    """A plumb column needs neither width nor friction, and its joints carry what is above."""
+    problem = kind_of({"kind": "column", "friction": 0.6})
+    found = margins(problem)
+    assert found.strength == 0.0
+    assert found.forces is not None
+    blocks = len(problem.assembly.blocks)
+    above = [problem.unit_force * (blocks - place) for place in range(blocks)]
+    assert resultants(problem, found.forces).normal == pytest.approx(above, rel=1e-9)
+
+
 def test_level_blocks_need_neither_friction_nor_width() -> None:
     found = margins(kind_of({"kind": "stack", "friction": 0.5}))
     assert found.friction == 0.0

@@ -25,7 +25,7 @@ STACK = {
     ],
 }
 INPUTS = {
-    "arch": (("render", "semicircle", "--eta", "0.12"), "27 voussoirs as built"),
+    "arch": (("render", "semicircle", "--eta", "0.12"), "27 voussoirs, "),
     "continuous": (("render", "semicircle"), "continuous arch"),
     "structure": (("render", "stack.json"), "stands, by limit"),
     "recording": (("render", "run.npz"), "at rest"),

@@ -8,12 +8,12 @@ from contextlib import suppress
 
 import typer
 
-from blocksim.cli import commands, converting, studies
+from blocksim.cli import commands, converting, reporting, studies
 from blocksim.cli.app import app
 from blocksim.common import interrupts
 from blocksim.common.errors import BlocksimError
 
-COMMANDS = (commands, converting, studies)
+COMMANDS = (commands, converting, reporting, studies)
 """Modules whose commands hang themselves into the program."""
 WRONG_INPUT = 2
 CRASHED = 70

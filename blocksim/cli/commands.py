@@ -18,7 +18,7 @@ from blocksim.cli.console import (
     picture_kind,
     progress,
 )
-from blocksim.cli.drawing import write_arch
+from blocksim.cli.drawing import write_still
 from blocksim.cli.filming import (
     HEIGHT,
     MODELS,
@@ -57,7 +57,6 @@ from blocksim.cli.structures import (
     THICKNESS,
     bracket_structure,
     check_structure,
-    draw_structure,
     is_structure,
     joint_of,
     problem_asked,
@@ -216,8 +215,8 @@ def render(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="File to write: .mp4, .gif, .png, .svg, .pdf, or .glb, .gltf, .csv, .json "
-            "of a recording; required."
+            help="File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, .csv, "
+            ".json of a recording; required."
         ),
     ] = None,
     scene: Annotated[
@@ -231,19 +230,20 @@ def render(
     height: Height = None,
     method: EngineOption = None,
 ) -> None:
-    """Draw an arch, or film its motion.
+    """Draw what is built to scale, or film its motion.
 
-    A picture of a scenario shows its lines of thrust and friction and its mechanism: at
-    the thickness given, the voussoirs as built; with none given, the continuous arch at its
-    least thickness, in each of its collapse modes. Everything else is drawn from a
-    recording: a film, a view in 3d, a frame of an .npz file, an animated model (glTF), tables.
-    A scenario is simulated first, 1 % below its least thickness where none is given.
+    A sheet (.pdf, .svg, .png, .dxf) has dimensions, supports, lines of least and greatest
+    thrust, reactions, and how it falls. Of an arch without a thickness the picture is of the
+    continuous arch at its least, with its lines of thrust and friction, in each of its
+    collapse modes. Everything else is drawn from a recording: a film, a view in 3d, a frame
+    of an .npz file, an animated model (glTF), tables. A scenario is simulated first, 1 % below
+    its least thickness where none is given.
     """
     if scene is None:
         question(scene, given, out=out)
     require_given(out=out)
     out = out or Path()
-    kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", *MODELS, *TABLES))
+    kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", *MODELS, *TABLES))
     if kind in (*MODELS, *TABLES):
         options = {"beside": beside, "slow": slow, "time": time, "height": height}
         for name, value in options.items():
@@ -252,27 +252,14 @@ def render(
         return
     filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
+        require(kind != "dxf", "--out", str(out), "another kind: a .dxf is of no motion")
         shown = RenderOptions(view=view, slow=slow, time=time, height=height or HEIGHT)
         require(time is None or kind not in FILMS, "--time", time, "left out of a film")
         film(out, recordings(scene, given, loading, method, beside), shown)
     else:
-        shown = {"slow": slow, "time": time, "method": method}
-        built = is_structure(scene) or bool(loading.on_road)
-        for name, value in shown.items():
-            # The picture of a structure shows the answer of a method.
-            free = value is None or (built and name == "method")
-            require(free, f"--{name}", value, "left out: the picture is of no motion")
+        for name, value in (("slow", slow), ("time", time)):
+            require(value is None, f"--{name}", value, "left out: the picture is of no motion")
         if height is not None:
             require(kind == "png", "--height", height, f"left out: a .{kind} has no pixels")
             require_height(height)
-        if built:
-            problem = problem_asked(scene, given, loading, thick=True)
-            draw_structure(out, kind, problem, method or "auto", height)
-        else:
-            require(
-                not loading.given,
-                "--load, --tilt, --shake",
-                scene,
-                "left out: film it, or use check",
-            )
-            write_arch(out, kind, scene, given, height)
+        write_still(out, kind, scene, given, loading, method, height)

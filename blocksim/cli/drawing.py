@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from blocksim.arch.circular import arch_of as arch_of_problem
+from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness
-from blocksim.cli.console import picture_kind, save_picture, say
+from blocksim.ask.check import ProblemCheck, check
+from blocksim.blocks.problem import Problem
+from blocksim.cli.console import picture_kind, progress, save_picture, say
 from blocksim.cli.filming import picture_of_leaning
-from blocksim.cli.options import Given, named_options
+from blocksim.cli.options import Given, Loading, named_options
 from blocksim.cli.question import arch_of, question
+from blocksim.cli.structures import is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
+from blocksim.evidence.verdict import Verdict
 
 ZOOMS = {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
 LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
@@ -45,28 +51,79 @@ def _map_page(out: Path, results: Path | None) -> None:
     say(f"wrote {out}")
 
 
-def write_arch(
-    out: Path, kind: str, scene: str | None, given: Given, height: int | None
+def write_still(
+    out: Path,
+    kind: str,
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    method: str | None,
+    height: int | None,
 ) -> None:
-    """Draw the voussoirs as built, or the continuous arch at its least thickness.
+    """Draw what stands still: a sheet of what is built, or the arch at its least thickness.
 
-    Where gravity leans out of the plane, statics in the plane say nothing: the arch is put
-    into the engine that sees it, and drawn in perspective.
+    Where gravity leans out of the plane of an arch, statics in the plane say nothing: it is
+    put into the engine that sees it, and drawn in perspective.
     """
-    # matplotlib takes a second to import, which other commands need not wait for.
-    from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
-
-    asked = question(scene, given)
+    built = is_structure(scene) or loading.given
+    asked = None if built else question(scene, given)
+    if asked is None or (not asked.lean and (asked.eta is not None or given.ratio is not None)):
+        _write_sheet(
+            out, kind, problem_asked(scene, given, loading, thick=True), method, height
+        )
+        return
+    require(method is None, "--method", method, "left out: the picture is of no motion")
+    flat = "a .png, .svg or .pdf: it leans" if asked.lean else (
+        "a .png, .svg or .pdf where no thickness is given"
+    )  # fmt: skip
+    require(kind != "dxf", "--out", str(out), flat)
     if asked.lean:
         picture_of_leaning(out, kind, arch_of(asked, given.ratio), asked, height)
         return
+    # matplotlib takes a second to import, which other commands need not wait for.
+    from blocksim.view.archfigure import arch_figure, picture_of_theory
+
     with named_options():
-        if asked.eta is not None or given.ratio is not None:
-            pictures = [picture_of_arch(arch_of(asked, given.ratio), asked.mu)]
-        else:
-            critical = least_thickness(asked.half_angle, asked.mu, asked.weight)
-            if critical.eta is None:
-                raise InputError("eta", MISSING, "given where no thickness stands")
-            arch = asked.half_angle, asked.mu, asked.weight
-            pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
+        critical = least_thickness(asked.half_angle, asked.mu, asked.weight)
+        if critical.eta is None:
+            raise InputError("eta", MISSING, "given where no thickness stands")
+        arch = asked.half_angle, asked.mu, asked.weight
+        pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
     save_picture(arch_figure(pictures), out, kind, height)
+
+
+def _write_sheet(
+    out: Path, kind: str, problem: Problem, method: str | None, height: int | None
+) -> None:
+    """Draw a problem to scale, with its answer."""
+    as_built = "limit or an engine: it is drawn as built"
+    require(method != "theory", "--method", method, as_built)
+    # Drawing takes a second to import, which other commands need not wait for.
+    from blocksim.view.sheet import sheet_of
+    from blocksim.view.sheetdxf import write_dxf
+    from blocksim.view.sheetfigure import sheet_figure
+
+    with named_options(), progress() as report:
+        answer = check(problem, method=method or "auto", progress=report)
+    sheet = sheet_of(
+        problem,
+        verdict=verdict_words(answer),
+        mechanism=answer.mechanism,
+        joint_states=[joint.state for joint in answer.joints],
+    )
+    if kind == "dxf":
+        write_whole(out, lambda file: write_dxf(sheet, file))
+        say(f"wrote {out}")
+        return
+    save_picture(sheet_figure(sheet), out, kind, height)
+
+
+def verdict_words(answer: ProblemCheck) -> str:
+    """Say the verdict and its method, and how an arch falls of its own weight."""
+    arch = arch_of_problem(answer.problem)
+    mode = None
+    falls = answer.verdict is Verdict.COLLAPSES
+    if arch is not None and falls and answer.problem.is_planar and not answer.shaken:
+        mode = observed_mode(answer.joints, arch)
+    named = f", mode {mode}" if mode else ""
+    return f"{answer.verdict.value}{named}, by {answer.method}"

@@ -22,7 +22,7 @@ from blocksim.ask.simulate import simulate
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
-from blocksim.cli.console import answer_with, progress, save_picture, say
+from blocksim.cli.console import answer_with, progress, say
 from blocksim.cli.options import (
     EXIT_CODES,
     Given,
@@ -37,7 +37,6 @@ from blocksim.cli.question import arch_of, question
 from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_place
 from blocksim.evidence.recording import Recording
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import (
@@ -269,26 +268,6 @@ def spread_structure(
     require(problem.shaking is None, "--shake", over, "left out where supports move")
     with named_options(), progress() as report:
         return Spreading(problem).recorded(report)
-
-
-def draw_structure(
-    out: Path, kind: str, problem: Problem, method: str, height: int | None
-) -> None:
-    """Draw a structure with its answer: contact forces where it stands, else its mechanism."""
-    # Drawing takes a second to import, which other commands need not wait for.
-    from blocksim.view.structure import problem_figure
-
-    require_place(out)
-    with named_options(), progress() as report:
-        answer = check(problem, method=method, progress=report)
-    figure = problem_figure(
-        problem,
-        verdict=f"{answer.verdict.value}, by {answer.method}",
-        forces=answer.forces,
-        mechanism=answer.mechanism,
-        states=tuple(joint.state for joint in answer.joints),
-    )
-    save_picture(figure, out, kind, height)
 
 
 def say_recorded(out: Path, recording: Recording, unit: str) -> None:

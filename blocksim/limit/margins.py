@@ -242,8 +242,8 @@ class _Search:
         found = most_common(cones, self._pull, self._solver)
         if not found.exists:
             return None
-        margin = min(0.0, float(found.values[-1]))
-        inside = cones.forces(found.values[:-1] + margin * cones.bounded)
+        # What all parts have in common is theirs, too: none is needed where no width is.
+        inside = cones.forces(found.values[:-1] + found.values[-1] * cones.bounded)
         if not self._width:
             return inside
         # The same resultants, as forces at the true ends of the joints.

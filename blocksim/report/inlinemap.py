@@ -1,4 +1,4 @@
-"""The map as a part of the page: its colours follow the page's, its points are links."""
+"""Pictures as a part of the page: colours follow the page's; points of the map are links."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ OPENING = re.compile(r"<svg\b[^>]*>")
 BOX = re.compile(r'viewBox="[^"]*"')
 STYLE = re.compile(r'style="[^"]*"')
 COLOUR = re.compile(r"#([0-9a-f]{6})\b")
+FILL = re.compile(r'(<rect [^>]*)fill="#([0-9a-f]{6})"')
+"""Of hatching, the one colour that is no style."""
 LINK = re.compile(rf'<a xlink:href="(?:{re.escape(PAGE)})?#row-(\d+)"(?: target="_blank")?')
 DARKEST, LIGHTEST = 0.12, 0.93
 """Lightness of what is white and black by day, in the dark."""
@@ -36,14 +38,7 @@ def inline_map(svg: bytes, names: Mapping[int, str]) -> tuple[str, dict[str, str
     dark : dict of str to str
         Each colour rrggbb, and what it is in the dark.
     """
-    text = svg.decode()
-    text = NOT_OURS.sub("", text[text.index("<svg") :])
-    opening = OPENING.match(text)
-    box = BOX.search(opening[0]) if opening else None
-    head = f'<svg class="map" {box[0] if box else ""} role="group" aria-labelledby="map-words">'
-    text = OPENING.sub(head, text, count=1)
-    found = {colour for style in STYLE.findall(text) for colour in COLOUR.findall(style)}
-    text = STYLE.sub(lambda style: COLOUR.sub(r"var(--map-\1)", style[0]), text)
+    text, dark = inline_picture(svg, "map", "group")
     reached: set[str] = set()
 
     def link(match: re.Match[str]) -> str:
@@ -55,7 +50,38 @@ def inline_map(svg: bytes, names: Mapping[int, str]) -> tuple[str, dict[str, str
         name = name.replace('"', "&quot;").replace("<", "&lt;")
         return f'<a href="#row-{number}" aria-label="{name}"{again}'
 
-    return LINK.sub(link, text), {colour: _dark(colour) for colour in sorted(found)}
+    return LINK.sub(link, text), dark
+
+
+def inline_picture(svg: bytes, name: str, role: str) -> tuple[str, dict[str, str]]:
+    """Turn a picture drawn for paper into a part of the page.
+
+    Parameters
+    ----------
+    svg : bytes
+        A file of SVG with its colours as #rrggbb in `style` attributes.
+    name : str
+        Class of the element; what has the id `name-words` describes it.
+    role : str
+
+    Returns
+    -------
+    text : str
+        An element, with each colour #rrggbb as the variable --name-rrggbb.
+    dark : dict of str to str
+        Each colour rrggbb, and what it is in the dark.
+    """
+    text = svg.decode()
+    text = NOT_OURS.sub("", text[text.index("<svg") :])
+    opening = OPENING.match(text)
+    box = BOX.search(opening[0]) if opening else None
+    said = f'role="{role}" aria-labelledby="{name}-words"'
+    head = f'<svg class="{name}" {box[0] if box else ""} {said}>'
+    text = OPENING.sub(head, text, count=1)
+    text = FILL.sub(r'\1style="fill: #\2"', text)
+    found = {colour for style in STYLE.findall(text) for colour in COLOUR.findall(style)}
+    text = STYLE.sub(lambda style: COLOUR.sub(rf"var(--{name}-\1)", style[0]), text)
+    return text, {colour: _dark(colour) for colour in sorted(found)}
 
 
 def _dark(colour: str) -> str:

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from statistics import fmean
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-
 from blocksim.arch.circular import GRAVITY
 from blocksim.arch.modes import Mode
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import ratio
+from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import ArchDrawing, drawing
 from blocksim.report.structurepart import shown_structures
@@ -88,20 +87,13 @@ def report_page(
     str
         HTML that loads nothing.
     """
-    environment = Environment(
-        loader=PackageLoader("blocksim.report"),
-        autoescape=select_autoescape(),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {
+    pages = environment()
+    pages.filters |= {
         "degrees": _degrees,
         "friction": _friction,
-        "ratio": ratio,
         "capitalised": _capitalised,
     }
-    template = environment.get_template("report.html")
+    template = pages.get_template("report.html")
     engines = list(dict.fromkeys(row.engine for row in rows))
     drawn_map, dark = inline_map(map_svg, {n: name for name, n in numbered(rows).items()})
     shown = shown_structures(structures)

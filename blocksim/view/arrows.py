@@ -45,7 +45,7 @@ def draw_forces(axes: Axes, problem: Problem, forces: Array, extent: float) -> l
         if SUPPORT in (joint.before, joint.after):
             way = -way if joint.after == SUPPORT else way
             line = np.array([place - way, place])
-            _arrow(axes, line, THRUST, f"force-{index}", name, zorder=8)
+            arrow(axes, line, THRUST, f"force-{index}", name, zorder=8)
         else:
             line = np.array([place - way / 2, place + way / 2])
             axes.plot(*line.T, color=THRUST, lw=1.7, zorder=8, gid=f"force-{index}",
@@ -85,7 +85,7 @@ def draw_loads(axes: Axes, problem: Problem, extent: float) -> list[Array]:
         tone, words = (DEAD, "dead load, ") if kind == "dead" else (LIVE, f"live load {at}")
         line = np.array([place - scale * force, place])
         name = f"{words}largest {force_words(most)}"
-        _arrow(axes, line, tone, f"{kind}-{index}", name, zorder=9)
+        arrow(axes, line, tone, f"{kind}-{index}", name, zorder=9)
         shown.append(line)
     return shown
 
@@ -111,16 +111,24 @@ def force_words(newtons: float) -> str:
     return f"{newtons:.3g} N"
 
 
-def _arrow(
-    axes: Axes, line: Array, tone: str, gid: str, label: str | None, *, zorder: float
+def arrow(
+    axes: Axes,
+    line: Array,
+    tone: str,
+    gid: str,
+    label: str | None = None,
+    *,
+    zorder: float,
 ) -> None:
+    """Draw an arrow from the first of two points to the second."""
     start, end = line.tolist()
     axes.add_patch(
         FancyArrowPatch(start, end, arrowstyle="-|>", mutation_scale=8, lw=1.4, color=tone,
                         shrinkA=0, shrinkB=0, zorder=zorder, gid=gid)
     )  # fmt: skip
     # A legend has no arrows: a line of the same colour stands for it.
-    axes.plot([], [], color=tone, lw=1.7, label=label)
+    if label is not None:
+        axes.plot([], [], color=tone, lw=1.7, label=label)
 
 
 def draw_gravity(axes: Axes, problem: Problem, shown: Array) -> list[Array]:
@@ -133,5 +141,5 @@ def draw_gravity(axes: Axes, problem: Problem, shown: Array) -> list[Array]:
     way = PULL * float((high - low).max()) * pull / size
     start = np.array([low[0] - abs(way[0]) - 0.5 * np.hypot(*way), high[1] - max(0.0, way[1])])
     line = np.array([start, start + way])
-    _arrow(axes, line, QUIET, "gravity", "gravity", zorder=9)
+    arrow(axes, line, QUIET, "gravity", "gravity", zorder=9)
     return [line]

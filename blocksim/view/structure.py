@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Sequence
 
@@ -100,15 +101,14 @@ def problem_figure(
         axes = figure.add_subplot()
         axes.set_aspect("equal")
         axes.axis("off")
-        box = low - AROUND * extent, high + AROUND * extent
         # What is drawn so far has to find place in the picture.
-        shown = [corners, *_draw_supports(axes, problem, box, extent)]
-        width = _edge(problem, extent)
-        _draw_blocks(axes, problem, width)
+        shown = [corners, *draw_supports(axes, problem)]
+        width = edge_width(problem, extent)
+        draw_blocks(axes, problem, width)
         if mechanism is not None:
-            shown += _draw_mechanism(axes, problem, mechanism, extent)
+            shown += draw_mechanism(axes, problem, mechanism, extent)
         if states is not None:
-            _draw_states(axes, problem, states)
+            draw_states(axes, problem, states)
         if forces is not None:
             shown += draw_forces(axes, problem, forces, extent)
         shown += draw_loads(axes, problem, extent)
@@ -123,8 +123,8 @@ def problem_figure(
     return figure
 
 
-def _edge(problem: Problem, extent: float) -> float:
-    """Width of the edges of blocks, thin where blocks are small [points]."""
+def edge_width(problem: Problem, extent: float) -> float:
+    """Return the width of the edges of blocks, thin where blocks are small [points]."""
     small = float(np.median(problem.assembly.reach)) / extent
     return float(np.clip(12 * small, 0.3, 1.1))
 
@@ -140,22 +140,35 @@ def _closed(polygon: Array) -> Array:
     return np.concatenate([polygon, polygon[:1]])
 
 
-def _draw_supports(
-    axes: Axes, problem: Problem, box: tuple[Array, Array], extent: float
-) -> list[Array]:
-    """Hatch the supports near the blocks; one that is not known is a strip behind its joint."""
+def supports_shown(problem: Problem) -> list[list[Array]]:
+    """Cut supports off near the blocks, into convex parts; one not known is a strip."""
     assembly = problem.assembly
+    box, extent = _around(problem)
     bodies = [
         [part for each in support.polygons if len(part := clipped(each, *box))]
         for support in assembly.supports
     ]
-    bodies += [
-        [_strip(joint, extent)] for joint in assembly.springings if joint.support is None
-    ]
+    unknown = [joint for joint in assembly.springings if joint.support is None]
+    middles = np.array([(joint.inner + joint.outer) / 2 for joint in unknown]).reshape(-1, 2)
+    # Those of a horseshoe do not reach into each other.
+    apart = float(np.hypot(*np.ptp(middles, axis=0))) if len(unknown) > 1 else math.inf
+    bodies += [[_strip(joint, min(AROUND * extent, apart / 3))] for joint in unknown]
+    return [parts for parts in bodies if parts]
+
+
+def _around(problem: Problem) -> tuple[tuple[Array, Array], float]:
+    """Box around the blocks in which supports are shown, and the larger side of the blocks."""
+    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    extent = float((high - low).max())
+    return (low - AROUND * extent, high + AROUND * extent), extent
+
+
+def draw_supports(axes: Axes, problem: Problem) -> list[Array]:
+    """Hatch the supports near the blocks."""
+    box, _ = _around(problem)
     shown: list[Array] = []
-    for index, parts in enumerate(bodies):
-        if not parts:
-            continue
+    for index, parts in enumerate(supports_shown(problem)):
         axes.add_patch(
             PathPatch(_shape(parts), fc=PAPER, ec=GROUND, hatch=HATCH, lw=0, zorder=0.5,
                       gid=f"support-{index}", label="support")
@@ -176,16 +189,16 @@ def _on_box(side: Array, box: tuple[Array, Array]) -> bool:
     )
 
 
-def _strip(joint: Joint, extent: float) -> Array:
+def _strip(joint: Joint, deep: float) -> Array:
     """Place a strip behind a joint, a little wider than it, counter-clockwise."""
-    deep = AROUND * extent
     out = joint.normal * (-deep if joint.before == SUPPORT else deep)
     along = joint.tangent * max(0.15 * joint.length, 0.3 * deep)
     near = np.array([joint.inner - along, joint.outer + along])
     return np.array([near[0], near[1], near[1] + out, near[0] + out])
 
 
-def _draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
+def draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
+    """Draw blocks as stone, with edges so wide [points]."""
     for index, block in enumerate(problem.assembly.blocks):
         # Parts of one block have no edge between them: a hair of stone closes the seam.
         axes.add_patch(
@@ -198,7 +211,7 @@ def _draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
         )
 
 
-def _draw_mechanism(
+def draw_mechanism(
     axes: Axes, problem: Problem, mechanism: Array, extent: float
 ) -> list[Array]:
     """Draw the blocks that move where they move to."""
@@ -230,7 +243,7 @@ def _draw_mechanism(
     return shown
 
 
-def _draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> None:
+def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> None:
     """Colour joints that take part; dots mark the ends that stay closed, bars what slides."""
     is_arch = arch_of(problem) is not None
     for index, (joint, state) in enumerate(zip(problem.assembly.joints, states, strict=True)):

@@ -1,0 +1,74 @@
+"""The command that writes a report on one structure."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from blocksim.arch.circular import arch_of as arch_of_problem
+from blocksim.arch.observed import observed_mode
+from blocksim.ask.check import check
+from blocksim.cli.app import app
+from blocksim.cli.console import progress, say
+from blocksim.cli.groups import grouped
+from blocksim.cli.options import (
+    EXIT_CODES,
+    Given,
+    Loading,
+    MethodOption,
+    Scene,
+    Set,
+    named_options,
+    require_given,
+    settings_of,
+)
+from blocksim.cli.question import question, thickness_words
+from blocksim.cli.structures import is_structure, problem_asked
+from blocksim.common.checks import require
+from blocksim.common.files import require_place, write_whole
+from blocksim.evidence.verdict import Verdict
+
+
+@app.command()
+@grouped
+def report(
+    given: Given,
+    loading: Loading,
+    out: Annotated[Path | None, typer.Option(help="Page to write, .html; required.")] = None,
+    scene: Scene = None,
+    method: MethodOption = "auto",
+    settings: Set = None,
+) -> None:
+    """Write a report on one structure: a page to print, with its drawing; exits as check."""
+    problem = problem_asked(scene, given, loading, thick=True, out=out)
+    require_given(out=out)
+    out = out or Path()
+    require(out.suffix == ".html", "--out", str(out), "a file name ending in .html")
+    require_place(out)
+    as_built = "limit or an engine: it is of the blocks as built"
+    require(method != "theory", "--method", method, as_built)
+    own = settings_of(settings)
+    # Drawing takes a second to import, which other commands need not wait for.
+    from blocksim.report.sheetpage import structure_page
+
+    with named_options(), progress() as told:
+        answer = check(problem, method=method, settings=own, progress=told)
+    if not is_structure(scene):
+        said = thickness_words(question(scene, given), given.ratio)
+        answer = replace(answer, reason=answer.reason + said)
+    arch = arch_of_problem(problem)
+    falls = answer.verdict is Verdict.COLLAPSES and problem.is_planar
+    page = structure_page(
+        answer,
+        mode=observed_mode(answer.joints, arch) if arch and falls else None,
+        command=shlex.join(["blocksim", *sys.argv[1:]]),
+        settings=", ".join(f"{name} {value:g}" for name, value in own.items()),
+    )
+    write_whole(out, lambda file: file.write(page.encode()))
+    say(f"wrote {out}: {answer.verdict.value}, by {answer.method}")
+    raise typer.Exit(EXIT_CODES[answer.verdict])

@@ -1,0 +1,20 @@
+"""Where pages are made of templates."""
+
+from __future__ import annotations
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+from blocksim.report.answers import ratio
+
+
+def environment() -> Environment:
+    """Return templates of this room, which escape what they are given."""
+    made = Environment(
+        loader=PackageLoader("blocksim.report"),
+        autoescape=select_autoescape(),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.filters["ratio"] = ratio
+    return made

@@ -1,0 +1,284 @@
+"""What the page on one structure says: dimensions, assumptions, factors, forces, joints."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from blocksim.arch import limit, theory
+from blocksim.arch.circular import arch_of
+from blocksim.arch.structure import arch_behind
+from blocksim.ask.check import ProblemCheck
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.limit import Reaction, reactions, resultants
+from blocksim.report.structures import joint_names, tilt_and_lean
+from blocksim.view.arrows import forces_of
+from blocksim.view.dimensions import Angle, dimensions_of
+from blocksim.view.sheet import LARGEST, Sheet, at_joints, geometrical_factor
+from blocksim.view.thrustlines import States, is_chained, thrust_of
+from blocksim.view.units import ForceUnit, length_words, unit_weight
+
+MOST = 60
+"""Joints in the table; of more, those that are used most."""
+MANY_SUPPORTS = 12
+"""Supports in the table of reactions."""
+CUBIC = "kN/m\N{SUPERSCRIPT THREE}"
+
+
+class Fact(NamedTuple):
+    """A quantity, its value with its unit, and what it says."""
+
+    name: str
+    value: str
+    note: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointRow:
+    """What a joint carries, as the table says it."""
+
+    name: str
+    normal: str
+    friction: str
+    eccentricity: str
+    width_used: str
+    friction_used: str
+    worst: bool
+
+
+def built_facts(sheet: Sheet) -> list[Fact]:
+    """Tell dimensions and weights of what is built."""
+    problem, unit = sheet.problem, sheet.unit
+    assembly, arch = problem.assembly, arch_behind(problem)
+    corners = np.concatenate([block.vertices for block in assembly.blocks])
+    facts: list[Fact] = []
+    for each in dimensions_of(problem, corners, 1.0):
+        if isinstance(each, Angle):
+            facts.append(Fact("half-angle of embrace", f"{math.degrees(each.value):.4g}°"))
+        else:
+            facts.append(Fact(each.what, length_words(each.value), each.note))
+    if arch is not None:
+        facts.append(Fact("radius", length_words(arch.radius), "centreline"))
+        facts.append(Fact("thickness over radius", f"η = {arch.eta:.4g}"))
+    facts += [
+        Fact("voussoirs" if arch else "blocks", str(len(assembly.blocks))),
+        Fact("joints", str(len(assembly.joints))),
+    ]
+    depths = assembly.depths * assembly.size
+    if np.ptp(depths) <= 1e-9 * depths.max():
+        facts.append(Fact("depth", f"{depths[0]:.4g} m"))
+    facts.append(Fact("friction coefficient", *_friction(problem)))
+    heavy = unit_weight(problem)
+    if heavy is not None:
+        facts.append(Fact("unit weight", f"{heavy / 1e3:.4g} {CUBIC}"))
+    weight = problem.unit_force * len(assembly.blocks)
+    facts.append(Fact("weight of all blocks", unit.words(weight), unit.note))
+    factor = f"times {problem.load:g}, the load factor"
+    for name, loads, note in (
+        ("dead loads", problem.dead, "besides own weight, together"),
+        ("live loads", problem.live, f"together, {factor}"),
+    ):
+        forces = [force for load in loads for _, force in forces_of(problem, load)]
+        if forces:
+            total = float(np.hypot(*np.sum(forces, axis=0)))
+            facts.append(Fact(name, unit.words(total), note))
+    return facts
+
+
+def _friction(problem: Problem) -> tuple[str, str]:
+    if math.isinf(problem.mu):
+        return "∞", "joints do not slide"
+    own = (problem.friction != problem.mu).any()
+    angle = f"friction angle {math.degrees(math.atan(problem.mu)):.4g}°"
+    return f"μ = {problem.mu:.4g}", angle + ("; some joints have their own" if own else "")
+
+
+def load_words(problem: Problem) -> list[str]:
+    """Say what acts."""
+    words = ["Own weight acts at each block's centre of mass."]
+    arch = arch_of(problem)
+    if arch is not None:
+        at = {
+            "centreline": "at the centroid of the voussoir's part of the centreline",
+            "sector": "at the centroid of the voussoir",
+        }
+        words = [f"Own weight acts {at[arch.weight]}."]
+    if problem.origin.get("fill") is not None:
+        words.append("Fill is weight alone: it does not press from the side.")
+    elif problem.dead:
+        count = len(problem.dead)
+        words.append(f"{count} dead load{'s' * (count > 1)} besides own weight.")
+    if problem.live:
+        factor = (
+            f"times {problem.load:g}" if problem.load else "not on it: the load factor is 0"
+        )
+        count = len(problem.live)
+        words.append(f"{count} live load{'s' * (count > 1)}, {factor}.")
+    turned = tilt_and_lean(problem)
+    if abs(turned["tilt_deg"]) > 1e-9:
+        words.append(f"Gravity is tilted by {turned['tilt_deg']:.4g}° in the plane.")
+    if turned["lean_deg"]:
+        words.append(f"Gravity leans {turned['lean_deg']:.4g}° out of the plane.")
+    if problem.shaking is not None:
+        words.append(f"The ground shakes: {problem.shaking.words}.")
+    return words
+
+
+def assumptions(problem: Problem) -> list[str]:
+    """Say what is taken for granted."""
+    law = "Joints do not slide." if math.isinf(problem.mu) else (
+        "Coulomb friction in all joints, without cohesion."
+    )  # fmt: skip
+    return [
+        "Blocks are rigid, and supports do not move.",
+        "Joints bear no tension; compressive strength is unlimited.",
+        law,
+        *load_words(problem),
+        "Stands means that it can rest: forces of equilibrium exist.",
+    ]
+
+
+def factor_facts(answer: ProblemCheck, sheet: Sheet) -> list[Fact]:
+    """Tell how far it is from falling."""
+    problem, states = answer.problem, sheet.states
+    facts: list[Fact] = []
+    if states is not None:
+        facts += _margin_facts(problem, states)
+    if answer.load_factor is not None:
+        at = f"asked at {problem.load:g}; " if problem.load else ""
+        value = "∞" if math.isinf(answer.load_factor) else f"{answer.load_factor:.6g}"
+        facts.append(Fact("load factor", value, f"{at}largest factor on the live loads"))
+    arch = arch_of(problem)
+    if arch is not None and not problem.is_loaded and states is not None:
+        facts += _least_facts(problem)
+    return facts
+
+
+def _margin_facts(problem: Problem, states: States) -> list[Fact]:
+    needed, factor = states.margins, geometrical_factor(states)
+    said = "no width suffices" if factor is None else (
+        f"more than {LARGEST:g}" if factor > LARGEST else f"{factor:.5g}"
+    )  # fmt: skip
+    what = "joints' width over what a line of thrust needs, about their middles"
+    if needed.width == 0:
+        said, what = "\N{INFINITY}", "no width is needed"
+    facts = [Fact("geometrical factor of safety", said, what)]
+    share = needed.friction
+    if share is None:
+        facts.append(Fact("friction needed", "none suffices"))
+    elif math.isinf(problem.mu):
+        facts.append(Fact("friction needed", f"μ = {share:.4g}"))
+    else:
+        least = f"least friction coefficient μ = {share * problem.mu:.4g}"
+        if (problem.friction != problem.mu).any():
+            least = "of the friction of every joint"
+        facts.append(Fact("friction needed", _percent(share), least))
+    if needed.strength is not None:
+        both = "of width and of friction at once, in the state of greatest margin"
+        facts.append(Fact("strength used", _percent(needed.strength), both))
+    return facts
+
+
+def _least_facts(problem: Problem) -> list[Fact]:
+    arch = arch_of(problem)
+    assert arch is not None  # noqa: S101
+    built = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight)
+    whole = theory.least_thickness(arch.half_angle, problem.mu, arch.weight)
+    facts: list[Fact] = []
+    for whose, least, mode in (
+        ("as built", built.eta, built.mode),
+        ("continuous arch", whole.eta, whole.mode),
+    ):
+        said = "none up to η = 2" if least is None else (
+            f"{length_words(least * arch.radius)} (η = {least:.5g})" if least else "any"
+        )  # fmt: skip
+        falls = f", in mode {mode.value}" if mode and least else ""
+        facts.append(Fact("least thickness", said, f"{whose}{falls}"))
+    return facts
+
+
+def thrust_facts(sheet: Sheet) -> list[Fact]:
+    """Tell the range of thrust at the joint at which it is told."""
+    states, unit, problem = sheet.states, sheet.unit, sheet.problem
+    if states is None or states.joint is None or not (states.least and states.greatest):
+        return []
+    name = joint_names(problem.assembly)[states.joint]
+    said = [
+        "without limit"
+        if math.isinf(end.thrust)
+        else unit.words(end.thrust * problem.unit_force)
+        for end in (states.least, states.greatest)
+    ]
+    facts = [
+        Fact("least thrust", said[0], f"at joint {name}"),
+        Fact("greatest thrust", said[1], f"at joint {name}"),
+    ]
+    if states.stands and states.margins.forces is not None:
+        safest = thrust_of(problem, states.margins.forces, states.joint)
+        facts.append(Fact("thrust at greatest margin", unit.words(safest), f"at joint {name}"))
+    return facts
+
+
+def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
+    """Return headings and rows of reactions: by support, in each state, across and up."""
+    states, problem = sheet.states, sheet.problem
+    if states is None or not states.stands or states.margins.forces is None:
+        return [], []
+    columns = [("greatest margin", states.margins.forces)]
+    if is_chained(problem):
+        for name, end in (("greatest thrust", states.greatest), ("least thrust", states.least)):
+            if end is not None and end.forces is not None:
+                columns.insert(0, (name, end.forces))
+    borne = [_reactions(problem, forces) for _, forces in columns]
+    if len({len(each) for each in borne}) != 1 or len(borne[0]) > MANY_SUPPORTS:
+        return [], []
+    rows = [
+        [first.name]
+        + [sheet.unit.number(float(part)) for each in borne for part in each[place].force]
+        for place, first in enumerate(borne[0])
+    ]
+    return [name for name, _ in columns], rows
+
+
+def _reactions(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
+    named = reactions(problem, forces)
+    single = at_joints(problem, forces) if is_chained(problem) else named
+    return named if len(single) == len(named) else single
+
+
+def joint_rows(sheet: Sheet) -> list[JointRow]:
+    """Tell what joints carry in the state of greatest margin, in their order."""
+    states, problem, unit = sheet.states, sheet.problem, sheet.unit
+    if states is None or not states.stands or states.margins.forces is None:
+        return []
+    carried = resultants(problem, states.margins.forces)
+    joints = problem.assembly.joint_arrays
+    middle = joints.ends.mean(axis=1) * problem.assembly.size
+    off = ((carried.point - middle) * joints.tangent).sum(axis=1)
+    chosen = np.sort(np.argsort(-carried.used, kind="stable")[:MOST])
+    names, worst = joint_names(problem.assembly), int(carried.used.argmax())
+    return [
+        JointRow(
+            name=names[k],
+            normal=unit.number(float(carried.normal[k])),
+            friction=unit.number(float(carried.friction[k])),
+            eccentricity="-" if np.isnan(off[k]) else f"{1e3 * off[k] + 0.0:.0f}",
+            width_used=_percent(float(carried.width_used[k])),
+            friction_used=_percent(float(carried.friction_used[k])),
+            worst=k == worst,
+        )
+        for k in map(int, chosen)
+    ]
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f}\N{NO-BREAK SPACE}%"
+
+
+def force_words(unit: ForceUnit) -> str:
+    """Say in what forces are told."""
+    return f"forces in {unit.name}" + (f"; {unit.note}" if unit.note else "")

@@ -1,0 +1,246 @@
+"""What is measured on a drawing: span, rise, thickness and half-angle, or width and height."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.arch.circular import arch_of
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.kinds.archkind import CurvedArch
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.files import kind_behind
+from blocksim.view.units import length_words
+
+OFF, ARC_OFF = 8.0, 6.0
+"""Distances of dimension lines from what is drawn, on paper [mm]."""
+EVEN = 1e-6
+"""Share of a length by which others may differ from it and still count as the same."""
+QUARTER = 0.25
+"""Where along an arch its thickness is measured."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Length:
+    """A length between two points, measured along a direction.
+
+    Parameters
+    ----------
+    what : str
+        span, rise, thickness, width or height.
+    start, end : (2,) float
+        The points [m].
+    at : (2,) float
+        A point of the dimension line [m].
+    along : (2,) float
+        Its direction, from start to end.
+    note : str
+        What it is a dimension of.
+    """
+
+    what: str
+    start: Array
+    end: Array
+    at: Array
+    along: Array
+    note: str = ""
+
+    @property
+    def value(self) -> float:
+        """What is measured [m]."""
+        return float((self.end - self.start) @ self.along)
+
+    @property
+    def words(self) -> str:
+        """What the drawing says."""
+        said = f"{self.what} {length_words(self.value)}"
+        return f"{said} ({self.note})" if self.note else said
+
+    @property
+    def line(self) -> Array:
+        """Both ends of the dimension line, (2, 2) [m]."""
+        feet = [self.at + ((end - self.at) @ self.along) * self.along for end in self.ends]
+        return np.array(feet)
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """Both points."""
+        return self.start, self.end
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Angle:
+    """The half-angle of embrace, from the crown to the right springing.
+
+    Parameters
+    ----------
+    centre : (2,) float
+        Of the circle [m].
+    radius : float
+        Of the dimension's arc [m].
+    reach : float
+        Where lines that lead to it begin, from the centre [m].
+    value : float
+        [rad]
+    """
+
+    centre: Array
+    radius: float
+    reach: float
+    value: float
+    what: str = "half-angle"
+
+    @property
+    def words(self) -> str:
+        """What the drawing says."""
+        return f"\N{GREEK SMALL LETTER ALPHA} = {math.degrees(self.value):.4g}°"
+
+    def point(self, share: float, radius: float | None = None) -> Array:
+        """Return the point at a share of the angle from the crown [m]."""
+        turn = share * self.value
+        far = self.radius if radius is None else radius
+        return self.centre + far * np.array([math.sin(turn), math.cos(turn)])
+
+
+def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length | Angle]:
+    """Choose what is measured on the drawing of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+    shown : (k, 2) float
+        Points of what is drawn [m]; dimension lines of the whole are beyond.
+    scale : float
+        Of the drawing: a millimetre on paper is so many millimetres.
+    """
+    if is_arch(problem):
+        return _of_arch(problem, shown, scale)
+    low, high = shown.min(axis=0), shown.max(axis=0)
+    away = OFF * scale / 1e3
+    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+    least, most = corners.min(axis=0), corners.max(axis=0)
+    top = np.array([least[0], high[1] + away])
+    left = np.array([low[0] - away, least[1]])
+    return [
+        Length(
+            what="width",
+            start=corners[corners[:, 0].argmin()],
+            end=corners[corners[:, 0].argmax()],
+            at=top,
+            along=np.array([1.0, 0.0]),
+        ),
+        Length(
+            what="height",
+            start=corners[corners[:, 1].argmin()],
+            end=np.array([corners[corners[:, 1].argmax(), 0], most[1]]),
+            at=left,
+            along=np.array([0.0, 1.0]),
+        ),
+    ]
+
+
+def is_arch(problem: Problem) -> bool:
+    """Whether it is one arch, whose joints follow each other from left to right."""
+    kind = kind_behind(problem)
+    return arch_of(problem) is not None or (kind is not None and kind.is_arch)
+
+
+def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angle]:
+    joints = problem.assembly.joints
+    inner = np.array([joint.inner for joint in joints])
+    left, right = inner[0], inner[-1]
+    level, middle = min(float(left[1]), float(right[1])), float(inner[:, 0].mean())
+    crown = inner[inner[:, 1].argmax()]
+    found: list[Length | Angle] = []
+    if right[0] - left[0] > EVEN * problem.assembly.size:
+        found.append(
+            Length(
+                what="span",
+                start=left,
+                end=right,
+                at=np.array([middle, level]),
+                along=np.array([1.0, 0.0]),
+                note="intrados",
+            )
+        )
+    top = _top(problem, crown)
+    if top[1] - level > EVEN * problem.assembly.size:
+        found.append(
+            Length(
+                what="rise",
+                start=np.array([top[0], level]),
+                end=top,
+                at=top,
+                along=np.array([0.0, 1.0]),
+                note="intrados",
+            )
+        )
+    found += _thickness(problem)
+    return found + _half_angle(problem, shown, scale)
+
+
+def _top(problem: Problem, crown: Array) -> Array:
+    """Highest point of the intrados, which the chord of a keystone is below [m]."""
+    arch = arch_of(problem)
+    if arch is not None:
+        return np.array([0.0, arch.radius - arch.thickness / 2])
+    kind = kind_behind(problem)
+    if isinstance(kind, CircularArch) and min(kind.left_deg, kind.right_deg) >= 0:
+        return np.array([0.0, kind.radius - kind.thickness / 2])
+    return crown
+
+
+def thickness_of(problem: Problem) -> float | None:
+    """Thickness of an arch that is as thick everywhere [m]."""
+    arch = arch_of(problem)
+    if arch is not None:
+        return arch.thickness
+    kind = kind_behind(problem)
+    return kind.thickness if isinstance(kind, CurvedArch) else None
+
+
+def _thickness(problem: Problem) -> list[Length | Angle]:
+    thickness, joints = thickness_of(problem), problem.assembly.joints
+    if thickness is None:
+        return []
+    # At a joint square to the centreline: of vertical ones those at the springings are.
+    count = len(joints) - 1
+    for place in (round(QUARTER * count), 0):
+        joint = joints[place]
+        if abs(joint.length - thickness) < EVEN * thickness:
+            return [
+                Length(
+                    what="thickness",
+                    start=joint.inner,
+                    end=joint.outer,
+                    at=joint.inner,
+                    along=joint.tangent,
+                )
+            ]
+    return []
+
+
+def half_angle_of(problem: Problem) -> float | None:
+    """Half-angle of embrace of a symmetric circular arch [rad]."""
+    arch = arch_of(problem)
+    if arch is not None:
+        return arch.half_angle
+    kind = kind_behind(problem)
+    if isinstance(kind, CircularArch) and kind.left_deg == kind.right_deg:
+        return math.radians(kind.right_deg)
+    return None
+
+
+def _half_angle(problem: Problem, shown: Array, scale: float) -> list[Length | Angle]:
+    angle = half_angle_of(problem)
+    if angle is None:
+        return []
+    outer = float(np.hypot(*problem.assembly.joints[-1].outer))
+    # Beyond what moves, too.
+    at = np.arctan2(shown[:, 0], shown[:, 1])
+    far = np.hypot(*shown[(at >= 0) & (at <= angle)].T).max(initial=outer)
+    radius = float(far) + ARC_OFF * scale / 1e3
+    return [Angle(centre=np.zeros(2), radius=radius, reach=outer, value=angle)]

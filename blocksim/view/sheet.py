@@ -1,0 +1,282 @@
+"""A structure as an engineer draws it: what is on the sheet, at which scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from blocksim.arch.circular import arch_of
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Problem
+from blocksim.limit import Reaction, reactions, resultants
+from blocksim.view.drawing import friction_words, loading_words
+from blocksim.view.structure import supports_shown
+from blocksim.view.thrustlines import States, is_chained, states_of, thrust_lines, thrust_of
+from blocksim.view.units import ForceUnit, force_unit, unit_weight
+
+STEPS = (1.0, 2.0, 2.5, 5.0, 7.5)
+"""Scales that are drawn to, times powers of ten."""
+AWAY = 0.35
+"""Distance from the blocks beyond which a line of thrust is not drawn [largest side]."""
+LARGEST = 1e3
+"""Geometrical factor of safety from which on joints need no width to speak of."""
+MANY = 6
+"""Supports from which on their reactions are not drawn: nobody could read them."""
+
+
+class Paper(NamedTuple):
+    """A size of paper [mm]."""
+
+    name: str
+    width: float
+    height: float
+
+
+A4 = (Paper("A4", 297.0, 210.0), Paper("A4", 210.0, 297.0))
+"""Across and upright."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ThrustLine:
+    """A line of thrust, or several where they meet.
+
+    Parameters
+    ----------
+    name : {"min", "max", "safest"}
+    words : str
+        What the legend says.
+    paths : tuple of (k, 2) float
+        [m]
+    """
+
+    name: str
+    words: str
+    paths: tuple[Array, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sheet:
+    """What is drawn of a problem, by every writer of drawings.
+
+    Parameters
+    ----------
+    problem : Problem
+    title : str
+    facts : tuple of str
+        Lines below the title.
+    unit : ForceUnit
+    lines : tuple of ThrustLine
+    forces : (joints, 2, 2) float or None
+        Of the state of greatest margin; drawn at each joint where there are no lines.
+    thrust : (int, str) or None
+        The joint at which thrust is told, and its range in words.
+    reactions : tuple of Reaction
+        In the state of greatest margin.
+    mechanism : (blocks, 3) float or None
+    joint_states : tuple of JointState or None
+    supports : tuple of tuple of (k, 2) float
+        Convex parts of each support near the blocks [m].
+    states : States or None
+    """
+
+    problem: Problem
+    title: str
+    facts: tuple[str, ...]
+    unit: ForceUnit
+    lines: tuple[ThrustLine, ...] = ()
+    forces: Array | None = None
+    thrust: tuple[int, str] | None = None
+    reactions: tuple[Reaction, ...] = ()
+    mechanism: Array | None = None
+    joint_states: tuple[JointState, ...] | None = None
+    supports: tuple[tuple[Array, ...], ...] = field(default_factory=tuple)
+    states: States | None = None
+
+
+def sheet_of(
+    problem: Problem,
+    *,
+    verdict: str = "",
+    mechanism: Array | None = None,
+    joint_states: Sequence[JointState] | None = None,
+    states: States | None = None,
+) -> Sheet:
+    """Collect what is drawn of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+    verdict : str
+        The answer of a check, in words.
+    mechanism : (blocks, 3) float, optional
+        Rates x, y (in units of the size) and rotation; drawn enlarged.
+    joint_states : sequence of JointState, optional
+    states : States, optional
+        What `states_of` found, where it was asked already.
+    """
+    states = states or states_of(problem)
+    unit = force_unit(problem)
+    found = {} if states is None else _statics(problem, states, unit)
+    facts = [verdict, *(_factor_words(states) if states else [])]
+    return Sheet(
+        problem=problem,
+        title=title_of(problem),
+        facts=tuple(
+            ", ".join(word for word in words if word)
+            for words in (facts, built_words(problem), [unit.note])
+            if any(words)
+        ),
+        unit=unit,
+        mechanism=mechanism,
+        joint_states=None if joint_states is None else tuple(joint_states),
+        supports=tuple(tuple(parts) for parts in supports_shown(problem)),
+        states=states,
+        **found,
+    )
+
+
+def _statics(problem: Problem, states: States, unit: ForceUnit) -> dict[str, Any]:
+    """Lines, thrust and reactions, as far as there are such."""
+    forces, joint = states.margins.forces, states.joint
+    if forces is None:
+        return {}
+    chained = is_chained(problem)
+    drawn: list[ThrustLine] = []
+    told = None
+    if states.stands:
+        if chained and joint is not None and states.least and states.greatest:
+            for name, words, found in (
+                ("min", "least thrust", states.least),
+                ("max", "greatest thrust", states.greatest),
+            ):
+                if found.forces is not None:
+                    drawn.append(_line(problem, name, words, found.forces, joint, unit))
+            told = joint, _range_words(problem, states, unit)
+        if chained:
+            words = "greatest margin"
+            drawn.append(_line(problem, "safest", words, forces, joint, unit))
+        borne = at_joints(problem, forces) if chained else reactions(problem, forces)
+        return {
+            "lines": tuple(each for each in drawn if each.paths),
+            "forces": None if any(each.paths for each in drawn) else forces,
+            "thrust": told,
+            "reactions": borne if len(borne) < MANY else (),
+        }
+    line = _line(problem, "safest", "that lacks least strength", forces, None, unit)
+    return {"lines": (line,) if line.paths and _near(problem, line) else ()}
+
+
+def at_joints(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
+    """Return what each joint with a support bears: a floor may bear several piers."""
+    carried = resultants(problem, forces)
+    found: list[Reaction] = []
+    for index, joint in enumerate(problem.assembly.joints):
+        if SUPPORT in (joint.before, joint.after) and not np.isnan(carried.point[index, 0]):
+            force = carried.force[index] * (1 if joint.before == SUPPORT else -1)
+            name = problem.assembly.blocks[joint.bears].name or str(joint.bears)
+            found.append(
+                Reaction(name=f"under block {name}", force=force, point=carried.point[index])
+            )
+    return tuple(found)
+
+
+def _line(
+    problem: Problem,
+    name: str,
+    words: str,
+    forces: Array,
+    joint: int | None,
+    unit: ForceUnit,
+) -> ThrustLine:
+    said = f"line of thrust {words}" if words.startswith("that") else f"line of thrust: {words}"
+    if joint is not None:
+        said += f", {unit.words(thrust_of(problem, forces, joint))}"
+    return ThrustLine(name=name, words=said, paths=tuple(thrust_lines(problem, forces)))
+
+
+def _range_words(problem: Problem, states: States, unit: ForceUnit) -> str:
+    assert states.least is not None  # noqa: S101
+    assert states.greatest is not None  # noqa: S101
+    least, greatest = (
+        math.inf if math.isinf(end.thrust) else end.thrust * problem.unit_force
+        for end in (states.least, states.greatest)
+    )
+    low = unit.number(least)
+    if math.isinf(greatest):
+        return f"thrust {low} {unit.name} or more"
+    return f"thrust {low} to {unit.words(greatest)}"
+
+
+def _near(problem: Problem, line: ThrustLine) -> bool:
+    """Whether a line that leaves the blocks stays near them."""
+    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    slack = AWAY * float((high - low).max())
+    points = np.concatenate(line.paths)
+    return bool(((points > low - slack) & (points < high + slack)).all())
+
+
+def title_of(problem: Problem) -> str:
+    """Return the title of a problem, or say what it is."""
+    if problem.title and problem.title != problem.origin.get("kind"):
+        return problem.title
+    if problem.title:
+        return problem.title.replace("-", " ").capitalize()
+    if arch_of(problem) is not None:
+        return "Circular arch"
+    return "Structure of blocks"
+
+
+def built_words(problem: Problem) -> list[str]:
+    """Say of what it is built, and what acts on it."""
+    arch, count = arch_of(problem), len(problem.assembly.blocks)
+    noun = "voussoir" if arch else "block"
+    words = [f"{count} {noun}{'s' * (count != 1)}", friction_words(problem.mu)]
+    if 0 < problem.mu < math.inf:
+        words[-1] += f" ({math.degrees(math.atan(problem.mu)):.4g}°)"
+    if arch is not None and arch.weight != "centreline":
+        words.append(f"weight {arch.weight}")
+    heavy = unit_weight(problem)
+    if heavy is not None:
+        words.append(f"unit weight {heavy / 1e3:.4g} kN/m\N{SUPERSCRIPT THREE}")
+    depths = problem.assembly.depths * problem.assembly.size
+    if np.ptp(depths) <= 1e-9 * depths.max():
+        words.append(f"depth {depths[0]:.4g} m")
+    return words + loading_words(problem)
+
+
+def _factor_words(states: States) -> list[str]:
+    """Say the geometrical factor of safety."""
+    factor = geometrical_factor(states)
+    # Of a wall or a flat arch it says nothing.
+    return (
+        []
+        if factor is None or factor > LARGEST
+        else [f"geometrical factor of safety {factor:.4g}"]
+    )
+
+
+def geometrical_factor(states: States) -> float | None:
+    """Return the geometrical factor of safety: 1 over the share of width that is needed.
+
+    None where no width suffices, and inf where none is needed.
+    """
+    width = states.margins.width
+    return None if width is None else 1 / width if width else math.inf
+
+
+def scale_for(span: Array, room: Array) -> float:
+    """Return the largest of the usual scales at which a span [m] has room on paper [mm]."""
+    least = float((1e3 * span / room).max()) * (1 - 1e-9)
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step * power for step in (*STEPS, 10.0) if step * power >= least)
+
+
+def scale_words(scale: float) -> str:
+    """Return a scale as it is written: 1:50, or 2:1 of what is drawn larger than it is."""
+    return f"1:{scale:g}" if scale >= 1 else f"{1 / scale:.3g}:1"

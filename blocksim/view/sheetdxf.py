@@ -1,0 +1,223 @@
+"""A sheet as DXF: bodies, joints, lines of thrust and true dimensions, each on its layer.
+
+What is on the layers `blocks` and `supports` is read as a structure again.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import Any, BinaryIO, cast
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.outlines import signed_area
+from blocksim.common.errors import InputError
+from blocksim.view.dimensions import Length, dimensions_of
+from blocksim.view.drawing import HINGES, outer_sides
+from blocksim.view.sheet import A4, Sheet, scale_for
+
+LAYERS = {
+    "blocks": 7,
+    "supports": 8,
+    "joints": 9,
+    "thrust-min": 5,
+    "thrust-max": 6,
+    "thrust-safest": 30,
+    "mechanism": 3,
+    "dimensions": 7,
+    "text": 7,
+}
+"""Their colours, by AutoCAD's index."""
+METRES = 6
+"""Of $INSUNITS."""
+LETTERS, HINGE = 2.5, 1.2
+"""Height of letters and radius of the mark of a hinge, on paper [mm]."""
+ROOM = np.array([0.75, 0.55])
+"""Shares of a page of A4 that what is drawn takes."""
+MEETS = 1e-9
+"""Share of a side within which ends of sides are the same corner."""
+
+
+def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
+    """Write a sheet as DXF in metres.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    file : BinaryIO
+
+    Raises
+    ------
+    InputError
+        If a body has more than one outline.
+    """
+    # ezdxf takes a second to import, which nothing else need wait for.
+    import ezdxf
+
+    document: Any = cast(Any, ezdxf).new("R2010", setup=True)
+    document.units = METRES
+    document.header["$MEASUREMENT"] = 1
+    for name, colour in LAYERS.items():
+        document.layers.add(name, color=colour)
+    space: Any = document.modelspace()
+    problem = sheet.problem
+    corners = [
+        _named(block.polygons, f"block {block.name or index}")
+        for index, block in enumerate(problem.assembly.blocks)
+    ]
+    for each in corners:
+        _polyline(space, each, "blocks", close=True)
+    bodies = [
+        _named(support.polygons, f"support {support.name or index}")
+        for index, support in enumerate(problem.assembly.supports)
+    ]
+    known = len(bodies)
+    bodies += [outline(parts) for parts in sheet.supports[known:]]
+    for each in bodies:
+        _polyline(space, each, "supports", close=True)
+    for joint in problem.assembly.joints:
+        if not joint.is_corner:
+            space.add_line(joint.inner, joint.outer, dxfattribs={"layer": "joints"})
+    for line in sheet.lines:
+        for path in line.paths:
+            _polyline(space, path, f"thrust-{line.name}", close=False)
+    shown = np.concatenate([*corners, *(part for parts in sheet.supports for part in parts)])
+    span = np.ptp(shown, axis=0)
+    paper = np.array([A4[0].width, A4[0].height])
+    scale = scale_for(span, ROOM * paper)
+    _states(space, sheet, scale)
+    _dimensions(space, sheet, shown, scale)
+    _words(space, sheet, shown, scale)
+    text = io.StringIO()
+    document.write(text)
+    file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
+
+
+def _named(polygons: tuple[Array, ...], name: str) -> Array:
+    try:
+        return outline(polygons)
+    except ValueError:
+        allowed = "without holes, and one body: polylines of DXF have one outline"
+        raise InputError(name, f"{len(polygons)} polygons", allowed) from None
+
+
+def _polyline(space: Any, points: Array, layer: str, *, close: bool) -> None:
+    space.add_lwpolyline(points.tolist(), close=close, dxfattribs={"layer": layer})
+
+
+def _states(space: Any, sheet: Sheet, scale: float) -> None:
+    """Draw joints that take part, and circles where they turn."""
+    layer = {"layer": "mechanism"}
+    states = sheet.joint_states or ()
+    for joint, state in zip(sheet.problem.assembly.joints, states, strict=False):
+        if state is JointState.CLOSED:
+            continue
+        ends = (joint.inner, joint.outer)
+        if not joint.is_corner:
+            space.add_line(*ends, dxfattribs=layer)
+        if state in HINGES:
+            space.add_circle(ends[HINGES[state]], HINGE * scale / 1e3, dxfattribs=layer)
+
+
+def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
+    height = LETTERS * scale / 1e3
+    sizes = {
+        "dimtxt": height,
+        "dimasz": height,
+        "dimtsz": height / 2,
+        "dimexo": height / 2,
+        "dimexe": height / 2,
+        "dimgap": height / 3,
+        "dimdec": 3,
+        "dimzin": 0,
+        # ezdxf's own style tells metres in centimetres.
+        "dimlfac": 1.0,
+    }
+    layer = {"layer": "dimensions"}
+    for each in dimensions_of(sheet.problem, shown, scale):
+        if isinstance(each, Length):
+            note = f" ({each.note})" if each.note else ""
+            beside = each.what == "thickness"
+            turn = math.degrees(math.atan2(each.along[1], each.along[0]))
+            made = space.add_linear_dim(
+                base=tuple(each.at),
+                p1=tuple(each.start),
+                p2=tuple(each.end),
+                # Words that stand on their heads are turned round.
+                angle=turn - 180 if turn > 90 else turn,
+                location=tuple(each.end + each.along * 20 * scale / 1e3) if beside else None,
+                text=f"{each.what} <> m{note}",
+                override=sizes,
+                dxfattribs=layer,
+            )
+        else:
+            made = space.add_angular_dim_3p(
+                base=tuple(each.point(0.5)),
+                center=tuple(each.centre),
+                p1=tuple(each.point(1.0, each.reach)),
+                p2=tuple(each.point(0.0, each.reach)),
+                text="\N{GREEK SMALL LETTER ALPHA} = <>",
+                override={**sizes, "dimadec": 2},
+                dxfattribs=layer,
+            )
+        made.render()
+
+
+def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
+    """Write title and facts below, and forces where they act."""
+    from ezdxf.enums import TextEntityAlignment
+
+    mm = scale / 1e3
+    unit, layer = sheet.unit, {"layer": "text"}
+
+    def write(words: str, at: Array, height: float = LETTERS, *, before: bool = False) -> None:
+        text = space.add_text(words, height=height * mm, dxfattribs=layer)
+        text.set_placement(tuple(at), align=TextEntityAlignment.RIGHT if before else None)
+
+    for each in sheet.reactions:
+        across, up = (unit.words(float(part)) for part in each.force)
+        below = np.array([each.point[0], float(shown[:, 1].min()) - 5 * mm])
+        write(f"H = {across}", below)
+        write(f"V = {up}", below - [0, 4 * mm])
+    if sheet.thrust is not None:
+        index, words = sheet.thrust
+        joint = sheet.problem.assembly.joints[index]
+        at = np.array([joint.outer[0] - mm, float(shown[:, 1].max()) + 2 * mm])
+        write(words, at, before=True)
+    at = np.array([float(shown[:, 0].min()), float(shown[:, 1].min()) - 22 * mm])
+    write(sheet.title, at, 2 * LETTERS)
+    said = [*sheet.facts, *(f"layer thrust-{line.name}: {line.words}" for line in sheet.lines)]
+    for line in said:
+        at = at - [0, 5 * mm]
+        write(line, at)
+
+
+def outline(polygons: tuple[Array, ...]) -> Array:
+    """Return the outline of convex polygons that touch, counter-clockwise.
+
+    Raises
+    ------
+    ValueError
+        If it is not one closed line: two bodies, or one with a hole.
+    """
+    if len(polygons) == 1:
+        return polygons[0]
+    sides = outer_sides(polygons)
+    near = MEETS * max(float(np.hypot(*(side[1] - side[0]))) for side in sides)
+    left, corners = sides[1:], [sides[0][0], sides[0][1]]
+    while left:
+        ahead = next(
+            (k for k, side in enumerate(left) if np.hypot(*(side[0] - corners[-1])) < near),
+            None,
+        )
+        if ahead is None:
+            break
+        corners.append(left.pop(ahead)[1])
+    closed = np.array(corners)
+    if left or np.hypot(*(closed[-1] - closed[0])) > near or signed_area(closed[:-1]) <= 0:
+        message = "the outline is not one closed line"
+        raise ValueError(message)
+    return closed[:-1]

@@ -1,0 +1,381 @@
+# matplotlib's own annotations leave keyword arguments open.
+# pyright: reportUnknownMemberType=false
+"""A sheet on paper: drawn to scale, its axes as large as the page, in metres."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from dataclasses import dataclass, field
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Arc, Patch
+from matplotlib.transforms import Bbox
+
+from blocksim.arch.modes import Mode
+from blocksim.blocks.assembly import Array
+from blocksim.common.version import __version__
+from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
+from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
+from blocksim.view.drawing import round_length
+from blocksim.view.sheet import A4, Paper, Sheet, scale_for, scale_words
+from blocksim.view.structure import (
+    draw_blocks,
+    draw_mechanism,
+    draw_states,
+    draw_supports,
+    edge_width,
+)
+from blocksim.view.style import FONT, FRICTION, INK, MODES, QUIET, THRUST
+
+INCH = 25.4
+"""In millimetres."""
+MARGIN, NARROW = 12.0, 2.0
+"""Around the page, and around what is put into a page [mm]."""
+WIDE, COLUMNS = 250.0, 2
+"""Width of a page that has room for a scale beside the legend [mm], and its columns."""
+SIDE, ABOVE, BELOW, BARE = 22.0, 14.0, 24.0, 5.0
+"""Room for dimensions beside and above what is drawn, for reactions below it; for nothing."""
+LINE, TITLE = 4.2, 8.0
+"""Height of a line of words, and of the title."""
+REACTION = 14.0
+"""Length of the arrow of the largest reaction [mm]."""
+LETTER = 1.62
+"""Width of a letter of the facts [mm]."""
+LONG = 26.0
+"""Dimension lines from which on words stand along them [mm]."""
+SMALL, SMALLER = 8.0, 7.5
+"""Sizes of letters [points]."""
+CLEAR = {"fc": "white", "ec": "none", "pad": 0.5, "alpha": 0.8}
+"""Behind words, lest lines cross them."""
+STEP, TRIES = 1.5, 12
+"""Words are moved out of the way of others by so much [mm], so many times at most."""
+LINES = {
+    "min": (FRICTION, (0, (6, 2))),
+    "max": (MODES[Mode.RS].colour, (0, (6, 1.6, 1.2, 1.6))),
+    "safest": (THRUST, "-"),
+}
+"""Colour and dashes of each line of thrust."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Layout:
+    """Where what is drawn lies on the page, and words that have their place on it.
+
+    Parameters
+    ----------
+    paper : Paper
+    scale : float
+        A millimetre on paper is so many millimetres.
+    low : (2,) float
+        What lies at the lower left corner of the page [m].
+    edge, bar : float
+        Width of the margin, and height of the scale's bar above the page's lower edge [mm].
+    words : list of Bbox
+        Boxes of the words so far, in dots.
+    """
+
+    paper: Paper
+    scale: float
+    low: Array
+    edge: float
+    bar: float
+    words: list[Bbox] = field(default_factory=list[Bbox])
+
+    @property
+    def mm(self) -> float:
+        """Metres that a millimetre on paper is."""
+        return self.scale / 1e3
+
+    @property
+    def high(self) -> Array:
+        """What lies at the upper right corner [m]."""
+        return self.low + np.array([self.paper.width, self.paper.height]) * self.mm
+
+    def write(
+        self, axes: Axes, at: Array, words: str, away: tuple[float, float], **style: Any
+    ) -> None:
+        """Write words at a place [m], or as far away from it as others leave free."""
+        looks: dict[str, Any] = {"color": INK, "zorder": 10, "bbox": dict(CLEAR)}
+        text = axes.text(float(at[0]), float(at[1]), words, **{**looks, **style})
+        step = STEP * self.mm * np.asarray(away)
+        for _ in range(TRIES):
+            box = text.get_window_extent()
+            if not any(box.overlaps(other) for other in self.words):
+                break
+            at = at + step
+            text.set_position((float(at[0]), float(at[1])))
+        self.words.append(text.get_window_extent())
+
+
+def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> Figure:
+    """Draw a sheet; its pdf and svg are to scale where they are printed at 100 %.
+
+    Every artist has a `gid` that says what it is: `block-3`, `support-0`, `joint-5`,
+    `hinge-5`, `thrust-min-0`, `reaction-1`, `dimension-span`, `moved-3`, `scale`.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    column : (width, height), optional
+        Of a column of a page that it is put into [mm], the height at most: without the
+        title, as the page says it. By default it is a page of A4, across or upright.
+
+    Returns
+    -------
+    Figure
+    """
+    problem = sheet.problem
+    with mpl.rc_context({**FONT, "font.size": SMALL, "hatch.linewidth": 0.5}):
+        figure = Figure()
+        FigureCanvasAgg(figure)
+        axes = figure.add_axes((0, 0, 1, 1))
+        axes.axis("off")
+        corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+        extent = float(np.ptp(corners, axis=0).max())
+        # What is drawn so far has to find room.
+        shown = [corners, *draw_supports(axes, problem)]
+        draw_blocks(axes, problem, 0.8 * edge_width(problem, extent))
+        if sheet.mechanism is not None:
+            shown += draw_mechanism(axes, problem, sheet.mechanism, extent)
+        if sheet.joint_states is not None:
+            draw_states(axes, problem, sheet.joint_states)
+        if sheet.forces is not None:
+            shown += draw_forces(axes, problem, sheet.forces, extent)
+        shown += draw_loads(axes, problem, extent)
+        shown += draw_gravity(axes, problem, np.concatenate(shown))
+        for line in sheet.lines:
+            _draw_line(axes, line.name, line.words, line.paths)
+            shown += line.paths
+        if sheet.reactions and sheet.forces is None:
+            words = "reaction at greatest margin"
+            axes.plot([], [], color=INK, lw=1.2, marker=6, ms=5, label=words)
+        points = np.concatenate(shown)
+        low, high = points.min(axis=0), points.max(axis=0)
+        entries = _entries(axes)
+        layout = _layout(sheet, low, high, len(entries), column)
+        figure.set_size_inches(layout.paper.width / INCH, layout.paper.height / INCH)
+        axes.set_xlim(float(layout.low[0]), float(layout.high[0]))
+        axes.set_ylim(float(layout.low[1]), float(layout.high[1]))
+        for each in dimensions_of(problem, points, layout.scale):
+            if isinstance(each, Length):
+                _draw_length(axes, each, layout)
+            else:
+                _draw_angle(axes, each, layout)
+        _draw_thrust(axes, sheet, layout, float(high[1]))
+        _draw_reactions(axes, sheet, layout, float(low[1]))
+        _draw_words(figure, axes, sheet, layout, bare=column is not None)
+        if entries:
+            at = layout.edge / layout.paper.width, layout.edge / layout.paper.height
+            figure.legend(entries.values(), entries.keys(), loc="lower left", frameon=False,
+                          bbox_to_anchor=Bbox.from_bounds(*at, 0, 0), ncols=COLUMNS,
+                          borderpad=0, borderaxespad=0, fontsize=SMALLER,
+                          handlelength=3.2, labelspacing=0.45)  # fmt: skip
+    return figure
+
+
+def _entries(axes: Axes) -> dict[str, Patch | Line2D]:
+    """Legend of what is there, each once."""
+    handles, names = axes.get_legend_handles_labels()
+    return dict(zip(names, handles, strict=True))  # type: ignore[arg-type]
+
+
+def _layout(
+    sheet: Sheet,
+    low: Array,
+    high: Array,
+    entries: int,
+    column: tuple[float, float] | None,
+) -> Layout:
+    """Choose paper and scale so that all has room, and lay the drawing in the middle of it."""
+    above, below = ABOVE, BELOW if sheet.reactions else BARE + SIDE / 2
+    edge = MARGIN if column is None else NARROW
+    tries: list[Layout] = []
+    for paper in A4 if column is None else (Paper("", *column),):
+        tall = paper.height
+        rows = max(LINE * math.ceil(entries / COLUMNS), 2 * LINE)
+        # Where the legend may be as wide as the page, the scale stands above it.
+        bar = edge + (LINE if paper.width > WIDE else rows + LINE)
+        foot = max(edge + rows, bar + LINE) + 2
+        lines = sum(len(_wrapped(fact, paper)) for fact in sheet.facts)
+        head = edge + TITLE + LINE * lines + 2 if column is None else 0.0
+        room = np.array([paper.width - 2 * (edge + SIDE), tall - head - foot - above - below])
+        scale = scale_for(high - low, room)
+        drawn = 1e3 * (high - low) / scale
+        if column is not None:
+            tall -= float(room[1] - drawn[1])
+            room[1] = drawn[1]
+        corner = np.array([edge + SIDE, foot + below]) + (room - drawn) / 2
+        tries.append(
+            Layout(
+                paper=Paper(paper.name, paper.width, tall),
+                scale=scale,
+                low=low - corner * scale / 1e3,
+                edge=edge,
+                bar=bar,
+            )
+        )
+    return min(tries, key=lambda each: each.scale)
+
+
+def _wrapped(words: str, paper: Paper) -> list[str]:
+    return textwrap.wrap(words, int((paper.width - 2 * MARGIN) / LETTER))
+
+
+def _draw_line(axes: Axes, name: str, words: str, paths: tuple[Array, ...]) -> None:
+    tone, dashes = LINES[name]
+    for index, path in enumerate(paths):
+        axes.plot(*path.T, color=tone, ls=dashes, lw=1.5 if name == "safest" else 1.2,
+                  zorder=8, label=words, gid=f"thrust-{name}-{index}",
+                  solid_capstyle="round")  # fmt: skip
+
+
+def _draw_length(axes: Axes, each: Length, layout: Layout) -> None:
+    """Draw a dimension line with oblique strokes, lines that lead to it, and its words."""
+    line, along, mm = each.line, each.along, layout.mm
+    across = np.array([-along[1], along[0]])
+    gid = f"dimension-{each.what}"
+    for foot, point in zip(line, each.ends, strict=True):
+        way = foot - point
+        far = float(np.hypot(*way))
+        if far > 2 * mm:
+            lead = np.array([point + way / far * 1.2 * mm, foot + way / far * 1.5 * mm])
+            axes.plot(*lead.T, color=QUIET, lw=0.5, zorder=9, gid=f"{gid}-lead")
+        stroke = (along + across) * 1.1 * mm
+        axes.plot(*np.array([foot - stroke, foot + stroke]).T, color=INK, lw=0.9, zorder=9,
+                  gid=f"{gid}-end")  # fmt: skip
+    axes.plot(*line.T, color=INK, lw=0.6, zorder=9, gid=gid)
+    middle, long = line.mean(axis=0), each.value / mm
+    gid += "-words"
+    if each.what == "thickness":
+        # Beyond the outer end, on the side to which it leads.
+        tail = line[1] + along * 6 * mm
+        axes.plot(*np.array([line[1], tail]).T, color=INK, lw=0.6, zorder=9,
+                  gid="dimension-thickness-lead")  # fmt: skip
+        side = -1.0 if along[0] < 0 else 1.0
+        layout.write(axes, tail + along * mm, each.words, (side, 0.0), va="center", gid=gid,
+                     ha="right" if side < 0 else "left")  # fmt: skip
+    elif abs(along[0]) > 0.5:
+        side = 1.0 if each.what == "width" else -1.0
+        layout.write(axes, middle + np.array([0.0, side]) * mm, each.words, (0.0, side),
+                     ha="center", va="bottom" if side > 0 else "top", gid=gid)  # fmt: skip
+    elif long > LONG:
+        layout.write(axes, middle - np.array([mm, 0.0]), each.words, (-1.0, 0.0), ha="right",
+                     va="center", rotation=90, gid=gid)  # fmt: skip
+    else:
+        layout.write(axes, middle + np.array([1.5 * mm, 0.0]), each.words, (1.0, 0.0),
+                     ha="left", va="center", gid=gid)  # fmt: skip
+
+
+def _draw_angle(axes: Axes, each: Angle, layout: Layout) -> None:
+    """Draw the arc of an angle beyond the extrados, and its words."""
+    mm, turn = layout.mm, math.degrees(each.value)
+    gid = f"dimension-{each.what}"
+    axes.add_patch(
+        Arc((float(each.centre[0]), float(each.centre[1])), 2 * each.radius, 2 * each.radius,
+            theta1=90 - turn, theta2=90, color=INK, lw=0.6, zorder=9, gid=gid)
+    )  # fmt: skip
+    for share in (0.0, 1.0):
+        lead = np.array([
+            each.point(share, each.reach + 1.2 * mm), each.point(share, each.radius + 1.5 * mm)
+        ])  # fmt: skip
+        axes.plot(*lead.T, color=QUIET, lw=0.5, zorder=9, gid=f"{gid}-lead")
+        point, turned = each.point(share), share * each.value
+        # Across the line from the centre, turned by half a right angle as those of lengths.
+        stroke = np.array([math.cos(turned - 0.785), -math.sin(turned - 0.785)]) * 1.5 * mm
+        axes.plot(*np.array([point - stroke, point + stroke]).T, color=INK, lw=0.9, zorder=9,
+                  gid=f"{gid}-end")  # fmt: skip
+    where = each.point(0.55, each.radius + 1.5 * mm)
+    below = 0.55 * each.value > math.pi / 2
+    layout.write(axes, where, each.words, (1.0, 0.0), ha="left",
+                 va="top" if below else "bottom", gid=f"{gid}-words")  # fmt: skip
+
+
+def _draw_thrust(axes: Axes, sheet: Sheet, layout: Layout, top: float) -> None:
+    """Tell the thrust above the joint at which it is told."""
+    if sheet.thrust is None:
+        return
+    index, words = sheet.thrust
+    joint, mm = sheet.problem.assembly.joints[index], layout.mm
+    head = joint.outer if joint.outer[1] > joint.inner[1] else joint.inner
+    foot = np.array([head[0], top + 3.5 * mm])
+    lead = np.array([head + np.array([0.0, 0.8 * mm]), foot])
+    axes.plot(*lead.T, color=QUIET, lw=0.5, zorder=9, gid="thrust-lead")
+    # The half-angle is told to the right of the crown.
+    side = "center" if half_angle_of(sheet.problem) is None else "right"
+    layout.write(axes, foot + np.array([0.5, 0.6]) * mm, words, (0.0, 1.0), ha=side,
+                 va="bottom", gid="thrust-words")  # fmt: skip
+
+
+def _draw_reactions(axes: Axes, sheet: Sheet, layout: Layout, low: float) -> None:
+    """Draw what supports bear as arrows that end where they act, with their parts in words.
+
+    Where contact forces are drawn, words alone.
+    """
+    sizes = [float(np.hypot(*each.force)) for each in sheet.reactions]
+    largest, unit, mm = max(sizes, default=0.0), sheet.unit, layout.mm
+    for index, (each, size) in enumerate(zip(sheet.reactions, sizes, strict=True)):
+        if size <= 1e-9 * largest or largest == 0:
+            continue
+        # A small one is still an arrow.
+        way = each.force / size * REACTION * max(0.35, size / largest) * mm
+        tail = each.point - way
+        if sheet.forces is None:
+            arrow(axes, np.array([tail, each.point]), INK, f"reaction-{index}", zorder=9)
+        else:
+            tail = np.array([each.point[0], low])
+        across, up = (unit.words(float(part)) for part in np.abs(each.force))
+        side = "\N{RIGHTWARDS ARROW}" if each.force[0] >= 0 else "\N{LEFTWARDS ARROW}"
+        rise = "\N{UPWARDS ARROW}" if each.force[1] >= 0 else "\N{DOWNWARDS ARROW}"
+        words = f"{rise} {up}"
+        if abs(each.force[0]) > 1e-6 * largest:
+            words += f"\n{side} {across}"
+        style: dict[str, Any] = {"linespacing": 1.15, "gid": f"reaction-{index}-words"}
+        if abs(way[0]) > 2 * abs(way[1]):
+            # One that is nearly level comes from beside.
+            ahead = math.copysign(1.0, way[0])
+            layout.write(axes, tail - np.array([0.8 * ahead * mm, 0.0]), words, (-ahead, 0.0),
+                         va="center", ha="right" if ahead > 0 else "left", **style)  # fmt: skip
+        else:
+            rises = math.copysign(1.0, way[1])
+            layout.write(axes, tail - np.array([0.0, 0.8 * rises * mm]), words, (0.0, -rises),
+                         va="top" if rises > 0 else "bottom", ha="center", **style)  # fmt: skip
+
+
+def _draw_words(
+    figure: Figure, axes: Axes, sheet: Sheet, layout: Layout, *, bare: bool
+) -> None:
+    """Write title and facts above, and scale and version below."""
+    paper, mm = layout.paper, layout.mm
+
+    def write(x: float, y: float, words: str, **style: object) -> None:
+        figure.text(x / paper.width, y / paper.height, words, **style)  # type: ignore[arg-type]
+
+    if not bare:
+        level = paper.height - MARGIN
+        title = textwrap.shorten(sheet.title, int((paper.width - 2 * MARGIN) / 2.4))
+        write(MARGIN, level - 4, title, fontsize=12, weight="bold", color=INK)
+        level -= TITLE
+        for fact in sheet.facts:
+            for line in _wrapped(fact, paper):
+                level -= LINE
+                write(MARGIN, level + 2, line, color=QUIET, fontsize=SMALL)
+    length = round_length(45 * mm)
+    right = float(layout.high[0]) - layout.edge * mm
+    level = float(layout.low[1]) + layout.bar * mm
+    axes.plot([right - length, right], [level, level], color=INK, lw=1.2, marker="|", ms=6,
+              gid="scale")  # fmt: skip
+    axes.text(right - length / 2, level + 1.2 * mm, f"{length:g} m", ha="center", va="bottom",
+              color=INK, gid="scale-words")  # fmt: skip
+    on = f" on {paper.name}" if paper.name else ""
+    said = f"{scale_words(layout.scale)}{on}, true where printed at 100 %"
+    if not bare:
+        said += f" \N{MIDDLE DOT} blocksim {__version__}"
+    axes.text(right, level - 1.6 * mm, said, ha="right", va="top", color=QUIET,
+              fontsize=SMALLER, gid="scale-note")  # fmt: skip

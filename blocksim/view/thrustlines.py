@@ -1,0 +1,150 @@
+"""Lines of thrust of any structure: where forces cross joints, followed from block to block."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.problem import Problem
+from blocksim.limit import Margins, Thrust, margins, resultants, thrust_range
+from blocksim.limit.margins import crown
+
+STRONG = 1 + 1e-9
+"""Share of the joints' strength up to which blocks stand; more is lacking, not round-off."""
+FAINT = 1e-6
+"""Share of the largest force below which a joint carries nothing."""
+MEETING = 2
+"""Bodies that a block of a chain touches."""
+CHAINED = 0.75
+"""Share of such blocks from which on a structure has lines of thrust that can be read."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class States:
+    """The states of equilibrium that a drawing and a report show.
+
+    Parameters
+    ----------
+    margins : Margins
+        With the forces of the state of greatest margin.
+    joint : int or None
+        At which thrust is told.
+    least, greatest : Thrust or None
+        None where nothing balances the loads, or there is no such joint.
+    """
+
+    margins: Margins
+    joint: int | None
+    least: Thrust | None
+    greatest: Thrust | None
+
+    @property
+    def stands(self) -> bool:
+        """Whether joints have the strength that the safest state asks for."""
+        return self.margins.strength is not None and self.margins.strength <= STRONG
+
+
+def states_of(problem: Problem) -> States | None:
+    """Find the states of least and of greatest thrust, and that of greatest margin.
+
+    Returns
+    -------
+    States or None
+        None where gravity leans out of the plane, or the ground shakes: statics in the
+        plane do not tell what happens then.
+    """
+    if not problem.is_planar or problem.shaking is not None:
+        return None
+    joint = crown(problem)
+    ends = None if joint is None else thrust_range(problem, joint)
+    least, greatest = ends or (None, None)
+    return States(margins=margins(problem), joint=joint, least=least, greatest=greatest)
+
+
+def thrust_of(problem: Problem, forces: Array, joint: int) -> float:
+    """Horizontal part of the force through a joint, above 0 where it presses [N]."""
+    sense = math.copysign(1.0, problem.assembly.joint_arrays.normal[joint, 0])
+    return sense * float(resultants(problem, forces).force[joint, 0])
+
+
+def is_chained(problem: Problem) -> bool:
+    """Whether most blocks touch two bodies, as in an arch, on piers or not, or a column."""
+    assembly = problem.assembly
+    met: list[set[object]] = [set() for _ in assembly.blocks]
+    for index, joint in enumerate(assembly.joints):
+        ground = ("joint", index) if joint.support is None else ("support", joint.support)
+        sides = [ground if side == SUPPORT else side for side in (joint.before, joint.after)]
+        for mine, other in (sides, sides[::-1]):
+            if isinstance(mine, int):
+                met[mine].add(other)
+    return sum(len(each) <= MEETING for each in met) >= CHAINED * len(met)
+
+
+def thrust_lines(problem: Problem, forces: Array) -> list[Array]:
+    """Follow the force from joint to joint, through the points at which it crosses them.
+
+    A block on which several blocks lie hands what each of them brings on to all that
+    bear it.
+
+    Parameters
+    ----------
+    problem : Problem
+    forces : (joints, 2, 2) float
+        As of `Equilibrium` [mean weights].
+
+    Returns
+    -------
+    list of (k, 2) float
+        Open polylines [m].
+    """
+    carried = resultants(problem, forces)
+    size = np.hypot(*carried.force.T)
+    loaded = (size > FAINT * size.max(initial=0.0)) & ~np.isnan(carried.point[:, 0])
+    pull = problem.gravity[:2]
+    at: list[list[tuple[int, float]]] = [[] for _ in problem.assembly.blocks]
+    for index, joint in enumerate(problem.assembly.joints):
+        if loaded[index]:
+            down = float(carried.force[index] @ pull)
+            for block, sign in ((joint.before, -1.0), (joint.after, 1.0)):
+                if block != SUPPORT:
+                    at[block].append((index, sign * down))
+    links: dict[int, list[int]] = {}
+    through: dict[int, set[int]] = {}
+    for block, touching in enumerate(at):
+        brings = [joint for joint, down in touching if down > 0]
+        bears = [joint for joint, down in touching if down <= 0]
+        if len(touching) == MEETING:
+            brings, bears = [touching[0][0]], [touching[1][0]]
+        for one in brings:
+            for other in bears:
+                links.setdefault(one, []).append(other)
+                links.setdefault(other, []).append(one)
+                through.setdefault(one, set()).add(block)
+                through.setdefault(other, set()).add(block)
+    # A line goes on where it comes from one block and leads into another.
+    passed = {joint for joint in links if len(links[joint]) == len(through[joint]) == MEETING}
+    return [carried.point[path] for path in _paths(links, passed)]
+
+
+def _paths(links: dict[int, list[int]], passed: set[int]) -> list[list[int]]:
+    """Walk all links once, from where lines end or meet."""
+    left = {(one, other) for one, others in links.items() for other in others}
+    # What ends or meets comes first, and rings, which have no such place, last.
+    starts = sorted(links, key=lambda joint: (joint in passed, joint))
+    paths: list[list[int]] = []
+    for start in starts:
+        for step in links[start]:
+            here, ahead, path = start, step, [start]
+            while (here, ahead) in left:
+                left -= {(here, ahead), (ahead, here)}
+                path.append(ahead)
+                further = [each for each in links[ahead] if (ahead, each) in left]
+                if ahead not in passed or not further:
+                    break
+                here, ahead = ahead, further[0]
+            if len(path) > 1:
+                paths.append(path)
+    return paths

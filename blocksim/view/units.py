@@ -1,0 +1,92 @@
+"""Lengths and forces in words: metres, and kilonewtons over the depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.arch.circular import arch_of
+from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.kinds.files import density_of, kind_behind
+
+KILO = 1e3
+NOT_GIVEN = (0.8, 1.25)
+"""Unit weights that are the 1 N/m3 of files without any: true ones are thousands [N/m^3]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceUnit:
+    """In what forces are told.
+
+    Parameters
+    ----------
+    newtons : float
+        One unit, in N: of a force over the depth times the depth.
+    name : str
+        kN/m, or kN where blocks differ in depth; N/m or N where forces are small.
+    note : str
+        What has to be known of it; empty where nothing has.
+    """
+
+    newtons: float
+    name: str
+    note: str = ""
+
+    def number(self, newtons: float) -> str:
+        """Return a force of so many newtons without its unit."""
+        return number(newtons / self.newtons)
+
+    def words(self, newtons: float) -> str:
+        """Return a force of so many newtons with its unit."""
+        return f"{self.number(newtons)} {self.name}"
+
+
+def force_unit(problem: Problem) -> ForceUnit:
+    """Choose in what the forces of a problem are told."""
+    depths = problem.assembly.depths * problem.assembly.size
+    common = float(np.ptp(depths)) <= 1e-9 * float(depths.max())
+    over, per = (float(depths[0]), "/m") if common else (1.0, "")
+    if unit_weight(problem) is None:
+        note = "weights are for 1 N/m\N{SUPERSCRIPT THREE}: no unit weight was given"
+        return ForceUnit(newtons=over, name=f"N{per}", note=note)
+    heavy = problem.unit_force * len(problem.assembly.blocks) / over >= KILO
+    return ForceUnit(newtons=over * (KILO if heavy else 1.0), name=f"{'k' * heavy}N{per}")
+
+
+def unit_weight(problem: Problem) -> float | None:
+    """Return the unit weight of the blocks [N/m^3].
+
+    The median, where blocks differ; None where none was given.
+    """
+    arch, kind = arch_of(problem), kind_behind(problem)
+    if arch is not None:
+        return arch.specific_weight
+    low, high = NOT_GIVEN
+    if kind is not None:
+        density = density_of(problem)
+        return None if low <= density <= high else density
+    weights = [
+        block.mass
+        * STANDARD_GRAVITY
+        / (sum(abs(signed_area(part)) for part in block.polygons) * block.depth)
+        for block in problem.assembly.blocks
+    ]
+    middle = float(np.median(weights))
+    return None if low <= middle <= high else middle
+
+
+def number(value: float) -> str:
+    """Return a number in four digits, without an exponent."""
+    size = abs(value)
+    if size >= KILO:
+        return f"{value:.0f}"
+    if size < 1e-9:
+        return "0"
+    return f"{value:#.4g}".rstrip(".") if size >= 1e-3 else f"{value:.3g}"
+
+
+def length_words(metres: float) -> str:
+    """Return a length, to the millimetre where it is one of buildings."""
+    return f"{metres:.3f} m" if metres >= 0.1 else f"{metres:.4g} m"

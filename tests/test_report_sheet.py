@@ -1,0 +1,306 @@
+"""The report on one structure: what it says is true, is escaped, and fits the page."""
+
+from __future__ import annotations
+
+import html
+import json
+import math
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from running import inside
+
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit import least_thickness
+from blocksim.limit import margins, reactions, thrust_range
+from blocksim.limit.margins import crown
+
+ASKED = ("--span", "8", "--rise", "3", "--thickness", "0.45", "--voussoirs", "31")
+FRICTION = ("--friction-angle", "35")
+EVIL = '<script>alert("1")</script> & "wall"'
+PUSHED = {
+    "title": EVIL,
+    "source": "<b>nowhere</b>",
+    "friction": 0.6,
+    "density": 24000.0,
+    "blocks": [
+        {"id": "ground", "vertices": [[-2, -1], [4, -1], [4, 0], [-2, 0]], "fixed": True},
+        {"id": "<i>low</i>", "vertices": [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]},
+        {"id": "top", "vertices": [[0, 0.5], [1, 0.5], [1, 2.5], [0, 2.5]]},
+    ],
+    "live": [{"block": "top", "point": [0, 2.5], "force": [1000, 0]}],
+}
+INNER = (8**2 / 4 + 3**2) / 6
+
+
+@cache
+def engineers() -> Arch:
+    radius = INNER + 0.225
+    return Arch(
+        half_angle=math.asin(4 / INNER),
+        eta=0.45 / radius,
+        voussoirs=31,
+        weight="sector",
+        radius=radius,
+    )
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("reports")
+    (folder / "pushed.json").write_text(json.dumps(PUSHED))
+    for name, asked, code in (
+        ("arch", (*ASKED, *FRICTION), 0),
+        ("thin", (*ASKED, *FRICTION, "--thickness", "0.2"), 1),
+        ("pushed", (str(folder / "pushed.json"), "--method", "direct"), 0),
+        ("wall", ("wall", "--mu", "0.6"), 0),
+        ("road", (*ASKED, *FRICTION, "--fill", "0.5", "--point-load", "1", "20"), 0),
+    ):
+        found = inside("report", *asked, "--out", str(folder / f"{name}.html"))
+        assert found.returncode == code, found.stderr
+    return folder
+
+
+def rows_of(page: Path) -> dict[str, str]:
+    """First cell of each row, and the others as text."""
+    found: dict[str, str] = {}
+    for row in re.findall(r"<tr[^>]*>(.*?)</tr>", page.read_text(encoding="utf-8"), re.DOTALL):
+        cells = re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.DOTALL)
+        plain = [html.unescape(re.sub(r"<[^>]+>", "", each)).strip() for each in cells]
+        if plain[0] in found:
+            plain[0] += " again"
+        found[plain[0]] = " | ".join(plain[1:])
+    return found
+
+
+def value(text: str) -> float:
+    match = re.search(r"-?\d+\.?\d*", text)
+    assert match is not None
+    return float(match[0])
+
+
+def test_figures_of_an_arch_are_those_of_limit_analysis(pages: Path) -> None:
+    said = rows_of(pages / "arch.html")
+    arch, mu = engineers(), math.tan(math.radians(35))
+    problem = arch.problem(mu)
+    assert said["span"] == "8.000 m | intrados"
+    assert said["rise"] == "3.000 m | intrados"
+    assert said["thickness"].startswith("0.450 m")
+    assert said["friction coefficient"] == f"μ = {mu:.4g} | friction angle 35°"
+    assert said["by limit analysis"].startswith("stands")
+    # The whole weight, from the area of the sector.
+    weight = 20 * 0.45 * arch.radius * 2 * arch.half_angle
+    assert value(said["weight of all blocks"]) == pytest.approx(weight, rel=5e-4)
+    built = least_thickness(arch.half_angle, mu, 31, "sector").eta
+    assert built is not None
+    assert value(said["least thickness"]) == pytest.approx(built * arch.radius, abs=5e-4)
+    needed = margins(problem)
+    assert needed.width is not None
+    assert value(said["geometrical factor of safety"]) == pytest.approx(
+        1 / needed.width, rel=1e-4
+    )
+    joint = crown(problem)
+    assert joint is not None
+    ends = thrust_range(problem, joint)
+    assert ends is not None
+    unit = problem.unit_force / 1e3
+    assert value(said["least thrust"]) == pytest.approx(ends[0].thrust * unit, rel=5e-4)
+    assert value(said["greatest thrust"]) == pytest.approx(ends[1].thrust * unit, rel=5e-4)
+    assert "kN/m" in said["least thrust"]
+    # Each support bears half the weight in every state, and the thrust.
+    left = [float(each) for each in said["support 1"].split(" | ")]
+    assert left[1::2] == pytest.approx([weight / 2] * 3, rel=5e-4)
+    across = [ends[0].thrust * unit, ends[1].thrust * unit]
+    assert left[0:4:2] == pytest.approx(across, rel=5e-4)
+    assert needed.forces is not None
+    bears = reactions(problem, needed.forces)[0]
+    assert left[4] == pytest.approx(bears.force[0] / 1e3, rel=5e-4)
+
+
+def test_every_joint_is_in_the_table(pages: Path) -> None:
+    said = rows_of(pages / "arch.html")
+    joints = [name for name in said if re.fullmatch(r"(support|\d+)-(support|\d+)", name)]
+    assert len(joints) == 32
+    springing = said["support-0"].split(" | ")
+    # Square to the springing: H sin alpha + V cos alpha by hand, of the safest state.
+    left = [float(each) for each in said["support 1"].split(" | ")]
+    alpha = engineers().half_angle
+    normal = left[4] * math.cos(alpha) + left[5] * math.sin(alpha)
+    assert float(springing[0]) == pytest.approx(normal, rel=5e-4)
+    # Eccentricity in mm over half the thickness is the share of width.
+    assert value(springing[3]) == pytest.approx(100 * abs(value(springing[2])) / 225, abs=0.4)
+    text = (pages / "arch.html").read_text(encoding="utf-8")
+    assert text.count('class="worst"') == 1
+
+
+def test_what_falls_says_how_and_carries_nothing(pages: Path) -> None:
+    text = (pages / "thin.html").read_text(encoding="utf-8")
+    said = rows_of(pages / "thin.html")
+    assert said["by limit analysis"].startswith("collapses")
+    assert "It falls in mode <b>rrr</b>" in text
+    assert 'id="mechanism"' in text
+    assert "how it starts to fall, by limit, enlarged" in text
+    assert 'id="joints"' not in text
+    assert "support 1" not in said
+    assert value(said["geometrical factor of safety"]) < 1
+
+
+def test_loads_and_the_method_asked_for(pages: Path) -> None:
+    said = rows_of(pages / "pushed.html")
+    text = (pages / "pushed.html").read_text(encoding="utf-8")
+    assert said["by limit analysis"].startswith("stands")
+    assert said["by direct"].startswith("stands")
+    # The upper block, 48 kN on 1 m of base and 2 m tall, tips about its edge.
+    assert value(said["load factor"]) == pytest.approx(48 * 0.5 / 2.0, rel=1e-5)
+    assert "1 live load, not on it: the load factor is 0." in text
+    assert "how it would start to fall at load factor 12" in text
+    assert value(said["unit weight"]) == pytest.approx(24.0)
+
+
+def test_supports_bear_blocks_fill_and_loads(pages: Path) -> None:
+    """The fill by hand: 20 kN/m3 below a level 0.5 m over the extrados, above it."""
+    said = rows_of(pages / "road.html")
+    assert said["unit weight"].startswith("20 kN/m")
+    borne = [float(said[name].split(" | ")[1]) for name in ("left", "right")]
+    outer = INNER + 0.45
+    reach = outer * 4 / INNER
+    level = outer + 0.5
+    circle = outer**2 * math.asin(reach / outer) + reach * math.sqrt(outer**2 - reach**2)
+    fill = 20 * (2 * reach * level - circle)
+    assert value(said["dead loads"]) == pytest.approx(fill, rel=1e-3)
+    assert said["live loads"] == "20.00 kN/m | together, times 1, the load factor"
+    weight = value(said["weight of all blocks"])
+    assert sum(borne) == pytest.approx(weight + fill + 20, rel=1e-3)
+
+
+def test_weights_that_were_not_given_are_no_kilonewtons(pages: Path) -> None:
+    text = (pages / "wall.html").read_text(encoding="utf-8")
+    assert "weights are for 1 N/m³: no unit weight was given" in text
+    assert "kN" not in re.sub(r"<style>.*?</style>|<svg.*?</svg>", "", text, flags=re.DOTALL)
+
+
+def test_names_are_escaped_and_nothing_is_loaded(pages: Path) -> None:
+    for page in pages.glob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert not re.search(r'(?:src|href)\s*=\s*"(?!#)', text)
+        assert "@import" not in text
+        assert "url(http" not in text
+        assert "default-src 'none'" in text
+    text = (pages / "pushed.html").read_text(encoding="utf-8")
+    assert "alert(" in text
+    assert "<script>alert" not in text
+    assert "<b>nowhere" not in text
+    assert "<i>low" not in text
+    assert "blocksim report" in html.unescape(text)
+
+
+def test_a_thickness_that_was_not_given_is_told(tmp_path: Path) -> None:
+    out = tmp_path / "semicircle.html"
+    assert inside("report", "semicircle", "--out", str(out)).returncode == 1
+    because = rows_of(out)["by limit analysis"]
+    assert "no thickness was given, so it is 0.99 of the least as built" in because
+
+
+def test_wrong_input_is_one_line(tmp_path: Path) -> None:
+    for asked, words in (
+        (("semicircle", "--eta", "0.12", "--out", str(tmp_path / "x.pdf")), "ending in .html"),
+        (("--alpha", "90", "--mu", "0.7", "--out", str(tmp_path / "x.html")), "--eta"),
+        (("semicircle", "--eta", "0.12"), "--out"),
+        (
+            (
+                "semicircle",
+                "--eta",
+                "0.12",
+                "--method",
+                "theory",
+                "--out",
+                str(tmp_path / "x.html"),
+            ),
+            "of the blocks as built",
+        ),
+    ):
+        found = inside("report", *asked)
+        assert found.returncode == 2
+        assert words in found.stderr
+        assert found.stderr.count("\n") == 1
+    assert not [*tmp_path.iterdir()]
+
+
+PAPER = (182, 273)
+"""What is printed on of A4, less the margins of the page [mm]."""
+MM = 96 / 25.4
+
+
+@pytest.mark.parametrize("name", ["arch", "thin", "pushed", "wall", "road"])
+def test_it_fits_the_paper(browser: Any, pages: Path, name: str) -> None:
+    page = browser.new_page(viewport={"width": round(PAPER[0] * MM), "height": 900})
+    try:
+        page.goto((pages / f"{name}.html").as_uri())
+        page.emulate_media(media="print", color_scheme="dark")
+        over = page.evaluate("""() => [...document.querySelectorAll("body *")].filter((each) =>
+          each.getBoundingClientRect().right > innerWidth + 1 && !each.closest("svg")
+          && !each.closest(".unseen")).length""")
+        assert over == 0
+        # The drawing is as wide as it says: its scale is true.
+        box = page.locator("svg.sheet").bounding_box()
+        assert box["width"] == pytest.approx(PAPER[0] * MM, abs=1.0)
+        tall = "e => e.viewBox.baseVal.height / e.viewBox.baseVal.width"
+        share = page.locator("svg.sheet").evaluate(tall)
+        assert box["height"] == pytest.approx(share * box["width"], abs=1.0)
+        # What may not be cut is no taller than a page.
+        heights = page.evaluate("""() => [...document.querySelectorAll(
+          "table, figure, section:not(#joints)")].map((each) =>
+          each.getBoundingClientRect().height)""")
+        assert max(heights) < PAPER[1] * MM
+        ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        assert ground == "rgb(255, 255, 255)"
+        assert not page.locator(".controls").first.is_visible()
+        printed = page.pdf(prefer_css_page_size=True, print_background=True)
+        assert b"/MediaBox [0 0 594" in printed or b"/MediaBox [0 0 595" in printed
+        assert len(re.findall(rb"/Type /Page\b", printed)) <= 2
+    finally:
+        page.close()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_moves_and_can_be_seen_on_a_screen(browser: Any, pages: Path, scheme: str) -> None:
+    page = browser.new_page(viewport={"width": 1100, "height": 900}, color_scheme=scheme)
+    asked: list[str] = []
+    complaints: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    try:
+        page.goto((pages / "thin.html").as_uri())
+        slider = page.locator("#mechanism input")
+        piece = page.locator("#mechanism .piece").nth(15)
+        slider.fill("0")
+        assert piece.get_attribute("transform").startswith("translate(0 0) rotate(0 ")
+        slider.fill("1")
+        assert not piece.get_attribute("transform").startswith("translate(0 0)")
+        colours = page.evaluate("""() => ["body", "svg.sheet"].map((each) =>
+          getComputedStyle(document.querySelector(each)).backgroundColor)""")
+        for each in colours:
+            light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
+            assert (light > 0.5) is (scheme == "light")
+        inks = page.evaluate("""() => [...document.querySelectorAll("svg.sheet [id^=text] use")]
+          .map((each) => getComputedStyle(each).fill)""")
+        assert len(inks) > 20
+        for each in inks:
+            light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
+            assert (light < 0.5) is (scheme == "light")
+        hatched = page.evaluate("""() =>
+          [...document.querySelectorAll("svg.sheet pattern rect")].map((each) =>
+          getComputedStyle(each).fill)""")
+        assert hatched
+        assert hatched
+        for each in hatched:
+            light = sum(int(part) for part in re.findall(r"\d+", each)[:3]) / 765
+            assert (light > 0.5) is (scheme == "light")
+        assert complaints == []
+        assert [each for each in asked if not each.startswith("file:")] == []
+    finally:
+        page.close()
