@@ -29,7 +29,8 @@ from blocksim.kinds.files import structure_of as kind_of
 from blocksim.view.drawing import save_figure
 from blocksim.view.sheet import A4, Sheet, scale_for, scale_words, sheet_of
 from blocksim.view.sheetdxf import LAYERS, outline, write_dxf
-from blocksim.view.sheetfigure import Layout, sheet_figure
+from blocksim.view.sheetfigure import sheet_figure
+from blocksim.view.sheetlayout import Layout
 from blocksim.view.thrustlines import is_chained, states_of, thrust_lines
 from blocksim.view.units import force_unit
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 import textwrap
-from dataclasses import dataclass, field
 from typing import Any
 
 import matplotlib as mpl
@@ -24,7 +23,8 @@ from blocksim.common.version import __version__
 from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
 from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
 from blocksim.view.drawing import round_length
-from blocksim.view.sheet import A4, Paper, Sheet, scale_for, scale_words
+from blocksim.view.sheet import Sheet, scale_words
+from blocksim.view.sheetlayout import COLUMNS, LINE, MARGIN, TITLE, Layout, layout_of, wrapped
 from blocksim.view.structure import (
     draw_blocks,
     draw_mechanism,
@@ -36,82 +36,18 @@ from blocksim.view.style import FONT, FRICTION, INK, MODES, QUIET, THRUST
 
 INCH = 25.4
 """In millimetres."""
-MARGIN, NARROW = 12.0, 2.0
-"""Around the page, and around what is put into a page [mm]."""
-WIDE, COLUMNS = 250.0, 2
-"""Width of a page that has room for a scale beside the legend [mm], and its columns."""
-SIDE, ABOVE, BELOW, BARE = 22.0, 14.0, 24.0, 5.0
-"""Room for dimensions beside and above what is drawn, for reactions below it; for nothing."""
-LINE, TITLE = 4.2, 8.0
-"""Height of a line of words, and of the title."""
 REACTION = 14.0
 """Length of the arrow of the largest reaction [mm]."""
-LETTER = 1.62
-"""Width of a letter of the facts [mm]."""
 LONG = 26.0
 """Dimension lines from which on words stand along them [mm]."""
 SMALL, SMALLER = 8.0, 7.5
 """Sizes of letters [points]."""
-CLEAR = {"fc": "white", "ec": "none", "pad": 0.5, "alpha": 0.8}
-"""Behind words, lest lines cross them."""
-STEP, TRIES = 1.5, 12
-"""Words are moved out of the way of others by so much [mm], so many times at most."""
 LINES = {
     "min": (FRICTION, (0, (6, 2))),
     "max": (MODES[Mode.RS].colour, (0, (6, 1.6, 1.2, 1.6))),
     "safest": (THRUST, "-"),
 }
 """Colour and dashes of each line of thrust."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Layout:
-    """Where what is drawn lies on the page, and words that have their place on it.
-
-    Parameters
-    ----------
-    paper : Paper
-    scale : float
-        A millimetre on paper is so many millimetres.
-    low : (2,) float
-        What lies at the lower left corner of the page [m].
-    edge, bar : float
-        Width of the margin, and height of the scale's bar above the page's lower edge [mm].
-    words : list of Bbox
-        Boxes of the words so far, in dots.
-    """
-
-    paper: Paper
-    scale: float
-    low: Array
-    edge: float
-    bar: float
-    words: list[Bbox] = field(default_factory=list[Bbox])
-
-    @property
-    def mm(self) -> float:
-        """Metres that a millimetre on paper is."""
-        return self.scale / 1e3
-
-    @property
-    def high(self) -> Array:
-        """What lies at the upper right corner [m]."""
-        return self.low + np.array([self.paper.width, self.paper.height]) * self.mm
-
-    def write(
-        self, axes: Axes, at: Array, words: str, away: tuple[float, float], **style: Any
-    ) -> None:
-        """Write words at a place [m], or as far away from it as others leave free."""
-        looks: dict[str, Any] = {"color": INK, "zorder": 10, "bbox": dict(CLEAR)}
-        text = axes.text(float(at[0]), float(at[1]), words, **{**looks, **style})
-        step = STEP * self.mm * np.asarray(away)
-        for _ in range(TRIES):
-            box = text.get_window_extent()
-            if not any(box.overlaps(other) for other in self.words):
-                break
-            at = at + step
-            text.set_position((float(at[0]), float(at[1])))
-        self.words.append(text.get_window_extent())
 
 
 def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> Figure:
@@ -159,7 +95,7 @@ def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> 
         points = np.concatenate(shown)
         low, high = points.min(axis=0), points.max(axis=0)
         entries = _entries(axes)
-        layout = _layout(sheet, low, high, len(entries), column)
+        layout = layout_of(sheet, low, high, len(entries), column)
         figure.set_size_inches(layout.paper.width / INCH, layout.paper.height / INCH)
         axes.set_xlim(float(layout.low[0]), float(layout.high[0]))
         axes.set_ylim(float(layout.low[1]), float(layout.high[1]))
@@ -184,48 +120,6 @@ def _entries(axes: Axes) -> dict[str, Patch | Line2D]:
     """Legend of what is there, each once."""
     handles, names = axes.get_legend_handles_labels()
     return dict(zip(names, handles, strict=True))  # type: ignore[arg-type]
-
-
-def _layout(
-    sheet: Sheet,
-    low: Array,
-    high: Array,
-    entries: int,
-    column: tuple[float, float] | None,
-) -> Layout:
-    """Choose paper and scale so that all has room, and lay the drawing in the middle of it."""
-    above, below = ABOVE, BELOW if sheet.reactions else BARE + SIDE / 2
-    edge = MARGIN if column is None else NARROW
-    tries: list[Layout] = []
-    for paper in A4 if column is None else (Paper("", *column),):
-        tall = paper.height
-        rows = max(LINE * math.ceil(entries / COLUMNS), 2 * LINE)
-        # Where the legend may be as wide as the page, the scale stands above it.
-        bar = edge + (LINE if paper.width > WIDE else rows + LINE)
-        foot = max(edge + rows, bar + LINE) + 2
-        lines = sum(len(_wrapped(fact, paper)) for fact in sheet.facts)
-        head = edge + TITLE + LINE * lines + 2 if column is None else 0.0
-        room = np.array([paper.width - 2 * (edge + SIDE), tall - head - foot - above - below])
-        scale = scale_for(high - low, room)
-        drawn = 1e3 * (high - low) / scale
-        if column is not None:
-            tall -= float(room[1] - drawn[1])
-            room[1] = drawn[1]
-        corner = np.array([edge + SIDE, foot + below]) + (room - drawn) / 2
-        tries.append(
-            Layout(
-                paper=Paper(paper.name, paper.width, tall),
-                scale=scale,
-                low=low - corner * scale / 1e3,
-                edge=edge,
-                bar=bar,
-            )
-        )
-    return min(tries, key=lambda each: each.scale)
-
-
-def _wrapped(words: str, paper: Paper) -> list[str]:
-    return textwrap.wrap(words, int((paper.width - 2 * MARGIN) / LETTER))
 
 
 def _draw_line(axes: Axes, name: str, words: str, paths: tuple[Array, ...]) -> None:
@@ -363,7 +257,7 @@ def _draw_words(
         write(MARGIN, level - 4, title, fontsize=12, weight="bold", color=INK)
         level -= TITLE
         for fact in sheet.facts:
-            for line in _wrapped(fact, paper):
+            for line in wrapped(fact, paper):
                 level -= LINE
                 write(MARGIN, level + 2, line, color=QUIET, fontsize=SMALL)
     length = round_length(45 * mm)
