@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from running import inside
 
+from blocksim.arch.carried import carried_of
 from blocksim.arch.circular import Arch
 from blocksim.ask.check import check
 from blocksim.blocks.assembly import Array
@@ -31,7 +32,7 @@ from blocksim.view.sheet import A4, Sheet, scale_for, scale_words, sheet_of
 from blocksim.view.sheetdxf import LAYERS, outline, write_dxf
 from blocksim.view.sheetfigure import sheet_figure
 from blocksim.view.sheetlayout import Layout
-from blocksim.view.thrustlines import is_chained, states_of, thrust_lines
+from blocksim.view.thrustlines import is_chained, thrust_lines
 from blocksim.view.units import force_unit
 
 SPAN, RISE, THICK = 8.0, 3.0, 0.45
@@ -125,12 +126,12 @@ def test_every_voussoir_is_in_balance_along_a_line_of_thrust(name: str) -> None:
     # From areas of sectors, not from the code: gamma t r d 2 alpha/n.
     radius = INNER + THICK / 2
     weight = 20_000.0 * THICK * radius * 2 * math.asin(SPAN / 2 / INNER) / count
-    states = sheet.states
-    assert states is not None
+    carried = sheet.carried
+    assert carried is not None
     (words,) = [
         each for each in legend(figure) if each.startswith(f"line of thrust: {SAID[name]}")
     ]
-    across = {"min": states.least, "max": states.greatest}.get(name)
+    across = {"min": carried.least, "max": carried.greatest}.get(name)
     told = float(re.findall(r"([\d.]+) kN/m", words)[0])
     thrust = told * 1e3 if across is None else across.thrust * problem.unit_force
     assert thrust == pytest.approx(told * 1e3, rel=2e-4)
@@ -164,9 +165,9 @@ def test_lines_of_least_and_greatest_thrust_touch_the_edges_and_the_safest_does_
     assert far["min"].min() == pytest.approx(INNER, abs=1e-6)
     assert far["max"].min() == pytest.approx(INNER, abs=1e-6)
     assert far["max"][0] == far["max"].max() == pytest.approx(outer, abs=1e-6)
-    assert sheet.states is not None
+    assert sheet.carried is not None
     used = 2 * np.abs(far["safest"] - INNER - THICK / 2).max() / THICK
-    assert used == pytest.approx(sheet.states.margins.strength, abs=1e-6)
+    assert used == pytest.approx(sheet.carried.strength_used, abs=1e-6)
 
 
 def test_dimensions_are_those_it_was_built_with() -> None:
@@ -196,13 +197,13 @@ def test_reactions_bear_the_weight_and_the_thrust() -> None:
     (words,) = [each for each in legend(figure) if "greatest margin, " in each]
     assert f"{across:.2f} kN/m" in words
     (told,) = [each for each in texts(figure) if each.startswith("thrust ")]
-    assert sheet.states is not None
-    assert sheet.states.least is not None
-    assert sheet.states.greatest is not None
+    assert sheet.carried is not None
+    assert sheet.carried.least is not None
+    assert sheet.carried.greatest is not None
     unit = sheet.problem.unit_force / 1e3
     low, high = re.findall(r"[\d.]+\d", told)
-    assert float(low) == pytest.approx(sheet.states.least.thrust * unit, rel=2e-4)
-    assert float(high) == pytest.approx(sheet.states.greatest.thrust * unit, rel=2e-4)
+    assert float(low) == pytest.approx(sheet.carried.least.thrust * unit, rel=2e-4)
+    assert float(high) == pytest.approx(sheet.carried.greatest.thrust * unit, rel=2e-4)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -313,7 +314,7 @@ def test_lines_meet_in_the_pier_between_two_arches() -> None:
 
 def test_what_leans_has_no_statics_in_the_plane() -> None:
     problem = CASES["portal"]().leaning(0.1)
-    assert states_of(problem) is None
+    assert carried_of(problem) is None
     figure = sheet_figure(sheet_of(problem))
     assert legend(figure) == {"support"}
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from blocksim.arch.circular import Arch
+from blocksim.arch.circular import Arch, arch_of
 from blocksim.arch.limit.statics import (
     Bound,
     half_joints,
@@ -16,8 +16,10 @@ from blocksim.arch.limit.statics import (
     spread_of,
     thrust_bounds,
 )
-from blocksim.ask.carried import Carried, inverse
+from blocksim.ask.carried import Carried, carried_by, inverse
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.limit import Thrust
 
 
 def carried_by_arch(arch: Arch, mu: float, joint: int | None = None) -> Carried:
@@ -39,9 +41,17 @@ def carried_by_arch(arch: Arch, mu: float, joint: int | None = None) -> Carried:
     least = least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight).eta
     needed = least_friction(arch)
     used = 1 - slack(arch, mu)
+    # Of h, in mean weights.
     unit = arch.specific_weight * arch.thickness * arch.depth * arch.radius
+    unit /= problem.unit_force
     lower, upper = _bounds(arch, mu, 1.0)
-    stands = lower.short >= upper.short
+    least_thrust = greatest = None
+    if lower.short >= upper.short:
+        least_thrust, greatest = (_thrust(arch, end.thrust, unit) for end in (lower, upper))
+    safest = None
+    if math.isfinite(used):
+        most = _bounds(arch, mu, used)
+        safest = unit * joint_forces(arch, (most[0].thrust + most[1].thrust) / 2, used)
     return Carried(
         problem=problem,
         geometrical_factor=inverse(None if least is None else least / arch.eta),
@@ -49,18 +59,51 @@ def carried_by_arch(arch: Arch, mu: float, joint: int | None = None) -> Carried:
         least_friction=needed,
         strength_used=used if math.isfinite(used) else None,
         joint=(arch.voussoirs + 1) // 2 if joint is None else joint,
-        thrust=(lower.thrust * unit, upper.thrust * unit) if stands else None,
-        forces=joint_forces(arch, mu, used) * (unit / problem.unit_force) if stands else None,
+        least=least_thrust,
+        greatest=greatest,
+        forces=safest,
     )
 
 
-def joint_forces(arch: Arch, mu: float, share: float = 1.0) -> Array:
-    """Return forces at the ends of joints, (n + 1, 2, 2), in units of gamma t d r.
+def _thrust(arch: Arch, thrust: float, unit: float) -> Thrust:
+    """Return a thrust h in a unit of force, with its forces; a flat arch bears any."""
+    if math.isinf(thrust):
+        return Thrust(thrust=thrust, forces=None)
+    return Thrust(thrust=thrust * unit, forces=unit * joint_forces(arch, thrust))
 
-    Those of equilibrium that are in the middle of what a share of width and friction allows.
+
+def carried_of(problem: Problem) -> Carried | None:
+    """Find what anything carries, an arch under its own weight by its own statics.
+
+    None where gravity leans out of the plane, or the ground shakes: statics in the plane do
+    not tell what happens then.
     """
-    lower, upper = _bounds(arch, mu, share)
-    thrust = (lower.thrust + upper.thrust) / 2
+    if not problem.is_planar or problem.shaking is not None:
+        return None
+    arch = arch_of(problem)
+    if arch is not None and is_plain_arch(problem):
+        return carried_by_arch(arch, problem.mu)
+    return carried_by(problem)
+
+
+def is_plain_arch(problem: Problem) -> bool:
+    """Whether a problem is an arch under its own weight, upright, its joints all alike."""
+    upright = not problem.gravity[0] and not problem.gravity[2]
+    alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
+    return arch_of(problem) is not None and upright and alike and not problem.is_loaded
+
+
+def joint_forces(arch: Arch, thrust: float, share: float = 1.0) -> Array:
+    """Return forces at the ends of joints under a thrust h.
+
+    Of all lines of thrust with that thrust it is the middle one of those that a share of the
+    width contains.
+
+    Returns
+    -------
+    (n + 1, 2, 2) float
+        Along normal and tangent, in units of gamma t d r.
+    """
     angle, size = arch.joint_angles, np.abs(arch.joint_angles)
     normal = thrust * np.cos(size) + size * np.sin(size)
     shear = thrust * np.sin(angle) - angle * np.cos(angle)

@@ -12,6 +12,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.limit import (
     Reaction,
     Resultants,
+    Thrust,
     margins,
     reactions,
     resultants,
@@ -19,6 +20,8 @@ from blocksim.limit import (
 )
 from blocksim.limit.margins import crown
 
+STRONG = 1 + 1e-9
+"""Share of strength up to which a structure stands; beyond, more than round-off is lacking."""
 ALIKE = 1e-6
 """Share by which joints may differ in use that are used alike."""
 
@@ -45,11 +48,13 @@ class Carried:
         equilibrium needs; above 1 where the structure falls.
     joint : int or None
         Where thrust is told.
-    thrust : (float, float) or None
-        Least and greatest thrust there [N]; the greatest may be inf. None where there is no
-        such joint or no equilibrium.
+    least, greatest : Thrust or None
+        The states of least and of greatest thrust there; None where there is no such joint or
+        no equilibrium.
     forces : (joints, 2, 2) float or None
-        Of the safest state, as of `blocksim.limit.Equilibrium`; None where it falls.
+        Of the safest state, as of `blocksim.limit.Equilibrium`. Where the structure falls they
+        are those that lack least strength, and no forces of equilibrium; None where there are
+        none either.
     """
 
     problem: Problem
@@ -58,18 +63,36 @@ class Carried:
     least_friction: float | None
     strength_used: float | None
     joint: int | None
-    thrust: tuple[float, float] | None
+    least: Thrust | None
+    greatest: Thrust | None
     forces: Array | None
 
     @property
+    def stands(self) -> bool:
+        """Whether joints have the strength that the safest state asks for."""
+        return self.strength_used is not None and self.strength_used <= STRONG
+
+    @property
+    def thrust(self) -> tuple[float, float] | None:
+        """Least and greatest thrust [N]; the greatest may be inf."""
+        if self.least is None or self.greatest is None:
+            return None
+        unit = self.problem.unit_force
+        return self.least.thrust * unit, self.greatest.thrust * unit
+
+    @property
     def resultants(self) -> Resultants | None:
-        """What each joint carries in the safest state."""
-        return None if self.forces is None else resultants(self.problem, self.forces)
+        """What each joint carries in the safest state; None where it falls."""
+        if self.forces is None or not self.stands:
+            return None
+        return resultants(self.problem, self.forces)
 
     @property
     def reactions(self) -> tuple[Reaction, ...]:
-        """What the supports bear in the safest state."""
-        return () if self.forces is None else reactions(self.problem, self.forces)
+        """What the supports bear in the safest state; nothing where it falls."""
+        if self.forces is None or not self.stands:
+            return ()
+        return reactions(self.problem, self.forces)
 
     @property
     def worst_joints(self) -> tuple[int, ...]:
@@ -108,8 +131,7 @@ def carried_by(problem: Problem, joint: int | None = None) -> Carried:
     found = margins(problem)
     joint = crown(problem) if joint is None else joint
     ends = None if joint is None else thrust_range(problem, joint)
-    unit = problem.unit_force
-    falls = found.strength is None or found.strength > 1
+    least_thrust, greatest = ends or (None, None)
     mu = set(problem.friction.tolist())
     least = found.friction if len(mu) == 1 else None
     if least is not None and math.isfinite(problem.mu):
@@ -121,8 +143,9 @@ def carried_by(problem: Problem, joint: int | None = None) -> Carried:
         least_friction=least,
         strength_used=found.strength,
         joint=joint,
-        thrust=None if ends is None else (ends[0].thrust * unit, ends[1].thrust * unit),
-        forces=None if falls else found.forces,
+        least=least_thrust,
+        greatest=greatest,
+        forces=found.forces,
     )
 
 

@@ -9,17 +9,18 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.arch import limit, theory
+from blocksim.arch.carried import is_plain_arch
 from blocksim.arch.circular import arch_of
 from blocksim.arch.structure import arch_behind
+from blocksim.ask.carried import Carried
 from blocksim.ask.check import ProblemCheck
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
-from blocksim.limit import Reaction, reactions, resultants
+from blocksim.limit import reactions, resultants
 from blocksim.report.structures import joint_names, tilt_and_lean
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
-from blocksim.view.sheet import LARGEST, Sheet, at_joints, geometrical_factor
-from blocksim.view.thrustlines import States, is_chained, thrust_of
+from blocksim.view.sheet import LARGEST, Sheet
+from blocksim.view.thrustlines import is_chained, thrust_of
 from blocksim.view.units import ForceUnit, length_words, unit_weight
 
 MOST = 60
@@ -144,42 +145,43 @@ def assumptions(problem: Problem) -> list[str]:
 
 def factor_facts(answer: ProblemCheck, sheet: Sheet) -> list[Fact]:
     """Tell how far it is from falling."""
-    problem, states = answer.problem, sheet.states
+    problem, carried = answer.problem, sheet.carried
     facts: list[Fact] = []
-    if states is not None:
-        facts += _margin_facts(problem, states)
+    if carried is not None:
+        facts += _margin_facts(problem, carried)
     if answer.load_factor is not None:
         at = f"asked at {problem.load:g}; " if problem.load else ""
         value = "∞" if math.isinf(answer.load_factor) else f"{answer.load_factor:.6g}"
         facts.append(Fact("load factor", value, f"{at}largest factor on the live loads"))
     arch = arch_of(problem)
-    if arch is not None and not problem.is_loaded and states is not None:
+    if arch is not None and is_plain_arch(problem) and carried is not None:
         facts += _least_facts(problem)
     return facts
 
 
-def _margin_facts(problem: Problem, states: States) -> list[Fact]:
-    needed, factor = states.margins, geometrical_factor(states)
-    said = "no width suffices" if factor is None else (
+def _margin_facts(problem: Problem, carried: Carried) -> list[Fact]:
+    factor, plain = carried.geometrical_factor, is_plain_arch(problem)
+    said = "nothing suffices" if factor is None else (
         f"more than {LARGEST:g}" if factor > LARGEST else f"{factor:.5g}"
     )  # fmt: skip
-    what = "joints' width over what a line of thrust needs, about their middles"
-    if needed.width == 0:
+    what = "thickness over the least that stands, as built" if plain else (
+        "joints' width over what a line of thrust needs, about their middles"
+    )  # fmt: skip
+    if factor == math.inf:
         said, what = "\N{INFINITY}", "no width is needed"
     facts = [Fact("geometrical factor of safety", said, what)]
-    share = needed.friction
-    if share is None:
-        facts.append(Fact("friction needed", "none suffices"))
-    elif math.isinf(problem.mu):
-        facts.append(Fact("friction needed", f"μ = {share:.4g}"))
+    rough, least = carried.friction_factor, carried.least_friction
+    if rough is None:
+        facts.append(Fact("friction factor", "no friction suffices"))
     else:
-        least = f"least friction coefficient μ = {share * problem.mu:.4g}"
-        if (problem.friction != problem.mu).any():
-            least = "of the friction of every joint"
-        facts.append(Fact("friction needed", _percent(share), least))
-    if needed.strength is not None:
+        said = "\N{INFINITY}" if math.isinf(rough) else f"{rough:.4g}"
+        needed = "of the friction of every joint" if least is None else (
+            f"least friction coefficient μ = {least:.4g}"
+        )  # fmt: skip
+        facts.append(Fact("friction factor", said, needed))
+    if carried.strength_used is not None:
         both = "of width and of friction at once, in the state of greatest margin"
-        facts.append(Fact("strength used", _percent(needed.strength), both))
+        facts.append(Fact("strength used", _percent(carried.strength_used), both))
     return facts
 
 
@@ -203,37 +205,40 @@ def _least_facts(problem: Problem) -> list[Fact]:
 
 def thrust_facts(sheet: Sheet) -> list[Fact]:
     """Tell the range of thrust at the joint at which it is told."""
-    states, unit, problem = sheet.states, sheet.unit, sheet.problem
-    if states is None or states.joint is None or not (states.least and states.greatest):
+    carried, unit, problem = sheet.carried, sheet.unit, sheet.problem
+    if carried is None or carried.joint is None or not (carried.least and carried.greatest):
         return []
-    name = joint_names(problem.assembly)[states.joint]
+    name = joint_names(problem.assembly)[carried.joint]
     said = [
         "without limit"
         if math.isinf(end.thrust)
         else unit.words(end.thrust * problem.unit_force)
-        for end in (states.least, states.greatest)
+        for end in (carried.least, carried.greatest)
     ]
     facts = [
         Fact("least thrust", said[0], f"at joint {name}"),
         Fact("greatest thrust", said[1], f"at joint {name}"),
     ]
-    if states.stands and states.margins.forces is not None:
-        safest = thrust_of(problem, states.margins.forces, states.joint)
+    if carried.stands and carried.forces is not None:
+        safest = thrust_of(problem, carried.forces, carried.joint)
         facts.append(Fact("thrust at greatest margin", unit.words(safest), f"at joint {name}"))
     return facts
 
 
 def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
     """Return headings and rows of reactions: by support, in each state, across and up."""
-    states, problem = sheet.states, sheet.problem
-    if states is None or not states.stands or states.margins.forces is None:
+    carried, problem = sheet.carried, sheet.problem
+    if carried is None or not carried.stands or carried.forces is None:
         return [], []
-    columns = [("greatest margin", states.margins.forces)]
+    columns = [("greatest margin", carried.forces)]
     if is_chained(problem):
-        for name, end in (("greatest thrust", states.greatest), ("least thrust", states.least)):
+        for name, end in (
+            ("greatest thrust", carried.greatest),
+            ("least thrust", carried.least),
+        ):
             if end is not None and end.forces is not None:
                 columns.insert(0, (name, end.forces))
-    borne = [_reactions(problem, forces) for _, forces in columns]
+    borne = [reactions(problem, forces) for _, forces in columns]
     if len({len(each) for each in borne}) != 1 or len(borne[0]) > MANY_SUPPORTS:
         return [], []
     rows = [
@@ -244,31 +249,25 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
     return [name for name, _ in columns], rows
 
 
-def _reactions(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
-    named = reactions(problem, forces)
-    single = at_joints(problem, forces) if is_chained(problem) else named
-    return named if len(single) == len(named) else single
-
-
 def joint_rows(sheet: Sheet) -> list[JointRow]:
     """Tell what joints carry in the state of greatest margin, in their order."""
-    states, problem, unit = sheet.states, sheet.problem, sheet.unit
-    if states is None or not states.stands or states.margins.forces is None:
+    carried, problem, unit = sheet.carried, sheet.problem, sheet.unit
+    if carried is None or not carried.stands or carried.forces is None:
         return []
-    carried = resultants(problem, states.margins.forces)
+    found = resultants(problem, carried.forces)
     joints = problem.assembly.joint_arrays
     middle = joints.ends.mean(axis=1) * problem.assembly.size
-    off = ((carried.point - middle) * joints.tangent).sum(axis=1)
-    chosen = np.sort(np.argsort(-carried.used, kind="stable")[:MOST])
-    names, worst = joint_names(problem.assembly), int(carried.used.argmax())
+    off = ((found.point - middle) * joints.tangent).sum(axis=1)
+    chosen = np.sort(np.argsort(-found.used, kind="stable")[:MOST])
+    names, worst = joint_names(problem.assembly), int(found.used.argmax())
     return [
         JointRow(
             name=names[k],
-            normal=unit.number(float(carried.normal[k])),
-            friction=unit.number(float(carried.friction[k])),
+            normal=unit.number(float(found.normal[k])),
+            friction=unit.number(float(found.friction[k])),
             eccentricity="-" if np.isnan(off[k]) else f"{1e3 * off[k] + 0.0:.0f}",
-            width_used=_percent(float(carried.width_used[k])),
-            friction_used=_percent(float(carried.friction_used[k])),
+            width_used=_percent(float(found.width_used[k])),
+            friction_used=_percent(float(found.friction_used[k])),
             worst=k == worst,
         )
         for k in map(int, chosen)

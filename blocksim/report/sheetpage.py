@@ -133,7 +133,7 @@ def _verdicts(answer: ProblemCheck, sheet: Sheet) -> list[tuple[str, Verdict, st
     words = "limit analysis"
     method = words if answer.method == "limit" else answer.method
     asked = (method, answer.verdict, answer.reason)
-    if answer.method == "limit" or sheet.states is None:
+    if answer.method == "limit" or sheet.carried is None:
         return [asked]
     static = answer.forces is not None
     reason = "forces of equilibrium exist" if static else "no forces of equilibrium exist"

@@ -9,14 +9,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from blocksim.arch.carried import carried_of
 from blocksim.arch.circular import arch_of
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.ask.carried import Carried
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
-from blocksim.limit import Reaction, reactions, resultants
+from blocksim.limit import Reaction, reactions
 from blocksim.view.drawing import friction_words, loading_words
 from blocksim.view.structure import supports_shown
-from blocksim.view.thrustlines import States, is_chained, states_of, thrust_lines, thrust_of
+from blocksim.view.thrustlines import is_chained, thrust_lines, thrust_of
 from blocksim.view.units import ForceUnit, force_unit, unit_weight
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 7.5)
@@ -81,7 +83,7 @@ class Sheet:
     joint_states : tuple of JointState or None
     supports : tuple of tuple of (k, 2) float
         Convex parts of each support near the blocks [m].
-    states : States or None
+    carried : Carried or None
     """
 
     problem: Problem
@@ -95,7 +97,7 @@ class Sheet:
     mechanism: Array | None = None
     joint_states: tuple[JointState, ...] | None = None
     supports: tuple[tuple[Array, ...], ...] = field(default_factory=tuple)
-    states: States | None = None
+    carried: Carried | None = None
 
 
 def sheet_of(
@@ -104,7 +106,7 @@ def sheet_of(
     verdict: str = "",
     mechanism: Array | None = None,
     joint_states: Sequence[JointState] | None = None,
-    states: States | None = None,
+    carried: Carried | None = None,
 ) -> Sheet:
     """Collect what is drawn of a problem.
 
@@ -116,13 +118,13 @@ def sheet_of(
     mechanism : (blocks, 3) float, optional
         Rates x, y (in units of the size) and rotation; drawn enlarged.
     joint_states : sequence of JointState, optional
-    states : States, optional
-        What `states_of` found, where it was asked already.
+    carried : Carried, optional
+        What `carried_of` found, where it was asked already.
     """
-    states = states or states_of(problem)
+    carried = carried or carried_of(problem)
     unit = force_unit(problem)
-    found = {} if states is None else _statics(problem, states, unit)
-    facts = [verdict, *(_factor_words(states) if states else [])]
+    found = {} if carried is None else _statics(problem, carried, unit)
+    facts = [verdict, *(_factor_words(carried) if carried else [])]
     return Sheet(
         problem=problem,
         title=title_of(problem),
@@ -135,32 +137,32 @@ def sheet_of(
         mechanism=mechanism,
         joint_states=None if joint_states is None else tuple(joint_states),
         supports=tuple(tuple(parts) for parts in supports_shown(problem)),
-        states=states,
+        carried=carried,
         **found,
     )
 
 
-def _statics(problem: Problem, states: States, unit: ForceUnit) -> dict[str, Any]:
+def _statics(problem: Problem, carried: Carried, unit: ForceUnit) -> dict[str, Any]:
     """Lines, thrust and reactions, as far as there are such."""
-    forces, joint = states.margins.forces, states.joint
+    forces, joint = carried.forces, carried.joint
     if forces is None:
         return {}
     chained = is_chained(problem)
     drawn: list[ThrustLine] = []
     told = None
-    if states.stands:
-        if chained and joint is not None and states.least and states.greatest:
+    if carried.stands:
+        if chained and joint is not None and carried.least and carried.greatest:
             for name, words, found in (
-                ("min", "least thrust", states.least),
-                ("max", "greatest thrust", states.greatest),
+                ("min", "least thrust", carried.least),
+                ("max", "greatest thrust", carried.greatest),
             ):
                 if found.forces is not None:
                     drawn.append(_line(problem, name, words, found.forces, joint, unit))
-            told = joint, _range_words(problem, states, unit)
+            told = joint, _range_words(problem, carried, unit)
         if chained:
             words = "greatest margin"
             drawn.append(_line(problem, "safest", words, forces, joint, unit))
-        borne = at_joints(problem, forces) if chained else reactions(problem, forces)
+        borne = reactions(problem, forces)
         return {
             "lines": tuple(each for each in drawn if each.paths),
             "forces": None if any(each.paths for each in drawn) else forces,
@@ -169,20 +171,6 @@ def _statics(problem: Problem, states: States, unit: ForceUnit) -> dict[str, Any
         }
     line = _line(problem, "safest", "that lacks least strength", forces, None, unit)
     return {"lines": (line,) if line.paths and _near(problem, line) else ()}
-
-
-def at_joints(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
-    """Return what each joint with a support bears: a floor may bear several piers."""
-    carried = resultants(problem, forces)
-    found: list[Reaction] = []
-    for index, joint in enumerate(problem.assembly.joints):
-        if SUPPORT in (joint.before, joint.after) and not np.isnan(carried.point[index, 0]):
-            force = carried.force[index] * (1 if joint.before == SUPPORT else -1)
-            name = problem.assembly.blocks[joint.bears].name or str(joint.bears)
-            found.append(
-                Reaction(name=f"under block {name}", force=force, point=carried.point[index])
-            )
-    return tuple(found)
 
 
 def _line(
@@ -199,12 +187,12 @@ def _line(
     return ThrustLine(name=name, words=said, paths=tuple(thrust_lines(problem, forces)))
 
 
-def _range_words(problem: Problem, states: States, unit: ForceUnit) -> str:
-    assert states.least is not None  # noqa: S101
-    assert states.greatest is not None  # noqa: S101
+def _range_words(problem: Problem, carried: Carried, unit: ForceUnit) -> str:
+    assert carried.least is not None  # noqa: S101
+    assert carried.greatest is not None  # noqa: S101
     least, greatest = (
         math.inf if math.isinf(end.thrust) else end.thrust * problem.unit_force
-        for end in (states.least, states.greatest)
+        for end in (carried.least, carried.greatest)
     )
     low = unit.number(least)
     if math.isinf(greatest):
@@ -250,24 +238,15 @@ def built_words(problem: Problem) -> list[str]:
     return words + loading_words(problem)
 
 
-def _factor_words(states: States) -> list[str]:
+def _factor_words(carried: Carried) -> list[str]:
     """Say the geometrical factor of safety."""
-    factor = geometrical_factor(states)
+    factor = carried.geometrical_factor
     # Of a wall or a flat arch it says nothing.
     return (
         []
         if factor is None or factor > LARGEST
         else [f"geometrical factor of safety {factor:.4g}"]
     )
-
-
-def geometrical_factor(states: States) -> float | None:
-    """Return the geometrical factor of safety: 1 over the share of width that is needed.
-
-    None where no width suffices, and inf where none is needed.
-    """
-    width = states.margins.width
-    return None if width is None else 1 / width if width else math.inf
 
 
 def scale_for(span: Array, room: Array) -> float:

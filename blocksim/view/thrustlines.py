@@ -3,65 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
-from blocksim.limit import Margins, Thrust, margins, resultants, thrust_range
-from blocksim.limit.margins import crown
+from blocksim.limit import resultants
 
-STRONG = 1 + 1e-9
-"""Share of the joints' strength up to which blocks stand; more is lacking, not round-off."""
 FAINT = 1e-6
 """Share of the largest force below which a joint carries nothing."""
 MEETING = 2
 """Bodies that a block of a chain touches."""
 CHAINED = 0.75
 """Share of such blocks from which on a structure has lines of thrust that can be read."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class States:
-    """The states of equilibrium that a drawing and a report show.
-
-    Parameters
-    ----------
-    margins : Margins
-        With the forces of the state of greatest margin.
-    joint : int or None
-        At which thrust is told.
-    least, greatest : Thrust or None
-        None where nothing balances the loads, or there is no such joint.
-    """
-
-    margins: Margins
-    joint: int | None
-    least: Thrust | None
-    greatest: Thrust | None
-
-    @property
-    def stands(self) -> bool:
-        """Whether joints have the strength that the safest state asks for."""
-        return self.margins.strength is not None and self.margins.strength <= STRONG
-
-
-def states_of(problem: Problem) -> States | None:
-    """Find the states of least and of greatest thrust, and that of greatest margin.
-
-    Returns
-    -------
-    States or None
-        None where gravity leans out of the plane, or the ground shakes: statics in the
-        plane do not tell what happens then.
-    """
-    if not problem.is_planar or problem.shaking is not None:
-        return None
-    joint = crown(problem)
-    ends = None if joint is None else thrust_range(problem, joint)
-    least, greatest = ends or (None, None)
-    return States(margins=margins(problem), joint=joint, least=least, greatest=greatest)
 
 
 def thrust_of(problem: Problem, forces: Array, joint: int) -> float:
