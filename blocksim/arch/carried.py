@@ -31,7 +31,7 @@ def carried_by_arch(arch: Arch, mu: float, joint: int | None = None) -> Carried:
     mu : float
         Friction coefficient, inf allowed.
     joint : int, optional
-        Where thrust is told; by default the crown, or the joint to its right.
+        Where thrust is told; by default the crown, or the joint to its left.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def carried_by_arch(arch: Arch, mu: float, joint: int | None = None) -> Carried:
         friction_factor=inverse(None if needed is None else needed / mu),
         least_friction=needed,
         strength_used=used if math.isfinite(used) else None,
-        joint=(arch.voussoirs + 1) // 2 if joint is None else joint,
+        joint=arch.voussoirs // 2 if joint is None else joint,
         least=least_thrust,
         greatest=greatest,
         forces=safest,

@@ -131,6 +131,7 @@ class Arch(Shown):
                 mass=mass,
                 inertia=inertia,
                 depth=self.depth,
+                name=str(i + 1),
             )
             for i in range(self.voussoirs)
         )

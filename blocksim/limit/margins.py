@@ -122,7 +122,8 @@ def crown(problem: Problem) -> int | None:
         return None
     best = np.flatnonzero(upright >= upright.max() * (1 - NOTHING))
     heights = joints.ends[best, :, 1].mean(axis=1)
-    return int(best[np.argmax(heights)])
+    # Of two beside a keystone the first, whatever the last bits say.
+    return int(best[np.argmax(heights > heights.max() - NOTHING)])
 
 
 def margins(problem: Problem) -> Margins:
