@@ -189,7 +189,7 @@ def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
     )
     assert load_recording(run).problem.origin["radius"] == 1.25
     assert blocksim("render", str(path), "--out", str(picture)).returncode == 0
-    assert "pointed-arch" in picture.read_text(encoding="utf-8")
+    assert "Pointed arch" in picture.read_text(encoding="utf-8")
     path.write_text(json.dumps({**table, "thickness": 9}))
     done = blocksim("check", str(path))
     assert done.returncode == 2

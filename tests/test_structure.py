@@ -265,7 +265,7 @@ def test_the_first_of_several_wrong_entries_is_named():
         ("a.json", "\udcff", "valid JSON"),
         ("a.toml", "friction = ", "valid TOML"),
         ("a.toml", "x = " + "[" * 100_000, "valid TOML"),
-        ("a.txt", "{}", ".json or .toml"),
+        ("a.txt", "{}", ".json, .toml, .dxf or .svg"),
     ],
 )
 def test_a_file_that_is_no_structure(name: str, text: str, said: str, tmp_path: Path):
