@@ -11,6 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from structure_cases import scenes
 
+from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.blocks.problem import Problem
@@ -115,6 +116,11 @@ def test_arches_agree_with_their_own_statics(
     assert joint in {voussoirs // 2, (voussoirs + 1) // 2}
     low, high = thrusts(problem, joint)
     assert low <= high
+    own = carried_by_arch(arch, mu)
+    assert own.thrust == pytest.approx((low, high), rel=1e-9)
+    assert own.strength_used == pytest.approx(found.strength, rel=1e-9)
+    assert found.friction is not None
+    assert own.least_friction == pytest.approx(found.friction * mu, rel=1e-9)
     # Vertical loads leave every joint the same thrust; springings past the horizontal face
     # the other way.
     other = sorted(abs(each) for each in thrusts(problem, 0))
@@ -144,10 +150,14 @@ def test_a_two_hinged_wedge_by_hand() -> None:
 def test_a_squeezed_block_has_no_greatest_thrust() -> None:
     """Two walls may press as hard as they like, and need not press at all."""
     problem = structure_of({"friction": 0.5, "blocks": SQUEEZED})
-    side = next(k for k, each in enumerate(problem.assembly.joints) if each.support == 1)
-    low, high = thrusts(problem, side)
-    assert low == pytest.approx(0.0, abs=1e-9)
-    assert high == math.inf
+    # Whichever way a joint's normal points, what presses is above 0.
+    normals = problem.assembly.joint_arrays.normal[:, 0]
+    sides = [k for k, each in enumerate(problem.assembly.joints) if each.support in {1, 2}]
+    assert sorted(normals[sides]) == pytest.approx([-1.0, 1.0])
+    for side in sides:
+        low, high = thrusts(problem, side)
+        assert low == pytest.approx(0.0, abs=1e-9)
+        assert high == math.inf
 
 
 @pytest.mark.parametrize(
