@@ -36,10 +36,6 @@ UNSOLVED = 1e-4
 """Residual of a step that is not taken."""
 PENETRATION = 1e-3
 """Of a collapse until its verdict is certain; falling blocks may do worse on impact."""
-EXACT = 1e-16
-"""Violation of contact and friction left in the onset test [g]."""
-PRECISION = 1e-12
-"""Violation of contact and friction left in a moving step [g]."""
 CLOSED = 1e-12
 """Gap that counts as none: round-off of the corners' places."""
 
@@ -92,7 +88,7 @@ class Blocks:
         self._looked = self._poses
         self._pull()
         touch = self._touch(self._poses, self._step)
-        return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
+        return self._solve(touch, np.zeros((len(touch.gap), 4))).acceleration
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; in few long steps while they hardly do."""
@@ -121,7 +117,7 @@ class Blocks:
         gap = touch.gap - step / 2 * rates[:, :2]
         self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
         rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
-        solution = self._solve(touch, rates / step, PRECISION)
+        solution = self._solve(touch, rates / step)
         if not solution.residual <= UNSOLVED:
             return
         self._velocities = self._velocities + step * solution.acceleration
@@ -218,9 +214,9 @@ class Blocks:
         padded = np.vstack([self._velocities, np.zeros(3)])
         return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
 
-    def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
+    def _solve(self, touch: Touch, rates: Array) -> Solution:
         self._rows = touch.rows
-        solution = self._problem.solve(touch.rows, rates, self._free, self._solution, precision)
+        solution = self._problem.solve(touch.rows, rates, self._free, self._solution)
         self._solution = solution
         # Unlike max, this keeps nan.
         self._residual = float(np.maximum(self._residual, solution.residual))

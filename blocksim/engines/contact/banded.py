@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg.lapack import dgbsv, dpbsv
+from scipy.linalg.lapack import dgbsv, dgbtrf, dgbtrs, dpbtrf, dpbtrs
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -76,15 +78,35 @@ class Bands:
         sums = np.bincount(self.place.ravel(), parts, self.size + 1)
         return sums[:-1].astype(np.float64, copy=False)
 
-    def solve_symmetric(self, rows: Array, weight: ArrayLike, right: Array) -> Array:
-        """Solve (1 + rows^T weight rows) x = right."""
-        count = self._width + 1
+    def factored(
+        self, rows: Array, weight: ArrayLike, seen: Array | None = None
+    ) -> Callable[[Array], Array] | None:
+        """Return what solves (1 + rows^T weight seen) x = right; None if round-off forbids.
+
+        Where `seen` is not given it is `rows`, and the matrix symmetric.
+        """
+        width = self._width
+        if seen is not None:
+            band = self._matrix(self.band(rows, weight, seen))
+            factors, pivots, failed = dgbtrf(band, width, width, overwrite_ab=1)
+            return (
+                None
+                if failed
+                else lambda right: self._natural(
+                    dgbtrs(factors, width, width, self._ordered(right), pivots)[0]
+                )
+            )
+        count = width + 1
         products = self._products(rows, weight, rows)
         band = np.bincount(self._lower, products, count * self.size + 1)[:-1]
         band = band.reshape(self.size, count).T
         band[0] += 1.0
-        _, x, failed = dpbsv(band, self._ordered(right), lower=1, overwrite_ab=1)
-        return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
+        factors, failed = dpbtrf(band, lower=1, overwrite_ab=1)
+        return (
+            None
+            if failed
+            else lambda right: self._natural(dpbtrs(factors, self._ordered(right), lower=1)[0])
+        )
 
     def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
         """Solve (1 + rows^T weight seen) x = right, for one right side or its columns."""
@@ -99,10 +121,14 @@ class Bands:
     def solve_band(self, band: Array, right: Array) -> Array:
         """Solve (1 + matrix) x = right, the matrix as from `band`; it is used up."""
         width, right = self._width, self._ordered(right)
-        band = band[:-1].reshape(self.size, self.rows).T
-        band[2 * width] += 1.0
-        _, _, x, failed = dgbsv(width, width, band, right, overwrite_ab=1)
+        _, _, x, failed = dgbsv(width, width, self._matrix(band), right, overwrite_ab=1)
         return self._natural(x) if failed == 0 else np.full_like(right, np.nan)
+
+    def _matrix(self, band: Array) -> Array:
+        """Add 1 to a matrix as from `band`, in place."""
+        band = band[:-1].reshape(self.size, self.rows).T
+        band[2 * self._width] += 1.0
+        return band
 
     def _ordered(self, values: Array) -> Array:
         return values if self._order is None else values[self._order]
@@ -121,21 +147,12 @@ class Bands:
 
 
 class System:
-    """A system (1 + matrix) x = right that changes joint by joint.
+    """A system (1 + matrix) x = right that grows joint by joint from matrix and right 0."""
 
-    Parameters
-    ----------
-    bands : Bands
-    rows, weight, seen, right
-        As in `Bands.solve`, to begin with.
-    """
-
-    def __init__(
-        self, bands: Bands, rows: Array, weight: Array, seen: Array, right: Array
-    ) -> None:
+    def __init__(self, bands: Bands) -> None:
         self._bands = bands
-        self._band = bands.band(rows, weight, seen)
-        self._right = np.append(right, 0.0)
+        self._band = np.zeros(bands.rows * bands.size + 1)
+        self._right = np.zeros(bands.size + 1)
 
     def add(self, joint: int, matrix: Array, right: Array) -> None:
         """Add a joint's matrix (6, 6) and right side (6,)."""

@@ -1,0 +1,102 @@
+"""From half of the digits of a solution to all: what each contact does is told, and mended.
+
+While all contacts do as said, the problem is linear, and springs that are preloaded with the
+forces found last solve it in two or three systems (the method of multipliers). Then a contact
+that pulls opens, one that would pass closes, one beyond its friction slides, and one that
+slides along its friction sticks (an active-set method; on contact P. Alart and A. Curnier,
+Comput. Methods Appl. Mech. Eng. 92, 1991, 353-375, whose Newton's method does both at once).
+It begins where no more than a few have to change, and gives up where more and more do.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS, Contacts
+from blocksim.engines.contact.springs import stiffness_at
+from blocksim.engines.contact.step import Answer, Step
+
+MOST_SYSTEMS = 24
+ROUND_OFF = 1e-14
+"""What is nothing, over the largest force."""
+EXACT, YIELD = 1e-16, 1e-10
+"""Yield of contacts that is nothing [g], and over the accelerations."""
+SLOW, DRIFT = 0.1, 0.9
+"""What is left of a yield after a system, from which it is slow, and without end."""
+FARTHEST = 1e9
+"""Repetitions of a change of forces at once."""
+FEW = 8
+"""Contacts to change, beyond twice the fewest before, that tell of no end."""
+
+
+def settle(step: Step, guess: Answer) -> Answer:
+    """Find the solution that is near a guess, or the best on the way."""
+    friction, x, contacts = step.friction, guess.x, guess.contacts
+    stiffness = stiffness_at(friction, x)
+    held = np.abs(guess.forces[:, 2:])
+    forces = friction.as_said(guess.forces, contacts, held)
+    best, systems = guess, 0
+    last, allowed = math.inf, forces.size
+    for systems in range(1, MOST_SYSTEMS + 1):
+        glued = forces - stiffness * step.velocities(x)
+        way, more = step.way(contacts, x, glued, held, stiffness)
+        if not np.isfinite(way).all():
+            break
+        x, held, before = x + way, held + more, forces
+        rates = step.velocities(x)
+        forces = friction.as_said(before - stiffness * rates, contacts, held)
+        mended = _mended(step, contacts, forces, rates)
+        changes = int(np.count_nonzero(mended != contacts))
+        residual = step.residual(x, forces)
+        if residual < best.residual or not changes:
+            best = Answer(x=x, forces=forces, contacts=contacts, residual=residual)
+        if changes > allowed:
+            break
+        allowed = min(allowed, 2 * changes + FEW)
+        if changes:
+            contacts, last = mended, math.inf
+            continue
+        change = forces - before
+        yields = float(np.abs(change).max(initial=0.0)) / stiffness
+        if yields <= max(EXACT, YIELD * float(np.abs(x).max())) or yields > 2 * last:
+            break
+        ratio, last = yields / last, yields
+        if ratio > SLOW:
+            # It goes on to change, less each time, or until a contact gives way.
+            ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
+            forces = forces + min(ahead, _reach(step, forces, change)) * change
+    return replace(best, systems=guess.systems + systems)
+
+
+def _reach(step: Step, forces: Array, change: Array) -> float:
+    """Return how often a change can be repeated until a contact opens or slides.
+
+    Two contacts of a joint that stick although the blocks turn work against each other,
+    at equal accelerations, more from round to round, until one of them slides.
+    """
+    pressure, growth = forces[:, :2], change[:, :2]
+    a, b = step.friction.room
+    room = np.stack([pressure] + [a * pressure - s * b * forces[:, 2:] for s in (1, -1)])
+    loss = -np.stack([growth] + [a * growth - s * b * change[:, 2:] for s in (1, -1)])
+    ahead = (loss > 0) & (room > loss)
+    return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
+
+
+def _mended(step: Step, contacts: Contacts, forces: Array, rates: Array) -> Contacts:
+    """Return what contacts do in place of what they cannot."""
+    pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
+    nothing = ROUND_OFF * max(1.0, float(np.abs(forces).max(initial=0.0)))
+    a, b = step.friction.room
+    found = contacts.copy()
+    sticks = contacts == STICKS
+    found[sticks & (b * friction > a * pressure + nothing)] = SLIDES_UP
+    found[sticks & (b * friction < -a * pressure - nothing)] = SLIDES_DOWN
+    found[(contacts == SLIDES_UP) & (slip > nothing)] = STICKS
+    found[(contacts == SLIDES_DOWN) & (slip < -nothing)] = STICKS
+    found[(contacts == OPEN) & (rates[:, :2] < -nothing)] = STICKS
+    found[(contacts != OPEN) & (pressure < -nothing)] = OPEN
+    return found
