@@ -34,6 +34,10 @@ REST = 1e-9
 RESIDUAL = 1e-7
 UNSOLVED = 1e-4
 """Residual of a step that is not taken."""
+EXACT = 1e-16
+"""Yield of contacts left in the onset test [g]."""
+PRECISION = 1e-12
+"""Yield of contacts left in a moving step [g]."""
 PENETRATION = 1e-3
 """Of a collapse until its verdict is certain; falling blocks may do worse on impact."""
 CLOSED = 1e-12
@@ -88,7 +92,7 @@ class Blocks:
         self._looked = self._poses
         self._pull()
         touch = self._touch(self._poses, self._step)
-        return self._solve(touch, np.zeros((len(touch.gap), 4))).acceleration
+        return self._solve(touch, np.zeros((len(touch.gap), 4)), EXACT).acceleration
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; in few long steps while they hardly do."""
@@ -117,7 +121,7 @@ class Blocks:
         gap = touch.gap - step / 2 * rates[:, :2]
         self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
         rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
-        solution = self._solve(touch, rates / step)
+        solution = self._solve(touch, rates / step, PRECISION)
         if not solution.residual <= UNSOLVED:
             return
         self._velocities = self._velocities + step * solution.acceleration
@@ -214,9 +218,9 @@ class Blocks:
         padded = np.vstack([self._velocities, np.zeros(3)])
         return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
 
-    def _solve(self, touch: Touch, rates: Array) -> Solution:
+    def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
         self._rows = touch.rows
-        solution = self._problem.solve(touch.rows, rates, self._free, self._solution)
+        solution = self._problem.solve(touch.rows, rates, self._free, self._solution, precision)
         self._solution = solution
         # Unlike max, this keeps nan.
         self._residual = float(np.maximum(self._residual, solution.residual))

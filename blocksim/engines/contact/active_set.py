@@ -23,8 +23,8 @@ from blocksim.engines.contact.step import Answer, Step
 MOST_SYSTEMS = 24
 ROUND_OFF = 1e-14
 """What is nothing, over the largest force."""
-EXACT, YIELD = 1e-16, 1e-10
-"""Yield of contacts that is nothing [g], and over the accelerations."""
+NO_YIELD = 1e-13
+"""Yield of contacts that is round-off, over the accelerations."""
 SLOW, DRIFT = 0.1, 0.9
 """What is left of a yield after a system, from which it is slow, and without end."""
 FARTHEST = 1e9
@@ -33,42 +33,53 @@ FEW = 8
 """Contacts to change, beyond twice the fewest before, that tell of no end."""
 
 
-def settle(step: Step, guess: Answer) -> Answer:
-    """Find the solution that is near a guess, or the best on the way."""
+def settle(step: Step, guess: Answer, precision: float) -> Answer:
+    """Find the solution that is near a guess, or the best on the way.
+
+    Parameters
+    ----------
+    step : Step
+    guess : Answer
+    precision : float
+        Yield of contacts at which it counts as solved [g].
+    """
     friction, x, contacts = step.friction, guess.x, guess.contacts
     stiffness = stiffness_at(friction, x)
     held = np.abs(guess.forces[:, 2:])
-    forces = friction.as_said(guess.forces, contacts, held)
+    preload = friction.as_said(guess.forces, contacts, held)
     best, systems = guess, 0
-    last, allowed = math.inf, forces.size
-    for systems in range(1, MOST_SYSTEMS + 1):
-        glued = forces - stiffness * step.velocities(x)
+    last, allowed = math.inf, preload.size
+    rates = step.velocities(x)
+    for systems in range(1, MOST_SYSTEMS + 1):  # noqa: B007
+        glued = preload - stiffness * rates
         way, more = step.way(contacts, x, glued, held, stiffness)
         if not np.isfinite(way).all():
             break
-        x, held, before = x + way, held + more, forces
+        x, held = x + way, held + more
         rates = step.velocities(x)
-        forces = friction.as_said(before - stiffness * rates, contacts, held)
+        forces = friction.as_said(preload - stiffness * rates, contacts, held)
         mended = _mended(step, contacts, forces, rates)
         changes = int(np.count_nonzero(mended != contacts))
-        residual = step.residual(x, forces)
+        residual = step.residual(x, forces, rates)
         if residual < best.residual or not changes:
             best = Answer(x=x, forces=forces, contacts=contacts, residual=residual)
         if changes > allowed:
             break
         allowed = min(allowed, 2 * changes + FEW)
+        change, preload = forces - preload, forces
         if changes:
             contacts, last = mended, math.inf
             continue
-        change = forces - before
         yields = float(np.abs(change).max(initial=0.0)) / stiffness
-        if yields <= max(EXACT, YIELD * float(np.abs(x).max())) or yields > 2 * last:
+        largest = float(np.abs(x).max())
+        nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
+        if yields <= nothing or yields > 2 * last:
             break
         ratio, last = yields / last, yields
         if ratio > SLOW:
             # It goes on to change, less each time, or until a contact gives way.
             ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
-            forces = forces + min(ahead, _reach(step, forces, change)) * change
+            preload = forces + min(ahead, _reach(step, forces, change)) * change
     return replace(best, systems=guess.systems + systems)
 
 

@@ -21,6 +21,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.step import Answer, Step
@@ -62,7 +63,7 @@ class Cones:
     offset: Array
     norm: Array
     lean: Array
-    steep: Array
+    steep: NDArray[np.bool_]
 
     @classmethod
     def of(cls, step: Step) -> Cones:
@@ -111,7 +112,7 @@ def interior(step: Step, *, dilates: bool) -> Answer:
     apart = bands.along(edges, x) + offset + lift
     room, forces = np.maximum(np.abs(apart), 1.0), np.ones_like(apart)
     count = 0
-    for count in range(MOST_STEPS):
+    for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size
         weight, short = forces / room, apart - room
         solve = bands.factored(edges, weight, turned)

@@ -37,35 +37,34 @@ from blocksim.engines.contact.coulomb import (
     leaning,
 )
 from blocksim.engines.contact.slides import Slides
-from blocksim.engines.contact.springs import stiffness_at
 from blocksim.engines.contact.step import Answer, Step
 
+STIFF = 1e8
+"""Stiffness of the springs: what they yield then is mended in a few systems."""
 MOST_PIECES = 20_000
 STEEP_PIECES = 40
 """The same for each joint with steep friction: longer ways are round-off going in circles."""
 
 
 def come_together(step: Step) -> Answer:
-    """Balance springs without preload, from all contacts apart."""
-    stiffness = stiffness_at(step.friction, step.free)
-    glued = -stiffness * step.velocities(step.free)
+    """Balance stiff springs, from all contacts apart."""
+    glued = -STIFF * step.velocities(step.free)
     shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(glued), 2))
-    push = stiffness * shares
+    push = STIFF * shares
     apart = float(np.maximum(glued[:, :2] / push, 0.0).max(initial=0.0))
     glued[:, :2] -= apart * push
     contacts = np.full(push.shape, OPEN, dtype=np.int8)
     most = STEEP_PIECES * len(glued) if step.friction.some_steep else MOST_PIECES
-    found = _follow(step, stiffness, glued, contacts, push, apart, most)
+    found = _follow(step, glued, contacts, push, apart, most)
     if found is None:
         return Answer(x=step.free, forces=np.zeros_like(glued), contacts=contacts)
     x, held, pieces = found
-    forces = step.friction.as_said(-stiffness * step.velocities(x), contacts, held)
+    forces = step.friction.as_said(-STIFF * step.velocities(x), contacts, held)
     return Answer(x=x, forces=forces, contacts=contacts, systems=pieces)
 
 
 def _follow(
     step: Step,
-    stiffness: float,
     forces: Array,
     contacts: Contacts,
     push: Array,
@@ -77,7 +76,6 @@ def _follow(
     Parameters
     ----------
     step : Step
-    stiffness : float
     forces, contacts
         At its beginning, with all contacts open; `forces` as if glued, but for steep friction
         that slides, whose size stands for the normal force. Contacts are changed in place.
@@ -102,12 +100,12 @@ def _follow(
         """Return how x and the forces change."""
         if not own.any():
             way = system.solve()
-            turn = -stiffness * bands.along(rows, way)
+            turn = -STIFF * bands.along(rows, way)
             turn[:, :2] += push
             return way, turn
         slides = Slides(bands, rows, contacts, own, flat)
-        way, held = slides.solve(system.solve, push / stiffness, stiffness)
-        turn = -stiffness * bands.along(rows, way)
+        way, held = slides.solve(system.solve, push / STIFF, STIFF)
+        turn = -STIFF * bands.along(rows, way)
         turn[:, :2] = np.where(own, held, turn[:, :2] + push)
         return way, turn
 
@@ -143,9 +141,7 @@ def _follow(
         for part, does in ((-1.0, was), (1.0, now)):
             contacts[joint, end] = does
             own[joint] = friction.steep[joint] & (contacts[joint] >= SLIDES_UP)
-            matrix, pull = _part(
-                step, stiffness, joint, push[joint], contacts[joint], own[joint]
-            )
+            matrix, pull = _part(step, joint, push[joint], contacts[joint], own[joint])
             system.add(joint, part * matrix, part * pull)
         if friction.steep[joint]:
             size = abs(forces[joint, 2 + end])
@@ -162,7 +158,6 @@ def _follow(
 
 def _part(
     step: Step,
-    stiffness: float,
     joint: int,
     push: Array,
     contacts: Contacts,
@@ -172,5 +167,5 @@ def _part(
     rows = step.rows[joint]
     acting = leaning(rows, contacts, step.friction.lean[joint])
     closed = (contacts != OPEN) & ~own
-    weight = stiffness * np.concatenate([closed, contacts == STICKS])
+    weight = STIFF * np.concatenate([closed, contacts == STICKS])
     return np.matmul(acting.T * weight, rows), np.matmul(push * closed, acting[:2])

@@ -33,6 +33,8 @@ from blocksim.engines.contact.interior import interior
 from blocksim.engines.contact.path_following import come_together
 from blocksim.engines.contact.step import Answer, Step
 
+EXACT = 1e-16
+"""Yield of a contact that is round-off, with accelerations of 1 [g]."""
 SOLVED = 1e-9
 """Residual of a solution."""
 ENOUGH = 3e-8
@@ -101,6 +103,7 @@ class ContactProblem:
         rates: Array,
         free: Array,
         start: Solution | None = None,
+        precision: float = EXACT,
     ) -> Solution:
         """Solve one step.
 
@@ -115,6 +118,8 @@ class ContactProblem:
             Accelerations without contact (f).
         start : Solution, optional
             Of a similar step.
+        precision : float
+            Yield of contacts at which the step counts as solved [g].
 
         Returns
         -------
@@ -132,12 +137,12 @@ class ContactProblem:
         else:
             x = (start.acceleration * self.root).ravel()
             guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
-        best, paths = settle(step, guess), 0
+        best, paths = settle(step, guess, precision), 0
         if best.residual > SOLVED and not step.friction.some_steep:
-            best = best.or_better(settle(step, interior(step, dilates=False)))
+            best = best.or_better(settle(step, interior(step, dilates=False), precision))
         # That is dear, and what is left may be round-off.
         if best.residual > ENOUGH:
-            best, paths = best.or_better(settle(step, come_together(step))), 1
+            best, paths = best.or_better(settle(step, come_together(step), precision)), 1
         return Solution(
             acceleration=best.x.reshape(-1, 3) / self.root,
             forces=best.forces,

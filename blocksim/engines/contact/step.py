@@ -103,10 +103,10 @@ class Step:
 
         return slides.solve(solve, (glued[:, :2] - forces[:, :2]) / stiffness, stiffness)
 
-    def residual(self, x: Array, forces: Array) -> float:
+    def residual(self, x: Array, forces: Array, rates: Array | None = None) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
         imbalance = np.abs(self.imbalance(x, forces)).max()
-        rates = self.velocities(x)
+        rates = self.velocities(x) if rates is None else rates
         pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
         unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max(initial=0.0)
         # Friction at the edge of the cone, against the slip, or no slip.
