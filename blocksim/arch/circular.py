@@ -124,9 +124,12 @@ class Arch(Shown):
         inertia = mass * self.radius**2 * (thick + factor**2 * _sine_deficit(half))
         middle = (angles[:-1] + angles[1:]) / 2
         centres = arm * np.column_stack([np.sin(middle), np.cos(middle)])
+        corners = np.stack([inner[:-1], inner[1:], outer[1:], outer[:-1]], axis=1)
+        if intrados == 0:
+            corners = corners[:, 1:]
         blocks = tuple(
             Block(
-                vertices=_corners(inner[i : i + 2], outer[i : i + 2]),
+                vertices=corners[i],
                 centre=centres[i],
                 mass=mass,
                 inertia=inertia,
@@ -192,11 +195,3 @@ def _sine_deficit(x: float) -> float:
     square = x * x
     series = 1 / 3 - square * (2 / 45 - square * (1 / 315 - square * (2 / 14175)))
     return square * series
-
-
-def _corners(inner: Array, outer: Array) -> Array:
-    """Corners of one voussoir, counter-clockwise; a triangle where eta = 2."""
-    corners = [inner[0], inner[1], outer[1], outer[0]]
-    if np.hypot(*(inner[1] - inner[0])) == 0.0:
-        corners = corners[1:]
-    return np.array(corners)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from blocksim.common.checks import require
+from blocksim.common.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -28,10 +28,10 @@ rotation vector's components along x and y, from engines in three dimensions."""
 def frozen(values: object, shape: tuple[int, ...]) -> Array:
     """Return a read-only float array of the given shape (-1: any length)."""
     array = np.array(values, dtype=np.float64)
-    fits = array.ndim == len(shape) and all(
-        want in (-1, have) for want, have in zip(shape, array.shape, strict=True)
-    )
-    if not fits:
+    if array.shape != shape and (
+        array.ndim != len(shape)
+        or any(want not in (-1, have) for want, have in zip(shape, array.shape, strict=True))
+    ):
         message = f"expected an array of shape {shape}, got {array.shape}"
         raise ValueError(message)
     array.setflags(write=False)
@@ -73,11 +73,14 @@ class Block:
         """Check the numbers, make the arrays read-only and corners counter-clockwise."""
         for field in ("mass", "inertia", "depth"):
             value: float = getattr(self, field)
-            require(0 < value < math.inf, self._called(field), value, "above 0 and finite")
+            if not 0 < value < math.inf:
+                raise InputError(self._called(field), value, "above 0 and finite")
         vertices = frozen(self.vertices, (-1, 2))
-        area, folds = _outline(vertices.tolist())
-        allowed = "three corners or more around a convex area"
-        require(area != 0 and not folds, self._called("vertices"), vertices.tolist(), allowed)
+        corners = vertices.tolist()
+        area, folds = _outline(corners)
+        if area == 0 or folds:
+            allowed = "three corners or more around a convex area"
+            raise InputError(self._called("vertices"), corners, allowed)
         object.__setattr__(
             self, "vertices", vertices if area > 0 else frozen(vertices[::-1], (-1, 2))
         )
@@ -349,22 +352,32 @@ class Assembly:
     @cached_property
     def joint_arrays(self) -> JointArrays:
         """The joints gathered into arrays, for what looks at them frame by frame."""
-        sides = [(joint.before, joint.after) for joint in self.joints]
+        joints = self.joints
+        sides = [(joint.before, joint.after) for joint in joints]
         before, after = np.array(sides, dtype=np.int64).reshape(-1, 2).T
-        ends = frozen([(j.inner, j.outer) for j in self.joints], (-1, 2, 2)) / self.size
-        own = [np.nan if j.friction is None else j.friction for j in self.joints]
-        faces = frozen([self._faces(joint) for joint in self.joints], (-1, 2, 2, 2)) / self.size
-        is_corner = np.array([joint.is_corner for joint in self.joints], dtype=np.bool_)
-        has_length = np.hypot(*np.moveaxis(faces[:, 0, 1] - faces[:, 0, 0], -1, 0)) > 0
+        ends = np.array([(j.inner, j.outer) for j in joints], dtype=np.float64)
+        ends = ends.reshape(-1, 2, 2)
+        own = [np.nan if j.friction is None else j.friction for j in joints]
+        faces = np.repeat(ends[:, None], 2, axis=1)
+        is_corner = np.array([joint.is_corner for joint in joints], dtype=np.bool_)
+        way = ends[:, 1] - ends[:, 0]
+        length = np.hypot(way[:, 0], way[:, 1])
+        tangent = way / np.where(is_corner, 1.0, length)[:, None]
+        for index, joint in enumerate(joints):
+            if joint.faces is not None or joint.is_corner:
+                faces[index], tangent[index] = self._faces(joint), joint.tangent
+        at_face = faces[:, 0, 1] - faces[:, 0, 0]
+        has_length = np.hypot(at_face[:, 0], at_face[:, 1]) > 0
+        normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
         return JointArrays(
             before=before,
             after=after,
-            ends=ends,
-            normal=frozen([joint.normal for joint in self.joints], (-1, 2)),
-            tangent=frozen([joint.tangent for joint in self.joints], (-1, 2)),
-            length=frozen([joint.length for joint in self.joints], (-1,)) / self.size,
+            ends=frozen(ends / self.size, (-1, 2, 2)),
+            normal=frozen(normal, (-1, 2)),
+            tangent=frozen(tangent, (-1, 2)),
+            length=frozen(length / self.size, (-1,)),
             friction=frozen(own, (-1,)),
-            faces=faces,
+            faces=frozen(faces / self.size, (-1, 2, 2, 2)),
             is_corner=is_corner,
             carrier=(is_corner & ~has_length).astype(np.int64),
         )

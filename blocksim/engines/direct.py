@@ -34,7 +34,7 @@ REST = 1e-9
 RESIDUAL = 1e-7
 UNSOLVED = 1e-4
 """Residual of a step that is not taken."""
-EXACT = 1e-16
+EXACT = 1e-18
 """Yield of contacts left in the onset test [g]."""
 PRECISION = 1e-12
 """Yield of contacts left in a moving step [g]."""

@@ -25,6 +25,7 @@ ROUND_OFF = 1e-14
 """What is nothing, over the largest force."""
 NO_YIELD = 1e-13
 """Yield of contacts that is round-off, over the accelerations."""
+UNSURE = 0.1
 SLOW, DRIFT = 0.1, 0.9
 """What is left of a yield after a system, from which it is slow, and without end."""
 FARTHEST = 1e9
@@ -49,6 +50,7 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
     preload = friction.as_said(guess.forces, contacts, held)
     best, systems = guess, 0
     last, allowed = math.inf, preload.size
+    seen, careful = set[bytes](), False
     rates = step.velocities(x)
     for systems in range(1, MOST_SYSTEMS + 1):  # noqa: B007
         glued = preload - stiffness * rates
@@ -58,7 +60,11 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
         x, held = x + way, held + more
         rates = step.velocities(x)
         forces = friction.as_said(preload - stiffness * rates, contacts, held)
-        mended = _mended(step, contacts, forces, rates)
+        change = forces - preload
+        most = float(np.abs(change).max(initial=0.0))
+        mended = _mended(
+            step, contacts, forces, rates, UNSURE * most, UNSURE * most / stiffness
+        )
         changes = int(np.count_nonzero(mended != contacts))
         residual = step.residual(x, forces, rates)
         if residual < best.residual or not changes:
@@ -66,14 +72,22 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
         if changes > allowed:
             break
         allowed = min(allowed, 2 * changes + FEW)
-        change, preload = forces - preload, forces
+        preload = forces
         if changes:
+            seen.add(contacts.tobytes())
+            if mended.tobytes() in seen:
+                # In a circle: one at a time, always the first, leads out (K. G. Murty,
+                # Opsearch 11, 1974, 4-10, for matrices that are as friction seldom is not).
+                careful = True
+            if careful:
+                mended = _first(contacts, mended)
             contacts, last = mended, math.inf
             continue
-        yields = float(np.abs(change).max(initial=0.0)) / stiffness
+        yields = most / stiffness
         largest = float(np.abs(x).max())
         nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
-        if yields <= nothing or yields > 2 * last:
+        if yields <= nothing:
+            best = replace(best, is_settled=True)
             break
         ratio, last = yields / last, yields
         if ratio > SLOW:
@@ -81,6 +95,14 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
             ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
             preload = forces + min(ahead, _reach(step, forces, change)) * change
     return replace(best, systems=guess.systems + systems)
+
+
+def _first(contacts: Contacts, mended: Contacts) -> Contacts:
+    """Change only the first of the contacts that are to change."""
+    found = contacts.copy()
+    place = int(np.flatnonzero(mended != contacts)[0])
+    found.flat[place] = mended.flat[place]
+    return found
 
 
 def _reach(step: Step, forces: Array, change: Array) -> float:
@@ -97,17 +119,20 @@ def _reach(step: Step, forces: Array, change: Array) -> float:
     return float((room[ahead] / loss[ahead]).min(initial=FARTHEST))
 
 
-def _mended(step: Step, contacts: Contacts, forces: Array, rates: Array) -> Contacts:
+def _mended(
+    step: Step, contacts: Contacts, forces: Array, rates: Array, unsure: float, yields: float
+) -> Contacts:
     """Return what contacts do in place of what they cannot."""
     pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
     nothing = ROUND_OFF * max(1.0, float(np.abs(forces).max(initial=0.0)))
     a, b = step.friction.room
     found = contacts.copy()
     sticks = contacts == STICKS
-    found[sticks & (b * friction > a * pressure + nothing)] = SLIDES_UP
-    found[sticks & (b * friction < -a * pressure - nothing)] = SLIDES_DOWN
-    found[(contacts == SLIDES_UP) & (slip > nothing)] = STICKS
-    found[(contacts == SLIDES_DOWN) & (slip < -nothing)] = STICKS
-    found[(contacts == OPEN) & (rates[:, :2] < -nothing)] = STICKS
-    found[(contacts != OPEN) & (pressure < -nothing)] = OPEN
+    no_force, no_rate = nothing + unsure, nothing + yields
+    found[sticks & (b * friction > a * pressure + no_force)] = SLIDES_UP
+    found[sticks & (b * friction < -a * pressure - no_force)] = SLIDES_DOWN
+    found[(contacts == SLIDES_UP) & (slip > no_rate)] = STICKS
+    found[(contacts == SLIDES_DOWN) & (slip < -no_rate)] = STICKS
+    found[(contacts == OPEN) & (rates[:, :2] < -no_rate)] = STICKS
+    found[(contacts != OPEN) & (pressure < -no_force)] = OPEN
     return found

@@ -18,16 +18,13 @@ Of all forces of equilibrium it ends with some at the edge of no cone, if there 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
-from blocksim.engines.contact.step import Answer, Step
+from blocksim.engines.contact.cones import Cones
+from blocksim.engines.contact.step import Step
 
-STEEPEST = 3.0
-"""Friction above which edges of its cone are not scaled to length 1: normals would fade."""
 CLOSE = 1e-14
 """Mean product of force and velocity at the edges at which the contacts tell what they do."""
 MOST_STEPS = 80
@@ -41,69 +38,25 @@ CAREFUL = 0.1
 """Least part of the product that a step with slip aims at."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Cones:
-    """The friction cones of all contacts, by their edges.
-
-    Steep ones take what normals they have, down to none, and have the normal itself as a third
-    edge; where other joints have a third, it is far from any contact.
-
-    Parameters
-    ----------
-    edges : (joints, 4 or 6, 6) float
-        Velocities along the edges: up of both contacts, down of both, normal ones.
-    offset : (joints, 4 or 6) float
-        The same without acceleration.
-    norm, lean : (joints, 1) float
-        What normals were divided by, and tangents multiplied with.
-    steep : (joints, 1) bool
-    """
-
-    edges: Array
-    offset: Array
-    norm: Array
-    lean: Array
-    steep: NDArray[np.bool_]
-
-    @classmethod
-    def of(cls, step: Step) -> Cones:
-        """Take those of a step."""
-        friction, steep, mu = step.friction, step.friction.steep, step.friction.mu
-        with np.errstate(invalid="ignore"):
-            norm = np.where(steep, mu, np.minimum(np.sqrt(1 + mu**2), STEEPEST))
-            lean = np.where(steep, 1.0, mu / norm)
-
-        def along(values: Array) -> Array:
-            upright, aside = values[:, :2] / norm[..., None], lean[..., None] * values[:, 2:]
-            found = [upright + aside, upright - aside]
-            if friction.some_steep:
-                found.append(steep[..., None] * values[:, :2])
-            return np.concatenate(found, axis=1)
-
-        offset = along(step.rates[..., None])[..., 0]
-        if friction.some_steep:
-            offset[:, 4:] += ~steep
-        return cls(edges=along(step.rows), offset=offset, norm=norm, lean=lean, steep=steep)
-
-    def forces(self, pressed: Array) -> Array:
-        """Return the forces along `rows` from those along the edges."""
-        up, down = pressed[:, :2], pressed[:, 2:4]
-        pressure = (up + down) / self.norm
-        if pressed.shape[1] > 4:
-            pressure = pressure + np.where(self.steep, pressed[:, 4:], 0.0)
-        return np.concatenate([pressure, (up - down) * self.lean], axis=1)
-
-
-def interior(step: Step, *, dilates: bool) -> Answer:
+def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Array, int]:
     """Follow the central path.
 
     Parameters
     ----------
     step : Step
+    cones : Cones
     dilates : bool
         Whether friction does; Coulomb's must not be steep.
+
+    Returns
+    -------
+    x : (3 blocks,) float
+        Accelerations.
+    pressed : (joints, 4 or 6) float
+        Forces along the edges.
+    systems : int
+        Banded systems factored.
     """
-    cones = Cones.of(step)
     edges, offset = cones.edges, cones.offset
     bands, free = step.bands, step.free
     x, lift, turned = free, 0.0, None
@@ -140,8 +93,7 @@ def interior(step: Step, *, dilates: bool) -> Answer:
             smooth = SMOOTH * math.sqrt(float(np.vdot(room, forces)) / room.size)
             lift, turned = _lift(step, x, cones, smooth)
         apart = bands.along(edges, x) + offset + lift
-    found = step.friction.gathered(cones.forces(forces))
-    return Answer(x=x, forces=found, contacts=step.told(x, found), systems=count)
+    return x, forces, count
 
 
 def _lift(step: Step, x: Array, cones: Cones, smooth: float) -> tuple[Array, Array]:

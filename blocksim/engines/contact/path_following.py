@@ -57,7 +57,7 @@ def come_together(step: Step) -> Answer:
     most = STEEP_PIECES * len(glued) if step.friction.some_steep else MOST_PIECES
     found = _follow(step, glued, contacts, push, apart, most)
     if found is None:
-        return Answer(x=step.free, forces=np.zeros_like(glued), contacts=contacts)
+        return Answer.of_nothing(step)
     x, held, pieces = found
     forces = step.friction.as_said(-STIFF * step.velocities(x), contacts, held)
     return Answer(x=x, forces=forces, contacts=contacts, systems=pieces)

@@ -12,14 +12,17 @@ What each contact does is guessed, and mended until all forces and velocities ag
 (`active_set.py`). Guesses are taken in turn, until one leads to a solution:
 
 - what the contacts did in the last step;
-- from nothing, the end of an interior-point method for friction that dilates: of the two
-  answers that Coulomb's may have, rest and motion, it finds rest if there is any;
+- from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
+  then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
+  motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction;
 - the end of a path that begins with all contacts apart (`path_following.py`).
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,9 +30,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.active_set import settle
+from blocksim.engines.contact.associated import minimised
 from blocksim.engines.contact.banded import Bands
+from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
-from blocksim.engines.contact.interior import interior
+from blocksim.engines.contact.interior import central_path
 from blocksim.engines.contact.path_following import come_together
 from blocksim.engines.contact.step import Answer, Step
 
@@ -38,7 +43,8 @@ EXACT = 1e-16
 SOLVED = 1e-9
 """Residual of a solution."""
 ENOUGH = 3e-8
-"""Residual of one for which no path is followed: moved joints may not close any better."""
+"""Residual of a moving step for which no path is followed: once they have moved, joints may
+not close any better."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -132,22 +138,36 @@ class ContactProblem:
             free=(free * self.root).ravel(),
             friction=self.friction,
         )
-        if start is None:
-            guess = interior(step, dilates=True)
+        best, paths = Answer.of_nothing(step), 0
+        for guess in self._guesses(step, start):
+            best = best.or_better(settle(step, guess, precision))
+            if best.is_settled and best.residual <= SOLVED:
+                break
         else:
-            x = (start.acceleration * self.root).ravel()
-            guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
-        best, paths = settle(step, guess, precision), 0
-        if best.residual > SOLVED and not step.friction.some_steep:
-            best = best.or_better(settle(step, interior(step, dilates=False), precision))
-        # That is dear, and what is left may be round-off.
-        if best.residual > ENOUGH:
-            best, paths = best.or_better(settle(step, come_together(step), precision)), 1
+            if start is None or not best.residual <= ENOUGH:
+                best, paths = best.or_better(settle(step, come_together(step), precision)), 1
+        # From nothing an answer close by may be that of another arch.
+        sure = best.is_settled or start is not None
         return Solution(
             acceleration=best.x.reshape(-1, 3) / self.root,
             forces=best.forces,
             contacts=best.contacts,
-            residual=best.residual,
+            residual=best.residual if sure else math.inf,
             iterations=best.systems,
             paths=paths,
         )
+
+    def _guesses(self, step: Step, start: Solution | None) -> Iterator[Answer]:
+        """Give what contacts may do, the likeliest and cheapest first."""
+        cones = Cones.of(step)
+        if start is None:
+            x, pressed, systems = central_path(step, cones, dilates=True)
+            yield cones.answer(step, x, pressed, systems)
+            x, pressed, systems = minimised(step, cones, x, pressed)
+            yield cones.answer(step, x, pressed, systems)
+        else:
+            x = (start.acceleration * self.root).ravel()
+            yield Answer(x=x, forces=start.forces, contacts=start.contacts)
+        if not step.friction.some_steep:
+            x, pressed, systems = central_path(step, cones, dilates=False)
+            yield cones.answer(step, x, pressed, systems)

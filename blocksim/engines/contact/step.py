@@ -35,6 +35,8 @@ class Answer:
         `Step.residual` of it.
     systems : int
         Banded systems it took.
+    is_settled : bool
+        Whether no contact has to do anything else, and none yields.
     """
 
     x: Array
@@ -42,10 +44,17 @@ class Answer:
     contacts: Contacts
     residual: float = math.inf
     systems: int = 0
+    is_settled: bool = False
+
+    @classmethod
+    def of_nothing(cls, step: Step) -> Answer:
+        """Return what is worse than any other."""
+        contacts = np.full((len(step.rates), 2), OPEN, dtype=np.int8)
+        return cls(x=step.free, forces=np.zeros_like(step.rates), contacts=contacts)
 
     def or_better(self, other: Answer) -> Answer:
         """Return the better of the two; systems are those of both."""
-        best = self if self.residual <= other.residual else other
+        best = min(self, other, key=lambda each: (not each.is_settled, each.residual))
         return replace(best, systems=self.systems + other.systems)
 
 
