@@ -18,6 +18,7 @@ Of all forces of equilibrium it ends with some at the edge of no cone, if there 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -73,7 +74,9 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
             break
         seen, left = edges if turned is None else turned, free - x
 
-        def toward(target: Array) -> tuple[Array, Array, Array]:
+        def toward(
+            target: Array, solve: Callable[[Array], Array] = solve
+        ) -> tuple[Array, Array, Array]:
             """Change x, room and forces to products of so much, over the room."""
             way = solve(left + bands.pull(edges, target - weight * short))  # noqa: B023
             wider = bands.along(seen, way) + short  # noqa: B023

@@ -46,9 +46,14 @@ STEEP_PIECES = 40
 """The same for each joint with steep friction: longer ways are round-off going in circles."""
 
 
-def come_together(step: Step) -> Answer:
-    """Balance stiff springs, from all contacts apart."""
-    glued = -STIFF * step.velocities(step.free)
+def come_together(step: Step, preload: Array | None = None) -> Answer:
+    """Balance stiff springs, from all contacts apart.
+
+    Their forces without motion may be given: near the limit it is they that tell what contacts
+    do, to more digits than springs yield.
+    """
+    preload = np.zeros_like(step.rates) if preload is None else preload
+    glued = preload - STIFF * step.velocities(step.free)
     shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(glued), 2))
     push = STIFF * shares
     apart = float(np.maximum(glued[:, :2] / push, 0.0).max(initial=0.0))
@@ -59,7 +64,7 @@ def come_together(step: Step) -> Answer:
     if found is None:
         return Answer.of_nothing(step)
     x, held, pieces = found
-    forces = step.friction.as_said(-STIFF * step.velocities(x), contacts, held)
+    forces = step.friction.as_said(preload - STIFF * step.velocities(x), contacts, held)
     return Answer(x=x, forces=forces, contacts=contacts, systems=pieces)
 
 

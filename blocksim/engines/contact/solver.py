@@ -138,14 +138,16 @@ class ContactProblem:
             free=(free * self.root).ravel(),
             friction=self.friction,
         )
-        best, paths = Answer.of_nothing(step), 0
+        best, paths, preload = Answer.of_nothing(step), 0, None
         for guess in self._guesses(step, start):
+            preload = guess.forces if start is None else None
             best = best.or_better(settle(step, guess, precision))
             if best.is_settled and best.residual <= SOLVED:
                 break
         else:
             if start is None or not best.residual <= ENOUGH:
-                best, paths = best.or_better(settle(step, come_together(step), precision)), 1
+                guess = come_together(step, preload)
+                best, paths = best.or_better(settle(step, guess, precision)), 1
         # From nothing an answer close by may be that of another arch.
         sure = best.is_settled or start is not None
         return Solution(
