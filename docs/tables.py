@@ -12,7 +12,7 @@ import re
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import click
 import typer
@@ -226,25 +226,40 @@ def _parameters(name: str) -> str:
 
 
 def _commands(_: str) -> str:
-    """Every command with its options, as `--help` has them."""
-    group = typer.main.get_command(app)
+    """Every command with its options, as `--help` has them; shared ones come once, at the end."""
+    group = cast(click.Group, typer.main.get_command(app))
     context = click.Context(group)
-    parts = list[str]()
-    for name in group.list_commands(context):  # type: ignore[attr-defined]
-        command = group.get_command(context, name)  # type: ignore[attr-defined]
-        about = " ".join(command.help.partition("\n\n")[0].split())
-        own = [one for one in command.params if one.name != "help"]
-        rows = [
-            [
-                ", ".join(f"`{each}`" for each in (*one.opts, *one.secondary_opts))
-                if one.param_type_name == "option"
-                else f"`{one.name.upper()}`",
-                " ".join((one.help or "").split()).replace("|", "\\|"),
-            ]
-            for one in own
-        ]
-        parts.append(f"### {name}\n\n{about}\n\n" + table(["option", "what it says"], rows))
+    parts, shared = list[str](), dict[str, dict[str, list[str]]]()
+    for name in group.list_commands(context):
+        command = cast(click.Command, group.get_command(context, name))
+        panels = list[str]()
+        rows = list[list[str]]()
+        for one in command.params:
+            panel = getattr(one, "rich_help_panel", None)
+            if one.name == "help":
+                continue
+            if panel is None:
+                rows.append(_option(one))
+            else:
+                shared.setdefault(panel, {})[str(one.name)] = _option(one)
+                panels += [panel] * (panel not in panels)
+        about = " ".join((command.help or "").partition("\n\n")[0].split())
+        besides = " and ".join(f"[{each}](#{each.lower().replace(' ', '-')})" for each in panels)
+        said = f"{about} It takes the options of {besides}, too." if besides else about
+        parts.append(f"## {name}\n\n{said}")
+        if rows:
+            parts.append(table(["option", "what it says"], rows))
+    for panel, own in shared.items():
+        parts.append(f"## {panel}\n\n" + table(["option", "what it says"], [*own.values()]))
     return "\n\n".join(parts)
+
+
+def _option(one: click.Parameter) -> list[str]:
+    """Return an option's names and what its help says."""
+    names = [*one.opts, *one.secondary_opts]
+    shown = names if one.param_type_name == "option" else [str(one.name).upper()]
+    said = " ".join((getattr(one, "help", "") or "").split()).replace("|", "\\|")
+    return [", ".join(f"`{each}`" for each in shown), said]
 
 
 def _validated(which: str) -> str:
