@@ -378,6 +378,15 @@ def _found(row: StructureRow) -> str:
     return f"{row.value:.8g} {row.unit or ''}".strip()
 
 
+def _example(name: str) -> str:
+    """Return a script as a page shows it: its picture, its text, its code."""
+    code = (ROOT / "docs" / "examples" / f"{name}.py").read_text(encoding="utf-8")
+    about, _, rest = code.removeprefix('\"\"\"').partition('\"\"\"')
+    title, _, more = about.partition("\n\n")
+    picture = f"![{' '.join(title.split())}](examples/{name}.png)"
+    return f"{more.strip()}\n\n{picture}\n\n```python\n{rest.strip()}\n```"
+
+
 TABLES: dict[str, Callable[[str], str]] = {
     "methods": _methods,
     "format": _format,
@@ -385,6 +394,7 @@ TABLES: dict[str, Callable[[str], str]] = {
     "parameters": _parameters,
     "commands": _commands,
     "validated": _validated,
+    "example": _example,
 }
 
 
