@@ -79,19 +79,24 @@ def _methods(_: str) -> str:
         check, bracket = own["check"], own[f"bracket to {width:g}"]
         finest = min(float(row["error"]) for each, row in own.items() if each != "check")
         error = _error(method, finest)
-        cells = [_seconds(check), f"{_seconds(bracket)} to {100 * width:g} %", error, cannot]
+        cells = [_seconds(check), f"to {100 * width:g} %: {_seconds(bracket)}", error, cannot]
         rows.append([f"`{method}`", *cells])
     return table(["method", "a check", "a bracket", "error", "it cannot see"], rows)
 
 
 def _seconds(row: dict[str, str]) -> str:
     usual, longest = (float(row[name]) for name in ("median_s", "longest_s"))
-    return f"{usual:.1g} s (at most {longest:.1g} s)"
+    return f"{_short(usual)} s (at most {_short(longest)} s)"
+
+
+def _short(value: float) -> str:
+    """Say a number to one digit, or to a whole number above one."""
+    return f"{value:.0f}" if value >= 1 else f"{value:.1g}"
 
 
 def _error(method: str, error: float) -> str:
     if method == "theory":
-        return f"{100 * error:.1g} % for 27 voussoirs"
+        return "none, of the continuous arch"
     return "none" if error < 1e-12 else f"{error:.0e}" if error < 1e-6 else f"{100 * error:.1g} %"
 
 

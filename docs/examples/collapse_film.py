@@ -19,7 +19,7 @@ print(answer.verdict, "with hinges at the intrados at", hinges)
 
 recording = simulate(arch, mu=MU, method="direct", duration=2.4)
 render([recording], "collapse_film.gif", height=180, slow=1)
-render([recording], "collapse_film.png", height=320, at=1.9)
+render([recording], "collapse_film.png", height=480, at=1.9)
 
 headline = max(hinges)
 print(f"inner hinge at {headline:.1f} degrees")
