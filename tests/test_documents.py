@@ -6,6 +6,7 @@ import re
 import runpy
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -17,6 +18,7 @@ from running import inside
 
 from blocksim.ask.methods import METHODS
 from blocksim.common.references import references
+from blocksim.many import run as many
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -43,7 +45,7 @@ class Fence:
         for line in self.text.splitlines():
             start = re.match(r"(?:\$ )?(?:\.venv/bin/)?blocksim (.*)", line)
             if start and (line.startswith("$") or self.language == "sh"):
-                found.append((start[1].partition("  #")[0].strip(), []))
+                found.append((start[1].partition(" #")[0].strip(), []))
             elif self.language == "console" and found:
                 found[-1][1].append(line)
         return found
@@ -105,12 +107,19 @@ def run(page: Path, *, long: bool) -> int:
             Path(fence.title).write_text(fence.text, encoding="utf-8")
         if fence.language == "python" and page.name != "examples.md":
             exec(compile(fence.text, name_of(page), "exec"), {})  # noqa: S102
+            count += 1
         for command, shown in fence.commands:
             ran = inside(*command.split())
             assert ran.returncode in {0, 1, 3}, (command, ran.stderr)
             assert missing(shown, ran.stdout) is None, (command, ran.stdout)
             count += 1
     return count
+
+
+@pytest.fixture(autouse=True)
+def _one_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps of pages go on here: processes take seconds to start, and have tests of their own."""
+    monkeypatch.setattr(many, "processes", lambda _: ThreadPoolExecutor(1))
 
 
 @pytest.mark.parametrize("page", ASKING, ids=name_of)
@@ -191,9 +200,8 @@ def test_numbers_quoted_are_those_of_the_rows() -> None:
     quotes = module("quotes")
     texts = [page.read_text(encoding="utf-8") for page in quotes.pages()]
     found = [quote for text in texts for quote in quotes.quotes(text)]
-    comments = sum(len(re.findall(r"<!-- \w+: (?=[a-z(]|\d+ \*)", text)) for text in texts)
-    tables = sum(text.count("<!-- table: ") for text in texts)
-    assert len(found) == comments - tables >= 36
+    comments = sum(len(re.findall(r"<!-- (?!table|file)\w+: ", text)) for text in texts)
+    assert len(found) == comments >= 36
     assert [quote for quote in found if not quote.holds] == []
 
 
