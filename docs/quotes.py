@@ -99,7 +99,11 @@ def _column(texts: list[str]) -> np.ndarray:
 
 def pages() -> list[Path]:
     """Return every page that may quote."""
-    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), ROOT / "analysis/README.md"]
+    return [
+        ROOT / "README.md",
+        *sorted((ROOT / "docs").rglob("*.md")),
+        ROOT / "analysis/README.md",
+    ]
 
 
 def main() -> int:

@@ -25,7 +25,11 @@ PAGES = {
     "analysis/sector.md": "theory/sector.md",
 }
 """Files outside docs/ that are pages of the site."""
+TAG = re.compile(r"\\tag\{([^}]*)\}")
+NAMED = re.compile(r"<mi>(sin|cos|cot|arctan|min)</mi>")
+"""Functions, which want a little room around them."""
 FIGURES = "analysis/figures"
+SHOWN = {".png", ".csv"}
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^()\s]+)\)")
 CODE = re.compile(r"(^```.*?^```|`[^`\n]+`)", flags=re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(
@@ -38,7 +42,8 @@ def on_files(files: Any, config: Any) -> Any:
     from mkdocs.structure.files import File
 
     found = {path: ROOT / name for name, path in PAGES.items()}
-    found |= {f"figures/{path.name}": path for path in (ROOT / FIGURES).glob("*.png")}
+    shown = [path for path in (ROOT / FIGURES).iterdir() if path.suffix in SHOWN]
+    found |= {f"figures/{path.name}": path for path in shown}
     for path, source in found.items():
         files.append(File.generated(config, path, abs_src_path=str(source)))
     return files
@@ -89,7 +94,7 @@ def site_path(path: Path) -> str | None:
     name = path.relative_to(ROOT).as_posix()
     if name in PAGES:
         return PAGES[name]
-    if path.parent == ROOT / FIGURES and path.suffix == ".png":
+    if path.parent == ROOT / FIGURES and path.suffix in SHOWN:
         return f"figures/{path.name}"
     if path.is_relative_to(DOCS) and path.suffix != ".py":
         return path.relative_to(DOCS).as_posix()
@@ -97,5 +102,13 @@ def site_path(path: Path) -> str | None:
 
 
 def _formula(found: re.Match[str]) -> str:
-    display = "block" if found[2] == "[" else "inline"
-    return convert(html.unescape(found[3]).strip(), display=display)
+    text, number = html.unescape(found[3]).strip(), ""
+    if tag := TAG.search(text):
+        text, number = text.replace(tag[0], ""), tag[1]
+    block = found[2] == "["
+    drawn = convert(text.strip(), display="block" if block else "inline")
+    drawn = NAMED.sub(r'<mspace width="0.17em"/>\g<0><mspace width="0.17em"/>', drawn)
+    if not block:
+        return drawn
+    told = f"<span>({number})</span>" if number else ""
+    return f'<div class="formula">{drawn}{told}</div>'

@@ -97,7 +97,9 @@ def _short(value: float) -> str:
 def _error(method: str, error: float) -> str:
     if method == "theory":
         return "none, of the continuous arch"
-    return "none" if error < 1e-12 else f"{error:.0e}" if error < 1e-6 else f"{100 * error:.1g} %"
+    return (
+        "none" if error < 1e-12 else f"{error:.0e}" if error < 1e-6 else f"{100 * error:.1g} %"
+    )
 
 
 def _format(which: str) -> str:
@@ -231,7 +233,7 @@ def _parameters(name: str) -> str:
 
 
 def _commands(_: str) -> str:
-    """Every command with its options, as `--help` has them; shared ones come once, at the end."""
+    """Every command with its options, as `--help` has them; shared ones once, at the end."""
     group = cast(click.Group, typer.main.get_command(app))
     context = click.Context(group)
     parts, shared = list[str](), dict[str, dict[str, list[str]]]()
@@ -249,7 +251,9 @@ def _commands(_: str) -> str:
                 shared.setdefault(panel, {})[str(one.name)] = _option(one)
                 panels += [panel] * (panel not in panels)
         about = " ".join((command.help or "").partition("\n\n")[0].split())
-        besides = " and ".join(f"[{each}](#{each.lower().replace(' ', '-')})" for each in panels)
+        besides = " and ".join(
+            f"[{each}](#{each.lower().replace(' ', '-')})" for each in panels
+        )
         said = f"{about} It takes the options of {besides}, too." if besides else about
         parts.append(f"## {name}\n\n{said}")
         if rows:
@@ -357,7 +361,7 @@ def _eta(value: float | None) -> str:
 
 
 def _structures() -> str:
-    """What is known of each shipped structure, and what limit analysis says."""
+    """Set what is known of each shipped structure beside what limit analysis says."""
     known = structures(quick=False)
     asked = {
         (row.structure, row.question): row for row in validate_structures(known, [], workers=1)
@@ -386,7 +390,7 @@ def _found(row: StructureRow) -> str:
 def _example(name: str) -> str:
     """Return a script as a page shows it: its picture, its text, its code."""
     code = (ROOT / "docs" / "examples" / f"{name}.py").read_text(encoding="utf-8")
-    about, _, rest = code.removeprefix('\"\"\"').partition('\"\"\"')
+    about, _, rest = code.removeprefix('"""').partition('"""')
     title, _, more = about.partition("\n\n")
     picture = f"![{' '.join(title.split())}](examples/{name}.png)"
     return f"{more.strip()}\n\n{picture}\n\n```python\n{rest.strip()}\n```"

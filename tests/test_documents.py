@@ -23,8 +23,10 @@ from blocksim.many import run as many
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
-FENCE = re.compile(r"^(?:<!-- (?P<note>[^>\n]*) -->\n)?```(?P<about>[^\n]*)\n(?P<text>.*?)^```$",
-                   flags=re.MULTILINE | re.DOTALL)  # fmt: skip
+FENCE = re.compile(
+    r"^(?:<!-- (?P<note>[^>\n]*) -->\n)?```(?P<about>[^\n]*)\n(?P<text>.*?)^```$",
+    flags=re.MULTILINE | re.DOTALL,
+)
 ELSEWHERE = "other machines"
 LINK = re.compile(r"\]\(([^)\s:#]+)(?:#[^)]*)?\)")
 
@@ -77,7 +79,7 @@ LONG = [page for page in ASKING if any(each.note == "long" for each in fences(pa
 
 
 def missing(shown: list[str], printed: str) -> str | None:
-    """Return the first line that was not printed where it is shown; `...` is what is left out."""
+    """Return the first line shown that was not printed; `...` is what is left out."""
 
     def same(text: str) -> str:
         return re.sub(r", [\d.]+ s\)", ", time)", text).rstrip()
@@ -90,7 +92,9 @@ def missing(shown: list[str], printed: str) -> str | None:
         whole = not line.endswith("...")
         start = line.removesuffix("...")
         places = range(at, len(lines) if skip else min(at + 1, len(lines)))
-        fits = (n for n in places if lines[n] == line or (not whole and lines[n].startswith(start)))
+        fits = (
+            n for n in places if lines[n] == line or (not whole and lines[n].startswith(start))
+        )
         at, skip = next(fits, -1) + 1, False
         if not at:
             return line
@@ -98,7 +102,7 @@ def missing(shown: list[str], printed: str) -> str | None:
 
 
 def run(page: Path, *, long: bool) -> int:
-    """Run a page in the current folder, in its order, and return how many commands that were."""
+    """Run a page in the current folder, in its order; return how many commands that were."""
     count = 0
     for fence in fences(page):
         if fence.note == ELSEWHERE or (fence.note == "long" and not long):
@@ -118,7 +122,7 @@ def run(page: Path, *, long: bool) -> int:
 
 @pytest.fixture(autouse=True)
 def _one_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweeps of pages go on here: processes take seconds to start, and have tests of their own."""
+    """Sweep in this process: others take seconds to start, and have tests of their own."""
     monkeypatch.setattr(many, "processes", lambda _: ThreadPoolExecutor(1))
 
 
@@ -142,7 +146,10 @@ def test_long_commands_of_a_page_run(
 def test_a_page_that_shows_what_is_not_printed_is_seen() -> None:
     printed = "STANDS  (limit, 0.3 s)\n  arch    alpha 90 deg, eta 0.1\n  mode    rrr\n"
     assert missing(["STANDS  (limit, 0.02 s)", "  ..."], printed) is None
-    assert missing(["STANDS  (limit, 0.02 s)", "  arch    alpha 90 deg, ...", "..."], printed) is None
+    assert (
+        missing(["STANDS  (limit, 0.02 s)", "  arch    alpha 90 deg, ...", "..."], printed)
+        is None
+    )
     assert missing(["COLLAPSES  (limit, 0.02 s)", "  ..."], printed) is not None
     assert missing(["STANDS  (limit, 0.02 s)", "  mode    rrr"], printed) is not None
     assert missing(["STANDS  (limit, 0.02 s)", "..."], printed) is None
@@ -190,8 +197,8 @@ def test_tables_in_pages_are_as_code_and_rows_say(name: str) -> None:
 
 @pytest.mark.parametrize("which", ["structure", "scenario", "design"])
 def test_every_key_of_a_file_is_described(which: str) -> None:
-    rows = re.findall(r"^\| (`\w+`) .* \| ([^|]*) \|$", module("tables").made(f"format {which}"),
-                      flags=re.MULTILINE)  # fmt: skip
+    table = module("tables").made(f"format {which}")
+    rows = re.findall(r"^\| (`\w+`) .* \| ([^|]*) \|$", table, flags=re.MULTILINE)
     assert len(rows) > 10
     assert [name for name, said in rows if not said.strip()] == []
 
@@ -222,7 +229,8 @@ PUBLISHED = {
     # problem of Ochsendorf (2006), solved independently.
     "least_thickness": pytest.approx(0.107426, abs=5e-7),
     "engineers_arch": pytest.approx(
-        22 * np.arctan2(4, 4**2 / 6 - 1.5) * ((25 / 6 + 0.45) ** 2 - (25 / 6) ** 2) / 2, rel=1e-9
+        22 * np.arctan2(4, 4**2 / 6 - 1.5) * ((25 / 6 + 0.45) ** 2 - (25 / 6) ** 2) / 2,
+        rel=1e-9,
     ),
     "tilted_wall": pytest.approx(0.40369, abs=1e-5),
     "drawing": pytest.approx(np.degrees(np.arctan(0.4)), rel=1e-3),
@@ -278,7 +286,9 @@ def test_references_are_of_what_a_method_rests_on() -> None:
         assert len(keys(method)) > 2, method
     printed = inside("cite", "--method", "pymunk")
     assert printed.returncode == 0
-    assert [entry.count("{") - entry.count("}") for entry in references(list(METHODS))] == [0] * len(every)
+    assert [entry.count("{") - entry.count("}") for entry in references(list(METHODS))] == [
+        0
+    ] * len(every)
     assert printed.stdout.count("@") == len(keys("pymunk"))
     wrong = inside("cite", "--method", "box2d")
     assert wrong.returncode == 2

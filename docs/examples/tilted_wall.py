@@ -14,7 +14,9 @@ found = ask.bracket(ask.family_of(wall, "tilt"), method="limit", tol=1e-4)
 print(f"it stands up to {found.low:.3f} degrees, and falls at {found.high:.3f}")
 
 # A little beyond: how does it fall?
-answer = ask.check(replace(wall, gravity=ask.family_of(wall, "tilt").at(found.high * 1.02).gravity))
+answer = ask.check(
+    replace(wall, gravity=ask.family_of(wall, "tilt").at(found.high * 1.02).gravity)
+)
 answer.plot().savefig("tilted_wall.png", dpi=70)
 
 headline = tan(radians((found.low + found.high) / 2))
