@@ -7,27 +7,20 @@ makes them again and compares, so that no table says anything else than the code
 from __future__ import annotations
 
 import csv
-import math
 import re
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 import click
 import typer
-from pydantic import TypeAdapter
+from format_tables import of_format
+from markdown_table import table
+from validation_tables import of_validation
 
-from blocksim.arch import theory
-from blocksim.arch.limit import least_thickness
-from blocksim.arch.scenario import ScenarioFile, load_scenario, shipped
-from blocksim.blocks.entries import Around, StructureFile
 from blocksim.cli import app
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import parameters_of
-from blocksim.many.design import Design
-from blocksim.studies.questions import StructureRow
-from blocksim.studies.structures import structures, validate_structures
 
 ROOT = Path(__file__).resolve().parent.parent
 ROWS = ROOT / "analysis" / "figures"
@@ -63,12 +56,6 @@ def made(name: str) -> str:
     return TABLES[kind](rest)
 
 
-def table(headings: list[str], rows: list[list[str]]) -> str:
-    """Set rows as a table in Markdown."""
-    lines = [headings, ["---"] * len(headings), *rows]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
-
-
 def _methods(_: str) -> str:
     with (ROWS / "costs.csv").open(encoding="utf-8", newline="") as file:
         costs = list(csv.DictReader(file))
@@ -100,118 +87,6 @@ def _error(method: str, error: float) -> str:
     return (
         "none" if error < 1e-12 else f"{error:.0e}" if error < 1e-6 else f"{100 * error:.1g} %"
     )
-
-
-def _format(which: str) -> str:
-    """Tables of the keys of a file: one of its top, one for each table inside it."""
-    schemas = {"structure": StructureFile, "scenario": ScenarioFile, "design": Design}
-    schema = TypeAdapter(schemas[which]).json_schema()
-    parts = {"": schema, **{_word(name): part for name, part in schema["$defs"].items()}}
-    return "\n\n".join(
-        (f"**{name}**: {_sentence(part)}\n\n" if name else "") + _keys(part)
-        for name, part in parts.items()
-        if "properties" in part
-    )
-
-
-def _word(name: str) -> str:
-    """Say `BlockEntry` as block."""
-    return re.sub(r"(Entry|Table)$", "", name).lower()
-
-
-def _sentence(part: dict[str, Any]) -> str:
-    return " ".join(part.get("description", "").partition("\n")[0].split())
-
-
-def _keys(part: dict[str, Any]) -> str:
-    required = part.get("required", [])
-    said = _described(part)
-    rows = [
-        [
-            f"`{name}`",
-            _kind(each).replace("|", "\\|"),
-            "must be given" if name in required else _default(each.get("default")),
-            said[name].replace("|", "\\|"),
-        ]
-        for name, each in part["properties"].items()
-    ]
-    return table(["key", "may be", "if left out", "what it is"], rows)
-
-
-def _described(part: dict[str, Any]) -> dict[str, str]:
-    """Return what a docstring in numpy style says of each parameter, bases included."""
-    text = part.get("description", "")
-    if part.get("title") == "StructureFile":
-        text += "\n" + re.sub(r"^ {4}", "", Around.__doc__ or "", flags=re.MULTILINE)
-    said = dict[str, str]()
-    for found in re.finditer(
-        r"^(\w[\w, ]*) : [^\n]*\n((?:    [^\n]*\n?)*)", text, flags=re.MULTILINE
-    ):
-        for name in found[1].split(", "):
-            said[name] = " ".join(found[2].split())
-    return said
-
-
-def _default(value: Any) -> str:
-    if value is None or value in ([], {}, ""):
-        return "-"
-    if isinstance(value, dict) and "values" in value:
-        return ", ".join(f"`{each:g}`" for each in value["values"])
-    if isinstance(value, dict):
-        return "as its own keys say"
-    if isinstance(value, list):
-        return ", ".join(f"`{each}`" for each in value)
-    return "`true`" if value is True else "`false`" if value is False else f"`{value}`"
-
-
-def _kind(part: dict[str, Any], *, many: bool = False) -> str:
-    """Say what a key may be: `many` after "list of"."""
-    if "$ref" in part:
-        name = _word(part["$ref"].rpartition("/")[2])
-        return f"{name} tables" if many else "axis" if name == "axis" else f"table {name}"
-    options = [each for each in part.get("anyOf", []) if each.get("type") != "null"]
-    if options:
-        return ", or ".join(_kind(each, many=many) for each in options)
-    if "const" in part or "enum" in part:
-        return " or ".join(f"`{each}`" for each in part.get("enum", [part.get("const")]))
-    match part.get("type"):
-        case "boolean":
-            return "true or false"
-        case "string":
-            return "texts" if many else "text"
-        case "array":
-            return _list(part, many=many)
-        case "integer" | "number":
-            return _number(part, many=many)
-    return "anything"
-
-
-def _list(part: dict[str, Any], *, many: bool) -> str:
-    fixed = part.get("prefixItems")
-    if fixed and fixed[0].get("type") == "number":
-        return "points" if many else "point `[x, y]`"
-    if fixed:
-        return f"{len(fixed)} of: {_kind(fixed[0])}"
-    low, high = part.get("minItems"), part.get("maxItems", math.inf)
-    size = f"{low} to {high} " if low and high <= 3 else f"{low} or more " if low else ""
-    return ("lists" if many else "list") + f" of {size}{_kind(part['items'], many=True)}"
-
-
-def _number(part: dict[str, Any], *, many: bool) -> str:
-    noun = "whole number" if part["type"] == "integer" else "number"
-    noun += "s" if many else ""
-    above, below = part.get("exclusiveMinimum"), part.get("exclusiveMaximum")
-    low, high = part.get("minimum"), part.get("maximum")
-    said = list[str]()
-    if above is not None:
-        said.append(f"above {above:g}")
-    elif low is not None and abs(low) < 1e9:
-        said.append(f"{low:g} or more")
-    if below is not None:
-        said.append(f"below {below:g}")
-    elif high is not None and abs(high) < 1e9:
-        said.append(f"at most {high:g}")
-    return noun + (", " + ", ".join(said) if said else "")
 
 
 def _kinds(_: str) -> str:
@@ -271,122 +146,6 @@ def _option(one: click.Parameter) -> list[str]:
     return [", ".join(f"`{each}`" for each in shown), said]
 
 
-def _validated(which: str) -> str:
-    return {
-        "landmarks": _landmarks,
-        "captions": _captions,
-        "scenarios": _scenarios,
-        "structures": _structures,
-    }[which]()
-
-
-def _printed() -> dict[str, Any]:
-    file = ROOT / "tests" / "validation" / "cocchetti_rizzi_2024.toml"
-    return tomllib.loads(file.read_text(encoding="utf-8"))
-
-
-def _digits(value: float, count: int = 13) -> str:
-    return f"{value:.{count}g}"
-
-
-def _landmarks() -> str:
-    """Table 1 of the paper, and the largest relative difference of theory from it."""
-    symbols = {
-        "eta": "eta",
-        "mu": "mu",
-        "half_angle": "alpha",
-        "thrust": "h",
-        "beta_r": "beta_r",
-        "beta_s": "beta_s",
-    }
-    rows = list[list[str]]()
-    for name, printed in _printed()["table1"].items():
-        found = theory.landmarks()[name]
-        apart = max(
-            abs(getattr(found, own) - printed[symbol]) / (abs(printed[symbol]) or 1.0)
-            for own, symbol in symbols.items()
-        )
-        values = [_digits(printed[symbol]) for symbol in symbols.values()]
-        rows.append([f"{name}, {printed['name']}", *values, _apart(apart)])
-    headings = ["point", *symbols.values(), "blocksim differs by"]
-    return table(headings, rows)
-
-
-def _apart(value: float) -> str:
-    """Say a relative difference: round-off is all one, whatever the machine."""
-    return "less than 1e-12" if value < 1e-12 else f"{value:.0e}"
-
-
-def _captions() -> str:
-    """Arches of the captions of Figs 13-25: printed eta, and that of theory."""
-    rows = list[list[str]]()
-    for each in _printed()["captions"]:
-        alpha = each.get("alpha") or math.radians(each["alpha_deg"])
-        found = theory.least_thickness(alpha, each["mu"])
-        cells = [each["place"], f"{math.degrees(alpha):.6g}", f"{each['mu']:.6g}"]
-        same = "" if found.eta is None else _apart(abs(found.eta / each["eta"] - 1))
-        said = "any: the arch slides" if found.eta is None else _digits(found.eta, 10)
-        rows.append([*cells, each["mode"], _digits(each["eta"], 10), said, same])
-    headings = ["figure", "alpha", "mu", "mode", "eta printed", "theory", "differs by"]
-    return table(headings, rows)
-
-
-def _scenarios() -> str:
-    """Least thickness of each shipped scenario: known, by theory, and as built."""
-    rows = list[list[str]]()
-    for name in shipped():
-        each = load_scenario(name)
-        if not each.expected_modes:
-            continue
-        found = theory.least_thickness(each.half_angle, each.mu, each.weight)
-        built = least_thickness(each.half_angle, each.mu, each.voussoirs, each.weight).eta
-        rows.append(
-            [
-                f"`{name}`",
-                f"{math.degrees(each.half_angle):.6g}",
-                f"{each.mu:.6g}",
-                ", ".join(str(mode) for mode in each.expected_modes),
-                _eta(each.expected_eta),
-                _eta(found.eta),
-                f"{_eta(built)} (n = {each.voussoirs})",
-                each.source.replace("|", "\\|"),
-            ]
-        )
-    headings = ["scenario", "alpha", "mu", "modes", "known eta", "theory", "as built", "source"]
-    return table(headings, rows)
-
-
-def _eta(value: float | None) -> str:
-    return "none stands" if value is None else f"{value:.8g}"
-
-
-def _structures() -> str:
-    """Set what is known of each shipped structure beside what limit analysis says."""
-    known = structures(quick=False)
-    asked = {
-        (row.structure, row.question): row for row in validate_structures(known, [], workers=1)
-    }
-    rows = list[list[str]]()
-    for each in known:
-        for one in each.expect:
-            question = one.over or "stands"
-            value = "-" if one.value is None else f"{one.value:.10g}"
-            row = asked.get((each.name, question))
-            said = "of engines only" if row is None else _found(row)
-            over = f"`--over {one.over}`" if one.over else "does it stand?"
-            cells = [over, one.verdict or value, one.published or "-", said]
-            source = each.problem.source.replace("|", "\\|")
-            rows.append([f"`{each.name}`", *cells, source])
-    headings = ["structure", "question", "known", "published", "limit analysis", "source"]
-    return table(headings, rows)
-
-
-def _found(row: StructureRow) -> str:
-    if row.value is None:
-        return str(row.verdict)
-    return f"{row.value:.8g} {row.unit or ''}".strip()
-
-
 def _example(name: str) -> str:
     """Return a script as a page shows it: its picture, its text, its code."""
     code = (ROOT / "docs" / "examples" / f"{name}.py").read_text(encoding="utf-8")
@@ -398,11 +157,11 @@ def _example(name: str) -> str:
 
 TABLES: dict[str, Callable[[str], str]] = {
     "methods": _methods,
-    "format": _format,
+    "format": of_format,
     "kinds": _kinds,
     "parameters": _parameters,
     "commands": _commands,
-    "validated": _validated,
+    "validated": of_validation,
     "example": _example,
 }
 
