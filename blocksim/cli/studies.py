@@ -66,7 +66,7 @@ def validate(
     ] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes.")] = 2,
 ) -> None:
-    """Simulate published arches and hold them against the map, and structures their sources.
+    """Simulate published arches and structures; compare with the map and their sources.
 
     Exit code 0 where all agrees, 1 where something does not.
     """
@@ -137,7 +137,7 @@ def sweep(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Ask about many arches; a kill at any moment loses nothing that was done."""
+    """Ask about many arches. A run that was killed goes on where it was."""
     if design is None:
         extra = " and --out" if out is None else ""
         raise InputError(f"DESIGN{extra}", ALL_MISSING if extra else MISSING, "given")
