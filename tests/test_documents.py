@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
 import runpy
+import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -14,10 +16,11 @@ from types import ModuleType
 import matplotlib.image
 import numpy as np
 import pytest
-from running import inside
+from running import PROGRAM, inside
 
 from blocksim.ask.methods import METHODS
 from blocksim.common.references import references
+from blocksim.common.version import __version__
 from blocksim.many import run as many
 
 ROOT = Path(__file__).parent.parent
@@ -294,3 +297,22 @@ def test_references_are_of_what_a_method_rests_on() -> None:
     assert wrong.returncode == 2
     assert "--method" in wrong.stderr
     assert "box2d" in wrong.stderr
+
+
+def test_a_shell_completes_commands() -> None:
+    asked = {
+        "_BLOCKSIM_COMPLETE": "complete_bash",
+        "COMP_WORDS": "blocksim c",
+        "COMP_CWORD": "1",
+    }
+    done = subprocess.run(
+        PROGRAM, env=os.environ | asked, capture_output=True, text=True, check=False
+    )
+    assert {"check", "chart", "cite", "convert"} == {*done.stdout.split()}
+
+
+def test_help_and_version_are_where_they_are_looked_for() -> None:
+    assert inside("-h").stdout == inside("--help").stdout
+    assert inside("--version").stdout.split() == ["blocksim", __version__]
+    pages = (DOCS / "guide" / "commands.md").read_text(encoding="utf-8")
+    assert all(f"\n## {name}\n" in pages for name in ("check", "bracket", "sweep", "cite"))
