@@ -16,7 +16,7 @@ from types import ModuleType
 import matplotlib.image
 import numpy as np
 import pytest
-from running import PROGRAM, inside
+from running import inside
 
 from blocksim.ask.methods import METHODS
 from blocksim.common.references import references
@@ -300,15 +300,17 @@ def test_references_are_of_what_a_method_rests_on() -> None:
 
 
 def test_a_shell_completes_commands() -> None:
+    # By its own name, as a shell asks it.
+    program = str(Path(sys.executable).with_name("blocksim"))
     asked = {
         "_BLOCKSIM_COMPLETE": "complete_bash",
         "COMP_WORDS": "blocksim c",
         "COMP_CWORD": "1",
     }
     done = subprocess.run(
-        PROGRAM, env=os.environ | asked, capture_output=True, text=True, check=False
+        [program], env={**os.environ, **asked}, capture_output=True, text=True, check=False
     )
-    assert {"check", "chart", "cite", "convert"} == {*done.stdout.split()}
+    assert {*done.stdout.split()} == {"check", "chart", "cite", "convert"}
 
 
 def test_help_and_version_are_where_they_are_looked_for() -> None:
