@@ -1,10 +1,10 @@
-"""What an answer costs by each method: the figures of the table in the README.
+"""What an answer costs by each method: the figures of the table of methods.
 
 Question: how long do a check and a bracket take, and how far is the bracket from the exact
 value? Five arches of 27 voussoirs, spread over the map, are checked 1 % below and above their
 least thickness and bracketed, moving runs included, inside a running process. It is processor
 time, so that other work on the machine counts little; median of the repeats, then median and
-largest of the arches.
+largest of the arches. OUT/costs.csv has the rows that the pages quote.
 
     python -m analysis.costs OUT
 """
@@ -15,12 +15,13 @@ import math
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import median
 from typing import TypeVar
 
 from analysis.command import run
+from analysis.rows import write_rows
 from blocksim import Arch, bracket, check
 from blocksim.arch.limit import least_thickness
 from blocksim.ask.methods import METHODS, missing
@@ -64,6 +65,7 @@ def main(out: Path, *, quick: bool = False) -> list[Cost]:
             sys.stderr.write(f"{method}\n")
     out.mkdir(parents=True, exist_ok=True)
     (out / "costs.md").write_text(table(costs), encoding="utf-8")
+    write_rows(out / "costs.csv", [asdict(cost) for cost in costs])
     return costs
 
 

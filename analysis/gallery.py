@@ -16,11 +16,10 @@ Writes for each a picture and a film (NAME.png, NAME.mp4), all of them on one sh
 
 from __future__ import annotations
 
-import csv
 import io
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import BinaryIO
 
@@ -33,6 +32,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from analysis.command import run
+from analysis.rows import write_rows
 from blocksim.arch.circular import GRAVITY, Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.ask.check import check
@@ -145,10 +145,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
         write_film(Film([fall], height=height), out / f"{name}.mp4")
     with (out / "gallery.png").open("wb") as file:
         _few_colours(sheet(seen), file)
-    with (out / "gallery.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(row) for row in rows)
+    write_rows(out / "gallery.csv", [asdict(row) for row in rows])
     return Result(tuple(rows), engines(out, quick=quick))
 
 

@@ -9,6 +9,7 @@ from concurrent.futures import as_completed
 from pathlib import Path
 from typing import TypeVar
 
+from analysis.rows import provenance
 from blocksim.common.processes import crew
 
 Case = TypeVar("Case")
@@ -33,14 +34,17 @@ def answers(
     Returns
     -------
     list of Row
-        In the order of the cases.
+        In the order of the cases, each with the keys of `provenance` besides its own.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     kept = _read(path)
     left = [case for case in cases if repr(case) not in kept]
+    made = provenance()
     with path.open("a", encoding="utf-8") as file:
 
         def keep(case: Case, row: Row) -> None:
+            # What answered is said with each answer: a study that goes on may be by other code.
+            row = {**row, **made}
             kept[repr(case)] = row
             file.write(json.dumps({"case": repr(case), "row": row}) + "\n")
             file.flush()

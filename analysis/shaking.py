@@ -14,11 +14,10 @@ equation, and an arch below the acceleration of its static limit, 0.3705 g, move
 
 from __future__ import annotations
 
-import csv
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +29,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from analysis.command import run
+from analysis.rows import write_rows
 from blocksim.ask.bracket import bracket
 from blocksim.ask.families import family_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
@@ -230,10 +230,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
         for name, table in (("block", BLOCK), ("arch", ARCH))
     }
     result = Result(tuple(pulses), fall(0.004 if quick else FINE), maps)
-    with (out / "shaking.csv").open("w", newline="", encoding="utf-8") as file:
-        written = csv.DictWriter(file, [field.name for field in fields(Row)])
-        written.writeheader()
-        written.writerows(asdict(row) for row in pulses)
+    write_rows(out / "shaking.csv", [asdict(row) for row in pulses])
     _figure(result, out / "shaking.png")
     return result
 

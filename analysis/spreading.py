@@ -13,11 +13,10 @@ Expected: semicircles of t/r 0.12, 0.15 and 0.2 (n = 20) fall when their span ha
 
 from __future__ import annotations
 
-import csv
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +27,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from analysis.command import run
+from analysis.rows import write_rows
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.joints import JointState
 from blocksim.kinds.files import structure_of
@@ -162,10 +162,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
         (float(each), arch(float(each)).path.value) for each in CURVE[:: 10 if quick else 1]
     ]
     out.mkdir(parents=True, exist_ok=True)
-    with (out / "spreading.csv").open("w", newline="", encoding="utf-8") as file:
-        written = csv.DictWriter(file, [field.name for field in fields(Row)])
-        written.writeheader()
-        written.writerows(asdict(row) for row in rows)
+    write_rows(out / "spreading.csv", [asdict(row) for row in rows])
     result = Result(tuple(rows), tuple(curve))
     _figure(result, out / "spreading.png")
     return result

@@ -325,10 +325,11 @@ def main(
         processes,
     )
     with (out / f"{kept}.csv").open("w", newline="", encoding="utf-8") as file:
-        written = csv.DictWriter(file, [field.name for field in fields(Line)])
+        written = csv.DictWriter(file, list(rows[0]))
         written.writeheader()
         written.writerows(rows)
-    return Result(tuple(Line(**cast("dict[str, Any]", row)) for row in rows), engine)
+    own = [{field.name: row[field.name] for field in fields(Line)} for row in rows]
+    return Result(tuple(Line(**cast("dict[str, Any]", row)) for row in own), engine)
 
 
 def _blocks(name: str) -> int:

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+import blocksim
 from blocksim import Arch
 from blocksim.arch import limit, theory
 from blocksim.report.chart import read_points
@@ -376,7 +377,24 @@ def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
         assert 0 <= cost.median_s <= cost.longest_s
         assert cost.error <= 5e-4
     assert costs[-1].error <= 5e-9
-    assert (tmp_path / "costs.md").exists()
+    with (tmp_path / "costs.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["method"] for row in rows] == [cost.method for cost in costs]
+    assert {len(row["code"]) for row in rows} == {12}
+    assert {row["version"] for row in rows} == {blocksim.__version__}
+    assert all(row["date"] and row["machine"] for row in rows)
+
+
+def test_a_hash_of_code_tells_another_code(tmp_path: Path) -> None:
+    rows = study("rows")
+    (tmp_path / "one.py").write_text("1\n")
+    before = rows.code_hash(tmp_path)
+    assert rows.code_hash(tmp_path) == before
+    (tmp_path / "one.py").write_text("2\n")
+    assert rows.code_hash(tmp_path) != before
+    (tmp_path / "one.py").write_text("1\n")
+    (tmp_path / "one.py").rename(tmp_path / "two.py")
+    assert rows.code_hash(tmp_path) != before
 
 
 def test_structures_with_known_answers_are_answered_right(tmp_path: Path) -> None:

@@ -44,8 +44,35 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 class ArchTable:
     """Table `[arch]` of a scenario file: by angle and ratio, or by what can be measured.
 
-    Either as of `Arch`, its angle in degrees, or `span_m`, `rise_m` and `thickness_m`, which
-    are `at` the intrados if left out; weight is that of the sector then, if left out.
+    Either `half_angle_deg` and `eta`, or `span_m`, `rise_m` and `thickness_m`.
+
+    Parameters
+    ----------
+    voussoirs : int
+        How many.
+    half_angle_deg : float
+        Half-angle of embrace, crown to springing [deg].
+    eta : float
+        Thickness over radius; without it the arch is asked about at 0.99 of its least.
+    radius : float
+        Of the centreline [m]; 1 if left out.
+    span_m : float
+        Distance between the springings [m].
+    rise_m : float
+        Height of the crown over the springings [m].
+    thickness_m : float
+        [m]
+    at : str
+        Line that span and rise are of; the intrados if left out.
+    weight : str
+        Where a voussoir's weight acts: at its arc of the centreline, or at its true centre.
+        By default `sector` of an arch in metres, else `centreline`.
+    depth : float
+        Length out of the plane [m].
+    specific_weight : float
+        Weight of a unit of volume [N/m3]; 20000 if left out.
+    unit_weight_kN_per_m3 : float
+        The same [kN/m3].
     """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
@@ -66,7 +93,15 @@ class ArchTable:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactTable:
-    """Table `[contact]`: friction of every joint, as a coefficient or as an angle."""
+    """Table `[contact]`: friction of every joint, as a coefficient or as an angle.
+
+    Parameters
+    ----------
+    mu : float
+        Friction coefficient; inf allowed.
+    friction_angle_deg : float
+        The angle whose tangent it is [deg].
+    """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
@@ -76,7 +111,13 @@ class ContactTable:
 
 @dataclass(frozen=True, kw_only=True)
 class GravityTable:
-    """Table `[gravity]`: how far it leans out of the plane."""
+    """Table `[gravity]`: how far it leans out of the plane.
+
+    Parameters
+    ----------
+    lean_deg : float
+        [deg]
+    """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
@@ -106,7 +147,25 @@ class ExpectTable:
 
 @dataclass(frozen=True, kw_only=True)
 class ScenarioFile:
-    """A scenario file as written."""
+    """A scenario file as written.
+
+    Parameters
+    ----------
+    title : str
+        In a line.
+    source : str
+        Where what is known of it was published.
+    arch : table
+        What is built.
+    contact : table
+        Friction.
+    gravity : table
+        Where it points.
+    expect : table
+        What the source says, for `validate`.
+    quick : bool
+        Whether `validate --quick` asks it.
+    """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 

@@ -32,7 +32,27 @@ _FORBID: dict[str, str] = {"extra": "forbid"}
 
 @dataclass(frozen=True, kw_only=True)
 class BlockEntry:
-    """Entry of `blocks`: `vertices`, or `polygons` that move as one; see `Body`."""
+    """Entry of `blocks`: `vertices`, or `polygons` that move as one; see `Body`.
+
+    Parameters
+    ----------
+    id : int or str
+        Names the block, once in a file.
+    vertices : list of point
+        Its corners [m], in order around it; where it is not convex it is cut into parts.
+    polygons : list of list of point
+        Convex parts that move as one block [m], instead of `vertices`.
+    fixed : bool
+        Whether it is a support.
+    weight : float
+        [N]; by default density times area times depth.
+    centre : point
+        Where its weight acts [m]; by default the centroid.
+    inertia : float
+        About its centre [kg m2]; by default that of the polygon.
+    depth : float
+        Length out of the plane [m].
+    """
 
     __pydantic_config__: ClassVar = _FORBID
 
@@ -52,7 +72,18 @@ class BlockEntry:
 class JointEntry:
     """Entry of `joints`: two ends, or one and a `normal` from `a` into `b`.
 
-    `faces` are those of `a` and `b` that meet in it, where they are known.
+    Parameters
+    ----------
+    a, b : int or str
+        The two blocks.
+    ends : list of point
+        Both ends of the joint [m], or the corner that rests on a face.
+    normal : point
+        Direction from `a` into `b`, where there is one end.
+    friction : float or "inf"
+        Of this joint, instead of that of the file; 0 allowed.
+    faces : pair of faces
+        Faces of `a` and `b` that meet in it, two points each [m], where they are known.
     """
 
     __pydantic_config__: ClassVar = _FORBID
@@ -69,7 +100,20 @@ class JointEntry:
 class LoadEntry:
     """Entry of `dead` or `live`: a `body` force, or a `force` on a block or along a `patch`.
 
-    A patch is from one x to another: what lies uppermost there bears the force, evenly.
+    Parameters
+    ----------
+    body : list of float
+        Force on every block, in units of its weight: across, up, and out of the plane.
+    blocks : list of int or str
+        Those `body` acts on; by default all that move.
+    block : int or str
+        The one a `force` acts on.
+    point : point
+        Where it acts [m]; by default the block's centre.
+    force : point
+        Across and up [N].
+    patch : point
+        From one x to another [m]: what lies uppermost there bears the force, evenly.
     """
 
     __pydantic_config__: ClassVar = _FORBID
@@ -86,8 +130,16 @@ class LoadEntry:
 class MoveEntry:
     """Entry of `move`: how a fixed block moves as the parameter [m] grows.
 
-    `direction` is its way over the parameter, `turn_deg` its rotation [deg/m],
-    counter-clockwise about a point, by default the middle of its corners.
+    Parameters
+    ----------
+    block : int or str
+        A fixed block.
+    direction : point
+        Its way over the parameter: [1, 0] moves it to the right by as much.
+    turn_deg : float
+        Its rotation, counter-clockwise [deg/m].
+    about : point
+        What it turns about [m]; by default the middle of its corners.
     """
 
     __pydantic_config__: ClassVar = _FORBID
@@ -100,7 +152,21 @@ class MoveEntry:
 
 @dataclass(frozen=True, kw_only=True)
 class ShakeEntry:
-    """`shake`: a shape, how strong [g] and how long [s]; or accelerations [g] over time [s]."""
+    """`shake`: a shape, how strong [g] and how long [s]; or accelerations [g] over time [s].
+
+    Parameters
+    ----------
+    shape : str
+        `constant`, `half-sine` or `full-sine`.
+    amplitude_g : float
+        Its largest acceleration across [g].
+    duration_s : float
+        [s]
+    times_s : list of float
+        Times of a record [s], growing.
+    accelerations_g : list of float
+        The acceleration across at each of them [g].
+    """
 
     __pydantic_config__: ClassVar = _FORBID
 
@@ -115,9 +181,20 @@ class ShakeEntry:
 class ExpectEntry:
     """Entry of `expect`: what the source says, for `validate`.
 
-    Either a `verdict` on the structure as it is, or the `value` of `over`, a parameter of
-    `bracket`, at which it changes from standing to falling. `published` is that value with the
-    digits that were printed; `hinges` are the joints that open there, numbered from 0.
+    Either a `verdict` on the structure as it is, or the `value` of `over`.
+
+    Parameters
+    ----------
+    over : str
+        A parameter of `bracket`.
+    value : float
+        Where it changes from standing to falling.
+    published : str
+        That value with the digits that were printed.
+    hinges : tuple of int
+        Joints that open there, numbered from 0.
+    verdict : str
+        `stands` or `collapses`, of the structure as it is.
     """
 
     __pydantic_config__: ClassVar = _FORBID
@@ -133,9 +210,35 @@ class ExpectEntry:
 class Around:
     """What a structure file says besides its blocks: friction, weight and loads.
 
-    `load` (the factor on `live`) and `size` are what records need to be read back; files may
-    have them, too. `notes` say how a file was made of another; they are said with each answer.
-    `expect` and `quick` are for `validate`.
+    Parameters
+    ----------
+    friction : float or "inf"
+        Friction coefficient of every joint.
+    title : str
+        Said with each answer.
+    source : str
+        Where the structure and what is known of it come from.
+    density : float
+        Weight of a unit of volume [N/m3]; without it only ratios of forces have a meaning.
+    dead : list of load
+        Loads that stay as they are; by default gravity, `{"body": [0, -1]}`.
+    live : list of load
+        Loads that are multiplied by the load factor.
+    move : list of move
+        How supports move, for `--over spread`.
+    shake : shake
+        How the ground moves.
+    load : float
+        Factor on the live loads when it is asked whether it stands.
+    size : float
+        Length that displacements are compared with [m]; by default half the larger side of
+        the box around all blocks that move.
+    notes : list of str
+        How the file was made of another; said with each answer.
+    expect : list of expect
+        What its source says, for `validate`.
+    quick : bool
+        Whether `validate --quick` asks it.
     """
 
     __pydantic_config__: ClassVar = _FORBID
@@ -168,7 +271,15 @@ AROUND = tuple(field.name for field in fields(Around))
 
 @dataclass(frozen=True, kw_only=True)
 class StructureFile(Around):
-    """A structure file of blocks as written."""
+    """A structure file of blocks as written: the keys of `Around`, and these.
+
+    Parameters
+    ----------
+    blocks : list of block
+        At least two, one of them fixed.
+    joints : list of joint
+        By default found: where faces lie on each other, and where corners rest on a face.
+    """
 
     blocks: Annotated[list[BlockEntry], Field(min_length=2, max_length=MOST_BLOCKS)]
     joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None

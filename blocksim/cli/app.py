@@ -12,7 +12,6 @@ from blocksim.common.version import __version__
 app = typer.Typer(
     name="blocksim",
     invoke_without_command=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )

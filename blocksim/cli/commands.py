@@ -140,7 +140,7 @@ def bracket(
     reduce: Reduce = False,
     as_json: Json = False,
 ) -> None:
-    """Find the value of a parameter from which on it falls: how thin an arch can be."""
+    """Find where it starts to fall as one parameter changes: how thin an arch can be."""
     if is_structure(scene) or loading.on_road or over not in {None, THICKNESS}:
         require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
         problem = problem_asked(scene, given, loading, thick=True)

@@ -35,7 +35,7 @@ def convert(
         str | None, typer.Option(help="Blocks that stay where they are: ids, with commas.")
     ] = None,
 ) -> None:
-    """Write what was drawn as a structure file, to add loads, weights or frictions to."""
+    """Turn a drawing into a structure file, so that loads, weights or friction can be added."""
     require_given(out=out)
     out = out or Path()
     require(out.suffix == ".json", "--out", str(out), "a file name ending in .json")

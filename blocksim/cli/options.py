@@ -49,14 +49,16 @@ Set = Annotated[
 ]
 Reduce = Annotated[
     bool,
-    typer.Option("--reduce", help="Simulate half the arch, in no more blocks than it takes."),
+    typer.Option(
+        "--reduce", help="Simulate half the arch; voussoirs that stay together are one block."
+    ),
 ]
 AtJoint = Annotated[
     str | None,
     typer.Option(
         "--joint",
         metavar="A-B",
-        help="Joint of which thrust is told, by its two blocks; the crown if left out.",
+        help="Joint whose thrust is printed, named by its two blocks; the crown if left out.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
@@ -106,7 +108,7 @@ class Given:
     ratio: Annotated[
         float | None,
         typer.Option(
-            help="Instead of --eta or --thickness: thickness over the least that stands, "
+            help="Instead of --eta or --thickness: thickness over the least one that stands, "
             "as built."
         ),
     ] = None

@@ -44,7 +44,7 @@ def report(
     method: MethodOption = "auto",
     settings: Set = None,
 ) -> None:
-    """Write a report on one structure: a page to print, with its drawing; exits as check."""
+    """Write a report on one structure, a page to print. Exit codes are those of check."""
     problem = problem_asked(scene, given, loading, thick=True, out=out)
     require_given(out=out)
     out = out or Path()

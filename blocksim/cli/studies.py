@@ -1,4 +1,4 @@
-"""The commands that are no question: studies, sweeps, the map, what is there."""
+"""The commands that are no question: studies, sweeps, the map, what is there, references."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from rich.table import Table
 from blocksim import __version__
 from blocksim.arch.scenario import load_scenario, shipped
 from blocksim.ask.doctor import examine, libraries
+from blocksim.ask.methods import METHODS
 from blocksim.cli.app import app
 from blocksim.cli.console import (
     chart_table,
@@ -33,6 +34,7 @@ from blocksim.cli.sweeping import run_sweep
 from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import make_folder
+from blocksim.common.references import references
 from blocksim.engines import ENGINES
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import parameters_of
@@ -64,7 +66,7 @@ def validate(
     ] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes.")] = 2,
 ) -> None:
-    """Simulate published arches and hold them against the map, and structures their sources.
+    """Simulate published arches and structures; compare with the map and their sources.
 
     Exit code 0 where all agrees, 1 where something does not.
     """
@@ -135,7 +137,7 @@ def sweep(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Ask about many arches; a kill at any moment loses nothing that was done."""
+    """Ask about many arches. A run that was killed goes on where it was."""
     if design is None:
         extra = " and --out" if out is None else ""
         raise InputError(f"DESIGN{extra}", ALL_MISSING if extra else MISSING, "given")
@@ -235,3 +237,17 @@ def doctor() -> None:
     show(table)
     say(f"blocksim {__version__}, Python {platform.python_version()}")
     say(", ".join(f"{name} {found or '-'}" for name, found in libraries().items()))
+
+
+@app.command()
+def cite(
+    methods: Annotated[
+        list[str] | None,
+        typer.Option("--method", help=f"Repeatable, or all: {', '.join(METHODS)}."),
+    ] = None,
+) -> None:
+    """Print BibTeX of blocksim, of the paper, and of what methods rest on."""
+    asked = list(METHODS) if methods == ["all"] else methods or []
+    for each in asked:
+        require(each in METHODS, "--method", each, f"all, or one of {', '.join(METHODS)}")
+    say("\n\n".join(references(asked)))

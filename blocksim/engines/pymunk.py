@@ -1,6 +1,6 @@
 """Chipmunk through pymunk: planar, sequential impulses, Coulomb friction.
 
-How a near-critical arch has to be put into it (each point measured, see ARCHITECTURE.md):
+How a near-critical arch has to be put into it (measured; see docs/methods/engines.md):
 
 - Faces that touch exactly have round-off gaps and lose contacts. Each joint face is
   set back by `INSET` and the shape given a radius that closes the joint again with an

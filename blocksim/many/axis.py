@@ -32,6 +32,7 @@ class Axis:
     Parameters
     ----------
     values : tuple of float
+        One or several; a file may say `mu = [0.5, 0.7]` for short.
     low, high : float, optional
         Range, both ends included.
     steps : int, optional

@@ -41,7 +41,15 @@ Words = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class RandomTable:
-    """Table `[random]`: draw arches instead of taking every combination."""
+    """Table `[random]`: draw arches instead of taking every combination.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    seed : int
+        The same seed draws the same arches.
+    """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
@@ -51,7 +59,21 @@ class RandomTable:
 
 @dataclass(frozen=True, kw_only=True)
 class SettingsTable:
-    """Table `[settings]`: of engines, instead of what their rules say; see `Settings`."""
+    """Table `[settings]`: of engines, instead of what their rules say; see `Settings`.
+
+    Parameters
+    ----------
+    step : Axis
+        Length of a step [sqrt(r/g)].
+    sweeps : Axis
+        Sweeps over the contacts in each step of a moving run.
+    hold_sweeps : Axis
+        The most sweeps an onset test may take.
+    still : Axis
+        Acceleration that counts as rest [g].
+    rest : Axis
+        Displacement that counts as rest, over the radius.
+    """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
@@ -74,12 +96,19 @@ class Design:
 
     Parameters
     ----------
-    half_angle_deg, mu : Axis
+    half_angle_deg : Axis
+        Half-angle of embrace [deg].
+    mu : Axis
+        Friction coefficient; inf allowed.
     voussoirs : Axis
+        How many.
     weight : tuple of str
-    eta, ratio : Axis, optional
-        Thickness over the radius, or over the least thickness of the voussoirs as
-        built; with neither the question is how thin the arch can be.
+        `centreline`, `sector`, or both.
+    eta : Axis, optional
+        Thickness over the radius.
+    ratio : Axis, optional
+        Thickness over the least of the voussoirs as built; with neither the question is
+        how thin the arch can be.
     method : tuple of str
         Every arch is put to each.
     band : float, optional
@@ -94,6 +123,7 @@ class Design:
     settings : SettingsTable
         Axes like any other; a method is given those it is run with.
     random : RandomTable, optional
+        Draws arches instead.
     """
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}

@@ -1,0 +1,56 @@
+"""Rows of a study as CSV, each with what measured it: version, date, machine and code."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+import blocksim
+from blocksim import __version__
+from blocksim.common.files import make_folder, write_whole
+from blocksim.report.tables import processor
+
+CODE = Path(blocksim.__file__).parent
+
+
+def code_hash(folder: Path = CODE) -> str:
+    """Return a hash of all Python files below a folder: their names and what they say."""
+    digest = hashlib.sha256()
+    for path in sorted(folder.rglob("*.py")):
+        digest.update(path.relative_to(folder).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def provenance() -> dict[str, str]:
+    """Return what every row says of its making."""
+    return {
+        "version": __version__,
+        "date": datetime.now(UTC).date().isoformat(),
+        "machine": f"{processor()}, {os.cpu_count()} cores, Python {platform.python_version()}",
+        "code": code_hash(),
+    }
+
+
+def write_rows(path: Path, rows: Sequence[Mapping[str, object]]) -> None:
+    """Write rows as CSV, with the columns of `provenance` at their end.
+
+    Parameters
+    ----------
+    path : Path
+    rows : sequence of mapping
+        At least one; all with the same keys.
+    """
+    made = provenance()
+    text = io.StringIO()
+    table = csv.DictWriter(text, [*rows[0], *made], lineterminator="\n")
+    table.writeheader()
+    table.writerows({**row, **made} for row in rows)
+    make_folder(path.parent)
+    write_whole(path, lambda file: file.write(text.getvalue().encode()))

@@ -1,0 +1,177 @@
+"""Tables in pages that are made from code or from rows: `python docs/tables.py` writes them.
+
+A page says `<!-- table: NAME -->` and `<!-- end -->`; what lies between is replaced. A test
+makes them again and compares, so that no table says anything else than the code.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import cast
+
+import click
+import typer
+from format_tables import of_format
+from markdown_table import table
+from validation_tables import of_validation
+
+from blocksim.cli import app
+from blocksim.kinds import KINDS
+from blocksim.kinds.base import parameters_of
+
+ROOT = Path(__file__).resolve().parent.parent
+ROWS = ROOT / "analysis" / "figures"
+MARKED = re.compile(r"<!-- table: ([\w ]+) -->\n.*?<!-- end -->", flags=re.DOTALL)
+CANNOT = {
+    "theory": "voussoirs, motion, anything but the circular arch",
+    "limit": "motion, ground that shakes",
+    "direct": "gravity out of the plane",
+    "pymunk": "gravity out of the plane, supports that move",
+    "pybullet": "shaking, supports that move; slow, and creeps where joints slide",
+    "mujoco": "shaking, supports that move; its contacts are soft",
+}
+"""In a few words; `docs/methods/methods.md` has all of it."""
+FINE = {"pybullet": 0.004}
+"""Relative widths of the brackets in the table of methods; 0.001 of any other method."""
+
+
+def pages() -> list[Path]:
+    """Return every page in which there may be tables."""
+    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def filled(page: str) -> str:
+    """Return a page with its tables made anew."""
+    return MARKED.sub(
+        lambda found: f"<!-- table: {found[1]} -->\n{made(found[1])}\n<!-- end -->", page
+    )
+
+
+def made(name: str) -> str:
+    """Return a table by its name, in Markdown."""
+    kind, _, rest = name.partition(" ")
+    return TABLES[kind](rest)
+
+
+def _methods(_: str) -> str:
+    with (ROWS / "costs.csv").open(encoding="utf-8", newline="") as file:
+        costs = list(csv.DictReader(file))
+    rows = list[list[str]]()
+    for method, cannot in CANNOT.items():
+        width = FINE.get(method, 0.001)
+        own = {row["question"]: row for row in costs if row["method"] == method}
+        check, bracket = own["check"], own[f"bracket to {width:g}"]
+        finest = min(float(row["error"]) for each, row in own.items() if each != "check")
+        error = _error(method, finest)
+        cells = [_seconds(check), f"to {100 * width:g} %: {_seconds(bracket)}", error, cannot]
+        rows.append([f"`{method}`", *cells])
+    return table(["method", "a check", "a bracket", "error", "it cannot see"], rows)
+
+
+def _seconds(row: dict[str, str]) -> str:
+    usual, longest = (float(row[name]) for name in ("median_s", "longest_s"))
+    return f"{_short(usual)} s (at most {_short(longest)} s)"
+
+
+def _short(value: float) -> str:
+    """Say a number to one digit, or to a whole number above one."""
+    return f"{value:.0f}" if value >= 1 else f"{value:.1g}"
+
+
+def _error(method: str, error: float) -> str:
+    if method == "theory":
+        return "none, of the continuous arch"
+    return (
+        "none" if error < 1e-12 else f"{error:.0e}" if error < 1e-6 else f"{100 * error:.1g} %"
+    )
+
+
+def _kinds(_: str) -> str:
+    rows = [
+        [f"`{kind.name}`", kind.about, ", ".join(f"`{each}`" for each in parameters_of(kind))]
+        for kind in KINDS.values()
+    ]
+    return table(["kind", "what it is", "parameters"], rows)
+
+
+def _parameters(name: str) -> str:
+    usual = KINDS[name.replace(" ", "-")]()
+    rows = list[list[str]]()
+    for each, known in parameters_of(type(usual)).items():
+        over = ", ".join(one for one in usual.bracketed if one.partition(".")[0] == each)
+        cells = [*known.words(getattr(usual, each)), known.about, over]
+        rows.append([f"`{each}`", *(cell.replace("|", "\\|") for cell in cells)])
+    return table(["parameter", "if left out", "may be", "what it is", "`--over`"], rows)
+
+
+def _commands(_: str) -> str:
+    """Every command with its options, as `--help` has them; shared ones once, at the end."""
+    group = cast(click.Group, typer.main.get_command(app))
+    context = click.Context(group)
+    parts, shared = list[str](), dict[str, dict[str, list[str]]]()
+    for name in group.list_commands(context):
+        command = cast(click.Command, group.get_command(context, name))
+        panels = list[str]()
+        rows = list[list[str]]()
+        for one in command.params:
+            panel = getattr(one, "rich_help_panel", None)
+            if one.name == "help":
+                continue
+            if panel is None:
+                rows.append(_option(one))
+            else:
+                shared.setdefault(panel, {})[str(one.name)] = _option(one)
+                panels += [panel] * (panel not in panels)
+        about = " ".join((command.help or "").partition("\n\n")[0].split())
+        besides = " and ".join(
+            f"[{each}](#{each.lower().replace(' ', '-')})" for each in panels
+        )
+        said = f"{about} It takes the options of {besides}, too." if besides else about
+        parts.append(f"## {name}\n\n{said}")
+        if rows:
+            parts.append(table(["option", "what it says"], rows))
+    for panel, own in shared.items():
+        parts.append(f"## {panel}\n\n" + table(["option", "what it says"], [*own.values()]))
+    return "\n\n".join(parts)
+
+
+def _option(one: click.Parameter) -> list[str]:
+    """Return an option's names and what its help says."""
+    names = [*one.opts, *one.secondary_opts]
+    shown = names if one.param_type_name == "option" else [str(one.name).upper()]
+    said = " ".join((getattr(one, "help", "") or "").split()).replace("|", "\\|")
+    return [", ".join(f"`{each}`" for each in shown), said]
+
+
+def _example(name: str) -> str:
+    """Return a script as a page shows it: its picture, its text, its code."""
+    code = (ROOT / "docs" / "examples" / f"{name}.py").read_text(encoding="utf-8")
+    about, _, rest = code.removeprefix('"""').partition('"""')
+    title, _, more = about.partition("\n\n")
+    picture = f"![{' '.join(title.split())}](examples/{name}.png)"
+    return f"{more.strip()}\n\n{picture}\n\n```python\n{rest.strip()}\n```"
+
+
+TABLES: dict[str, Callable[[str], str]] = {
+    "methods": _methods,
+    "format": of_format,
+    "kinds": _kinds,
+    "parameters": _parameters,
+    "commands": _commands,
+    "validated": of_validation,
+    "example": _example,
+}
+
+
+def main() -> None:
+    """Write the tables of every page."""
+    for path in pages():
+        text = path.read_text(encoding="utf-8")
+        path.write_text(filled(text), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,320 @@
+"""Pages do what they say: commands run and print what is shown, tables and numbers hold."""
+
+from __future__ import annotations
+
+import os
+import re
+import runpy
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+import matplotlib.image
+import numpy as np
+import pytest
+from running import inside
+
+from blocksim.ask.methods import METHODS
+from blocksim.common.references import references
+from blocksim.common.version import __version__
+from blocksim.many import run as many
+
+ROOT = Path(__file__).parent.parent
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+FENCE = re.compile(
+    r"^(?:<!-- (?P<note>[^>\n]*) -->\n)?```(?P<about>[^\n]*)\n(?P<text>.*?)^```$",
+    flags=re.MULTILINE | re.DOTALL,
+)
+ELSEWHERE = "other machines"
+LINK = re.compile(r"\]\(([^)\s:#]+)(?:#[^)]*)?\)")
+
+
+@dataclass(frozen=True)
+class Fence:
+    """A block of code in a page: its language, the file it is, and the comment above it."""
+
+    language: str
+    title: str
+    note: str
+    text: str
+
+    @property
+    def commands(self) -> list[tuple[str, list[str]]]:
+        """Each command of blocksim, with the lines it is said to print."""
+        found: list[tuple[str, list[str]]] = []
+        for line in self.text.splitlines():
+            start = re.match(r"(?:\$ )?(?:\.venv/bin/)?blocksim (.*)", line)
+            if start and (line.startswith("$") or self.language == "sh"):
+                found.append((start[1].partition(" #")[0].strip(), []))
+            elif self.language == "console" and found:
+                found[-1][1].append(line)
+        return found
+
+
+def module(name: str) -> ModuleType:
+    """Import a script of docs/, which is no package."""
+    sys.path.insert(0, str(DOCS))
+    try:
+        return __import__(name)
+    finally:
+        sys.path.remove(str(DOCS))
+
+
+def fences(page: Path) -> Iterator[Fence]:
+    for found in FENCE.finditer(page.read_text(encoding="utf-8")):
+        language, _, rest = found["about"].partition(" ")
+        title = re.search(r'title="([^"]+)"', rest)
+        note = found["note"] or ""
+        yield Fence(language, title[1] if title else "", note, found["text"])
+
+
+def name_of(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
+
+
+ASKING = [page for page in PAGES if any(each.commands for each in fences(page))]
+LONG = [page for page in ASKING if any(each.note == "long" for each in fences(page))]
+
+
+def missing(shown: list[str], printed: str) -> str | None:
+    """Return the first line shown that was not printed; `...` is what is left out."""
+
+    def same(text: str) -> str:
+        return re.sub(r", [\d.]+ s\)", ", time)", text).rstrip()
+
+    lines, at, skip = [same(line) for line in printed.splitlines()], 0, False
+    for line in map(same, shown):
+        if line.strip() == "...":
+            skip = True
+            continue
+        whole = not line.endswith("...")
+        start = line.removesuffix("...")
+        places = range(at, len(lines) if skip else min(at + 1, len(lines)))
+        fits = (
+            n for n in places if lines[n] == line or (not whole and lines[n].startswith(start))
+        )
+        at, skip = next(fits, -1) + 1, False
+        if not at:
+            return line
+    return None if skip or not shown or at == len(lines) else f"more than {shown[-1]}"
+
+
+def run(page: Path, *, long: bool) -> int:
+    """Run a page in the current folder, in its order; return how many commands that were."""
+    count = 0
+    for fence in fences(page):
+        if fence.note == ELSEWHERE or (fence.note == "long" and not long):
+            continue
+        if fence.title:
+            Path(fence.title).write_text(fence.text, encoding="utf-8")
+        if fence.language == "python" and page.name != "examples.md":
+            exec(compile(fence.text, name_of(page), "exec"), {})  # noqa: S102
+            count += 1
+        for command, shown in fence.commands:
+            ran = inside(*command.split())
+            assert ran.returncode in {0, 1, 3}, (command, ran.stderr)
+            assert missing(shown, ran.stdout) is None, (command, ran.stdout)
+            count += 1
+    return count
+
+
+@pytest.fixture(autouse=True)
+def _one_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweep in this process: others take seconds to start, and have tests of their own."""
+    monkeypatch.setattr(many, "processes", lambda _: ThreadPoolExecutor(1))
+
+
+@pytest.mark.parametrize("page", ASKING, ids=name_of)
+def test_commands_of_a_page_run_and_print_what_it_shows(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(page, long=False) > 0 or page in LONG
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("page", LONG, ids=name_of)
+def test_long_commands_of_a_page_run(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(page, long=True) > run(page, long=False)
+
+
+def test_a_page_that_shows_what_is_not_printed_is_seen() -> None:
+    printed = "STANDS  (limit, 0.3 s)\n  arch    alpha 90 deg, eta 0.1\n  mode    rrr\n"
+    assert missing(["STANDS  (limit, 0.02 s)", "  ..."], printed) is None
+    assert (
+        missing(["STANDS  (limit, 0.02 s)", "  arch    alpha 90 deg, ...", "..."], printed)
+        is None
+    )
+    assert missing(["COLLAPSES  (limit, 0.02 s)", "  ..."], printed) is not None
+    assert missing(["STANDS  (limit, 0.02 s)", "  mode    rrr"], printed) is not None
+    assert missing(["STANDS  (limit, 0.02 s)", "..."], printed) is None
+    assert missing(["STANDS  (limit, 0.02 s)"], printed) is not None
+
+
+def test_the_readme_is_short_and_has_the_commands() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 130
+    blocks = [each.text for each in fences(ROOT / "README.md") if each.language == "sh"]
+    # `.ci/run` runs the second one.
+    assert ".venv/bin/blocksim validate --quick" in blocks[0]
+    assert ".venv/bin/pytest" in blocks[1]
+    assert len([each for each in fences(ROOT / "README.md") if each.language == "console"]) == 5
+
+
+@pytest.mark.parametrize("page", [*PAGES, *ROOT.glob("*.md")], ids=name_of)
+def test_links_of_a_page_lead_somewhere(page: Path) -> None:
+    text = re.sub(r"```.*?```|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    targets = LINK.findall(text)
+    assert [target for target in targets if not (page.parent / target).exists()] == []
+
+
+TABLES = sorted(
+    {
+        name
+        for page in PAGES
+        for name in re.findall(r"<!-- table: ([\w ]+) -->", page.read_text(encoding="utf-8"))
+    }
+)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.long] if name == "validated structures" else [])
+        for name in TABLES
+    ],
+)
+def test_tables_in_pages_are_as_code_and_rows_say(name: str) -> None:
+    made = f"<!-- table: {name} -->\n{module('tables').made(name)}\n<!-- end -->"
+    pages = [page for page in PAGES if f"<!-- table: {name} -->" in page.read_text("utf-8")]
+    assert [name_of(page) for page in pages if made not in page.read_text("utf-8")] == []
+
+
+@pytest.mark.parametrize("which", ["structure", "scenario", "design"])
+def test_every_key_of_a_file_is_described(which: str) -> None:
+    table = module("tables").made(f"format {which}")
+    rows = re.findall(r"^\| (`\w+`) .* \| ([^|]*) \|$", table, flags=re.MULTILINE)
+    assert len(rows) > 10
+    assert [name for name, said in rows if not said.strip()] == []
+
+
+def test_numbers_quoted_are_those_of_the_rows() -> None:
+    quotes = module("quotes")
+    texts = [page.read_text(encoding="utf-8") for page in quotes.pages()]
+    found = [quote for text in texts for quote in quotes.quotes(text)]
+    comments = sum(len(re.findall(r"<!-- (?!table|file)\w+: ", text)) for text in texts)
+    assert len(found) == comments >= 36
+    assert [quote for quote in found if not quote.holds] == []
+
+
+def test_a_number_that_the_rows_do_not_say_is_seen() -> None:
+    quotes = module("quotes")
+    (right,) = quotes.quotes("0.22 s<!-- no_slip: largest(cpu_s) -->")
+    (wrong,) = quotes.quotes("0.21 s<!-- no_slip: largest(cpu_s) -->")
+    (whole,) = quotes.quotes("1,701<!-- no_slip: len(ratio) -->")
+    assert right.holds
+    assert not wrong.holds
+    assert not whole.holds
+
+
+PUBLISHED = {
+    # Cocchetti and Rizzi (2020), Table 3; half of its weight, 22 times half the area between
+    # circles through the clear span of 8 m and rise of 3 m; Ferris and Tin-Loi (2001); atan of
+    # 0.3 over 0.75; Cocchetti and Rizzi (2024), Fig. 17 and Table 1; Housner's equation; the
+    # problem of Ochsendorf (2006), solved independently.
+    "least_thickness": pytest.approx(0.107426, abs=5e-7),
+    "engineers_arch": pytest.approx(
+        22 * np.arctan2(4, 4**2 / 6 - 1.5) * ((25 / 6 + 0.45) ** 2 - (25 / 6) ** 2) / 2,
+        rel=1e-9,
+    ),
+    "tilted_wall": pytest.approx(0.40369, abs=1e-5),
+    "drawing": pytest.approx(np.degrees(np.arctan(0.4)), rel=1e-3),
+    "sweep_to_table": pytest.approx(0.4208869, abs=5e-8),
+    "own_points": pytest.approx((1.415270827756886, 0.679604732098886), rel=1e-12),
+    "spreading_supports": pytest.approx(5.393, abs=5e-4),
+    "compare_engines": pytest.approx(0.0, abs=1e-3),
+    "reduce": pytest.approx(0.107426, rel=5e-4),
+    # One of the joints beside the hinge of the continuous arch, 54.5 degrees.
+    "collapse_film": pytest.approx(50.0),
+}
+SLOW = {"collapse_film", "shaking", "spreading_supports"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(path.stem, marks=[pytest.mark.long] if path.stem in SLOW else [])
+        for path in sorted((DOCS / "examples").glob("*.py"))
+    ],
+)
+def test_examples_find_what_is_known_and_draw_their_picture(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    script = DOCS / "examples" / f"{name}.py"
+    assert 20 <= len(script.read_text(encoding="utf-8").splitlines()) <= 45
+    found = runpy.run_path(str(script), run_name="__main__")["headline"]
+    if name == "shaking":
+        assert found[0] < 0.367707743061444 < found[1]
+    else:
+        assert found == PUBLISHED[name]
+    drawn, kept = (
+        matplotlib.image.imread(folder / f"{name}.png")[:, :, :3]
+        for folder in (tmp_path, DOCS / "examples")
+    )
+    assert drawn.shape == kept.shape
+    assert (np.abs(drawn - kept).max(axis=2) > 0.25).mean() < 0.01
+    assert (kept.std(axis=(0, 1)) > 0.02).any()
+    assert (DOCS / "examples" / f"{name}.png").stat().st_size < 100_000
+
+
+def test_references_are_of_what_a_method_rests_on() -> None:
+    def keys(*methods: str) -> list[str]:
+        return [re.match(r"@\w+\{(\w+),", each)[1] for each in references(methods)]  # type: ignore[index]
+
+    assert keys() == ["blocksim", "CocchettiRizzi2024"]
+    assert {"Moreau1988", "AlartCurnier1991", "Jean1999"} < {*keys("direct")}
+    assert keys("mujoco") == [*keys(), "Todorov2012"]
+    every = keys(*METHODS)
+    assert len(every) == len({*every})
+    for method in METHODS:
+        assert len(keys(method)) > 2, method
+    printed = inside("cite", "--method", "pymunk")
+    assert printed.returncode == 0
+    assert [entry.count("{") - entry.count("}") for entry in references(list(METHODS))] == [
+        0
+    ] * len(every)
+    assert printed.stdout.count("@") == len(keys("pymunk"))
+    wrong = inside("cite", "--method", "box2d")
+    assert wrong.returncode == 2
+    assert "--method" in wrong.stderr
+    assert "box2d" in wrong.stderr
+
+
+def test_a_shell_completes_commands() -> None:
+    # By its own name, as a shell asks it.
+    program = str(Path(sys.executable).with_name("blocksim"))
+    asked = {
+        "_BLOCKSIM_COMPLETE": "complete_bash",
+        "COMP_WORDS": "blocksim c",
+        "COMP_CWORD": "1",
+    }
+    done = subprocess.run(
+        [program], env={**os.environ, **asked}, capture_output=True, text=True, check=False
+    )
+    assert {*done.stdout.split()} == {"check", "chart", "cite", "convert"}
+
+
+def test_help_and_version_are_where_they_are_looked_for() -> None:
+    assert inside("-h").stdout == inside("--help").stdout
+    assert inside("--version").stdout.split() == ["blocksim", __version__]
+    pages = (DOCS / "guide" / "commands.md").read_text(encoding="utf-8")
+    assert all(f"\n## {name}\n" in pages for name in ("check", "bracket", "sweep", "cite"))
