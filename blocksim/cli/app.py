@@ -1,31 +1,109 @@
-"""The program: its name, its options, and the commands that are hung into it."""
+"""The program: its name, its options, and its commands, each loaded when it is asked for."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from functools import partial
+from importlib import import_module
+from typing import Any
 
-import typer
+import click
 
-from blocksim.cli.console import say
+from blocksim.cli.arguments import command_of
+from blocksim.cli.output import say
+from blocksim.common.later import Later
 from blocksim.common.version import __version__
 
-app = typer.Typer(
-    name="blocksim",
-    invoke_without_command=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+COMMANDS = {
+    "check": (
+        "checking.check",
+        "Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided.",
+    ),
+    "bracket": (
+        "commands.bracket",
+        "Find the value of a parameter from which on it falls: how thin an arch can be.",
+    ),
+    "simulate": ("commands.simulate", "Let it go and record its motion."),
+    "render": ("commands.render", "Draw what is built to scale, or film its motion."),
+    "convert": (
+        "converting.convert",
+        "Write what was drawn as a structure file, to add loads, weights or frictions to.",
+    ),
+    "report": (
+        "reporting.report",
+        "Write a report on one structure: a page to print, with its drawing; exits as check.",
+    ),
+    "validate": (
+        "studies.validate",
+        "Simulate published arches and hold them against the map, and structures their "
+        "sources.",
+    ),
+    "chart": (
+        "studies.chart",
+        "Chart the error of every method, from coarse to fine, against time and work.",
+    ),
+    "sweep": (
+        "sweeping.sweep",
+        "Ask about many arches; a kill at any moment loses nothing that was done.",
+    ),
+    "map": (
+        "mapping.draw_map",
+        "Draw the analytical map of least thickness and collapse modes.",
+    ),
+    "scenarios": (
+        "listing.list_scenarios",
+        "List the scenarios and structures that come with blocksim.",
+    ),
+    "kinds": (
+        "listing.list_kinds",
+        "List the kinds of structures, or the parameters of one.",
+    ),
+    "doctor": (
+        "listing.doctor",
+        "Tell what is installed and what each method can do here.",
+    ),
+}
+"""File and function of each command, and the first line of its help."""
 
 
-@app.callback()
-def start(
-    context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
-) -> None:
+class Commands(click.Group):
+    """The commands by name, none of which is loaded to be listed."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - as called
+        """Return the names, in the order of the help."""
+        return list(COMMANDS)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """Write the commands and what they are for."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, about) for name, (_, about) in COMMANDS.items()])
+
+
+def _command(name: str, place: str) -> click.Command:
+    """Load a command."""
+    file, _, function = place.partition(".")
+    return command_of(getattr(import_module(f"blocksim.cli.{file}"), function), name)
+
+
+@click.pass_context
+def start(context: click.Context, version: bool) -> None:
     """Answer whether a masonry arch stands, how thin it can be and how it falls."""
     if version:
         say(f"blocksim {__version__}")
-        raise typer.Exit
-    if context.invoked_subcommand is None:
+    elif context.invoked_subcommand is None:
         say(context.get_help())
+    if version:
+        context.exit()
+
+
+_commands: Any = Later(
+    {name: partial(_command, name, place) for name, (place, _) in COMMANDS.items()}
+)
+app = Commands(
+    "blocksim",
+    _commands,
+    callback=start,
+    params=[click.Option(["--version"], is_flag=True, help="Print the version.")],
+    invoke_without_command=True,
+    help=start.__doc__,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)

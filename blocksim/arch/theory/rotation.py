@@ -16,23 +16,31 @@ from __future__ import annotations
 import sys
 from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.optimize import elementwise
 
 from blocksim.arch.circular import Weight
 from blocksim.arch.theory.equations import BEYOND, ETA_MAX
 from blocksim.arch.theory.roots import root
 from blocksim.arch.theory.sliding import Thrusts
 from blocksim.blocks.assembly import Array
+from blocksim.common.later import Library
 from blocksim.common.series import p_series, r_series
+
+if TYPE_CHECKING:
+    from scipy.optimize import elementwise
+else:
+    elementwise = Library("scipy.optimize.elementwise")
 
 EDGES = (0.0, 0.75, 0.94, 0.985, 0.996, 1.0)
 """Pieces of the interpolation in (alpha/alpha_l)^2: a branch point lies just beyond."""
 NODES = 36
 """Of a piece."""
+STORED = Path(__file__).with_name("rotational.npz")
+"""Their coefficients; `store` writes them anew where edges, nodes or equations change."""
 TIGHT = 4 * sys.float_info.epsilon
 ROUNDS = 100
 """Newton steps allowed; halving alone would need about as many."""
@@ -40,7 +48,7 @@ SETTLED = 1e-9
 """Relative step after which Newton's method, being quadratic, has reached round-off."""
 
 
-class _Rotational(NamedTuple):
+class Rotational(NamedTuple):
     """Chebyshev coefficients in alpha^2 of the purely rotational mode.
 
     One array a piece; its columns are (1 - h)/alpha^2, eta/alpha^4 and
@@ -194,7 +202,23 @@ def widest_rotational(weight: Weight) -> float:
 
 
 @cache
-def _rotational(weight: Weight) -> _Rotational:
+def _rotational(weight: Weight) -> Rotational:
+    """Read what `solved` found, which takes longer than all else in an answer."""
+    with np.load(STORED) as stored:
+        return Rotational(float(stored[f"{weight} widest"]), list(stored[weight]))
+
+
+def store() -> None:
+    """Solve for both weights and write the file that is read."""
+    stored: dict[str, Any] = {}
+    weights: tuple[Weight, ...] = get_args(Weight)
+    for weight in weights:
+        found = solved(weight)
+        stored |= {weight: np.stack(found.pieces), f"{weight} widest": np.array(found.widest)}
+    np.savez(STORED, **stored)
+
+
+def solved(weight: Weight) -> Rotational:
     """Solve eqs (1), (3) and (4) at the Chebyshev nodes of every piece."""
 
     def excess(short: Array, alpha: Array) -> Array:
@@ -212,8 +236,8 @@ def _rotational(weight: Weight) -> _Rotational:
     alpha = np.sqrt(square)
     # The shoulder asks for less as the thrust falls.
     ends = np.zeros_like(alpha), np.minimum(square, 1.0)
-    found = elementwise.find_root(excess, ends, args=(alpha,), tolerances={"xrtol": TIGHT})
-    short: Array = found.x
+    find: Any = elementwise.find_root
+    short: Array = find(excess, ends, args=(alpha,), tolerances={"xrtol": TIGHT}).x
     # Near alpha_l the thickness the crown asks for is all but undetermined.
     eta, hinge = inner_hinges(short, alpha, alpha, weight)
     values = np.stack([short / square, eta / square**2, hinge / square], axis=1)
@@ -221,4 +245,4 @@ def _rotational(weight: Weight) -> _Rotational:
         np.asarray(chebyshev.chebfit(points, piece, NODES - 1), dtype=float)
         for piece in np.split(values, len(places))
     ]
-    return _Rotational(widest, pieces)
+    return Rotational(widest, pieces)
