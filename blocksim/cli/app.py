@@ -15,11 +15,11 @@ from blocksim.common.version import __version__
 
 COMMANDS = {
     "check": (
-        "checking.check",
+        "asking.check",
         "Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided.",
     ),
     "bracket": (
-        "commands.bracket",
+        "asking.bracket",
         "Find the value of a parameter from which on it falls: how thin an arch can be.",
     ),
     "simulate": ("commands.simulate", "Let it go and record its motion."),
@@ -58,7 +58,7 @@ COMMANDS = {
         "List the kinds of structures, or the parameters of one.",
     ),
     "doctor": (
-        "listing.doctor",
+        "installed.doctor",
         "Tell what is installed and what each method can do here.",
     ),
 }

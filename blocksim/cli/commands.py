@@ -1,12 +1,10 @@
-"""The commands bracket, simulate and render."""
+"""The commands simulate and render."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
-from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.drawing import write_still
@@ -28,24 +26,14 @@ from blocksim.cli.filming import (
 )
 from blocksim.cli.options import (
     Given,
-    Json,
     Loading,
-    MethodOption,
-    Over,
-    Reduce,
     Scene,
     Set,
-    Within,
-    named_options,
     require_given,
-    settings_of,
 )
-from blocksim.cli.output import answer_with, picture_kind, progress
+from blocksim.cli.output import picture_kind
 from blocksim.cli.question import question
 from blocksim.cli.structures import (
-    THICKNESS,
-    bracket_structure,
-    is_structure,
     problem_asked,
     say_recorded,
     simulate_structure,
@@ -54,54 +42,10 @@ from blocksim.cli.structures import (
 from blocksim.common.checks import is_number, require
 from blocksim.common.files import require_place
 from blocksim.engines import ENGINES
-from blocksim.report.answers import bracket_lines, bracket_record
-from blocksim.report.sizes import bracket_size_lines, bracket_size_record
 
 FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0
 """Seconds."""
-
-
-def bracket(
-    given: Given,
-    loading: Loading,
-    scene: Scene = None,
-    over: Over = None,
-    within: Within = None,
-    method: MethodOption = "auto",
-    tol: Annotated[float, Option(help="Relative width of the bracket.")] = 0.005,
-    settings: Set = None,
-    reduce: Reduce = False,
-    as_json: Json = False,
-) -> None:
-    """Find the value of a parameter from which on it falls: how thin an arch can be."""
-    if is_structure(scene) or loading.on_road or over not in {None, THICKNESS}:
-        require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
-        problem = problem_asked(scene, given, loading, thick=True)
-        bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
-        return
-    left = {"eta": given.eta, "ratio": given.ratio, **asdict(loading)}
-    for name, value in left.items():
-        require(value is None, f"--{name}", value, "left out over thickness")
-    require(within is None, "--within", within, "left out over thickness")
-    asked = question(scene, given)
-    with named_options(), progress() as report:
-        answer = ask_bracket(
-            half_angle=asked.half_angle,
-            mu=asked.mu,
-            voussoirs=asked.voussoirs,
-            weight=asked.weight,
-            method=method,
-            tol=tol,
-            lean=asked.lean,
-            depth=asked.depth / asked.radius,
-            settings=settings_of(settings),
-            reduce=reduce,
-            progress=report,
-        )
-    record = bracket_record(answer, asked.radius) | bracket_size_record(answer, asked)
-    lines = bracket_lines(answer) + bracket_size_lines(answer, asked)
-    answer_with(record, lines, as_json=as_json)
 
 
 def simulate(

@@ -1,19 +1,16 @@
-"""The commands that list what is there: scenarios, kinds, methods."""
+"""The commands that list what is there: scenarios and kinds."""
 
 from __future__ import annotations
 
 import math
-import platform
 from typing import Annotated
 
 from rich.table import Table
 
-from blocksim import __version__
 from blocksim.arch.scenario import load_scenario, shipped
-from blocksim.ask.doctor import examine, libraries
 from blocksim.cli.arguments import Argument
 from blocksim.cli.output import say
-from blocksim.cli.tables import show
+from blocksim.cli.terminal import show
 from blocksim.common.checks import require
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import parameters_of
@@ -71,17 +68,3 @@ def list_kinds(
         over = ", ".join(over for over in usual.bracketed if over.partition(".")[0] == each)
         table.add_row(each, *known.words(getattr(usual, each)), known.about, over)
     show(table)
-
-
-def doctor() -> None:
-    """Tell what is installed and what each method can do here."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for heading in ("method", "version", "here", "finest bracket", "sees"):
-        table.add_column(heading)
-    for finding in examine():
-        finest = "exact" if finding.finest == 0 else f"{finding.finest:g}"
-        here = finding.remedy or "ready"
-        table.add_row(finding.method, finding.version or "-", here, finest, finding.sees)
-    show(table)
-    say(f"blocksim {__version__}, Python {platform.python_version()}")
-    say(", ".join(f"{name} {found or '-'}" for name, found in libraries().items()))

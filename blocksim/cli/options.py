@@ -59,6 +59,8 @@ AtJoint = Annotated[
 Json = Annotated[bool, Option(name="--json", help="Print one JSON object, nothing else.")]
 
 
+THICKNESS = "thickness"
+"""The parameter of `bracket` that is left out: of arches."""
 OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters"}
 """Options that say how anything is built, not only an arch."""
 LARGEST_FRICTION = 10.0

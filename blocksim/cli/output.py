@@ -21,7 +21,7 @@ def progress() -> AbstractContextManager[Progress]:
     """Show a bar on standard error while something goes on, where that is a terminal."""
     if not sys.stderr.isatty():
         return nullcontext(silent)
-    from blocksim.cli.bar import bar
+    from blocksim.cli.terminal import bar
 
     return bar()
 

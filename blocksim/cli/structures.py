@@ -23,6 +23,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.cli.options import (
     EXIT_CODES,
+    THICKNESS,
     Given,
     Loading,
     named_options,
@@ -55,8 +56,6 @@ from blocksim.report.structures import (
     joint_names,
 )
 
-THICKNESS = "thickness"
-"""The parameter of `bracket` that is left out: of arches."""
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
 
@@ -226,6 +225,28 @@ def check_structure(
             told = carried_by(problem, at)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
+
+
+def bracket_problem(
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    over: str | None,
+    within: tuple[float, float] | None,
+    method: str,
+    tol: float,
+    settings: list[str] | None,
+    *,
+    reduce: bool,
+    as_json: bool,
+) -> bool:
+    """Answer `bracket` but over the thickness of an arch; tell whether it was answered."""
+    if not (is_structure(scene) or loading.on_road or over not in {None, THICKNESS}):
+        return False
+    require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
+    problem = problem_asked(scene, given, loading, thick=True)
+    bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
+    return True
 
 
 def bracket_structure(

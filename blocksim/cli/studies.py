@@ -11,12 +11,12 @@ from blocksim.cli.arguments import Option
 from blocksim.cli.output import progress, say
 from blocksim.cli.tables import (
     chart_table,
-    show,
     structure_lines,
     structure_table,
     validation_lines,
     validation_table,
 )
+from blocksim.cli.terminal import show
 from blocksim.common.checks import require
 from blocksim.common.files import make_folder
 from blocksim.engines import ENGINES

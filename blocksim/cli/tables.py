@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from rich.console import Console
 from rich.table import Table
 
 from blocksim.report.answers import ratio, signed
@@ -13,9 +12,6 @@ from blocksim.report.structurewords import found_of, question_of, summary_of_str
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.chart import Point, on_front
 from blocksim.studies.questions import StructureRow
-
-WIDE = 128
-"""Characters in a line of the widest table."""
 
 
 def validation_table(rows: list[Validation]) -> Table:
@@ -129,8 +125,3 @@ def _answer(row: Validation | None) -> str:
         return "-"
     error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
     return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
-
-
-def show(table: Table) -> None:
-    """Print a table; a narrow window wraps its lines rather than losing columns."""
-    Console(width=max(Console().width, WIDE)).print(table)

@@ -1,4 +1,4 @@
-"""A bar on the terminal while something goes on."""
+"""What rich draws on a terminal: a bar while something goes on, and tables."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
 
 from blocksim.common.progress import Progress as Report
+
+WIDE = 128
+"""Characters in a line of the widest table."""
 
 
 @contextmanager
@@ -22,3 +26,8 @@ def bar() -> Generator[Report]:
             shown.update(task, completed=share, description=what)
 
         yield report
+
+
+def show(table: Table) -> None:
+    """Print a table; a narrow window wraps its lines rather than losing columns."""
+    Console(width=max(Console().width, WIDE)).print(table)
