@@ -8,7 +8,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from running import PROGRAM, blocksim
+from running import PROGRAM
+from running import inside as blocksim
 
 from blocksim import load_recording
 from blocksim.cli import main
