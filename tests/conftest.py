@@ -14,8 +14,11 @@ from sweeps import SIMULATED, Rows, design_of, rows_of
 
 from blocksim.many import sweep
 
-# The same examples in every run, time not asserted.
-settings.register_profile("blocksim", deadline=None, derandomize=True, database=None)
+# The same examples in every run, time not asserted; tests of numbers that cost little ask
+# for more.
+settings.register_profile(
+    "blocksim", deadline=None, derandomize=True, database=None, max_examples=30
+)
 settings.load_profile("blocksim")
 
 
@@ -31,7 +34,7 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
     return rows
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """Chromium, where it is installed."""
     playwright = pytest.importorskip("playwright.sync_api")
