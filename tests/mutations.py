@@ -238,7 +238,8 @@ def main(word: str = "") -> int:
             if word in mutation.name:
                 seen = caught(mutation, copy)
                 survived += not seen
-                print("caught  " if seen else "SURVIVED", mutation.name, flush=True)
+                sys.stdout.write(f"{'caught' if seen else 'SURVIVED'}: {mutation.name}\n")
+                sys.stdout.flush()
     return survived
 
 

@@ -183,7 +183,7 @@ def test_a_crash_is_no_verdict(
         message = "cannot happen"
         raise ZeroDivisionError(message)
 
-    monkeypatch.setattr("blocksim.cli.app", crash)
+    monkeypatch.setattr("blocksim.cli.run", crash)
     monkeypatch.setattr("blocksim.cli.interrupts.install", lambda: None)
     with pytest.raises(SystemExit) as end:
         main()

@@ -75,7 +75,7 @@ def test_an_interrupt_that_a_library_swallows_still_counts() -> None:
             "        os.kill(os.getpid(), signal.SIGINT)",
             "    except KeyboardInterrupt as error:",
             "        raise ImportError('half a module') from error",
-            "cli.app = run",
+            "cli.run = run",
             "cli.main()",
         ]
     )

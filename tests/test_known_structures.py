@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 from report_rows import ROW
-
 from running import inside as blocksim
 from structure_cases import case
 from test_report import MAP, Page

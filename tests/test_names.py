@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from report_rows import ARCH, ROW, sliding
-from running import blocksim as program
 from running import inside as blocksim
 
 import blocksim as package

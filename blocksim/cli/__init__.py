@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from contextlib import suppress
 
 import click
 
-from blocksim.cli.app import app
+from blocksim.cli.app import app as app
+from blocksim.cli.app import run
 from blocksim.common import interrupts
 from blocksim.common.errors import BlocksimError
 
@@ -35,10 +37,14 @@ def main() -> None:
 def _code() -> int:
     """Run the command line and return its exit code."""
     try:
-        return app(standalone_mode=False) or 0
+        return run()
     except SystemExit as end:
-        # With 1 click and rich leave where nobody reads on.
+        # With 1 rich leaves where nobody reads on.
         return CLOSED if end.code == 1 else int(end.code or 0)
+    except BrokenPipeError:
+        # What is left cannot be written; Python would say so at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return CLOSED
     except (BlocksimError, OSError) as error:
         return _complain(str(error) or type(error).__name__)
     except click.ClickException as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import partial
 from importlib import import_module
 from typing import Any
@@ -10,6 +11,7 @@ import click
 
 from blocksim.cli.arguments import command_of
 from blocksim.cli.output import say
+from blocksim.common import interrupts
 from blocksim.common.later import Later
 from blocksim.common.version import __version__
 
@@ -81,7 +83,8 @@ class Commands(click.Group):
 def _command(name: str, place: str) -> click.Command:
     """Load a command."""
     file, _, function = place.partition(".")
-    return command_of(getattr(import_module(f"blocksim.cli.{file}"), function), name)
+    with interrupts.AtOnce():
+        return command_of(getattr(import_module(f"blocksim.cli.{file}"), function), name)
 
 
 @click.pass_context
@@ -107,3 +110,16 @@ app = Commands(
     help=start.__doc__,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def run() -> int:
+    """Run the command that the program was given, and return its exit code.
+
+    Not by click's own `main`, which has words of its own for interrupts and readers that went.
+    """
+    try:
+        with app.make_context("blocksim", sys.argv[1:]) as context:
+            app.invoke(context)
+    except click.exceptions.Exit as end:
+        return end.exit_code
+    return 0

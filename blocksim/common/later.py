@@ -9,6 +9,8 @@ from contextlib import contextmanager, nullcontext
 from importlib import import_module
 from typing import Any, TypeVar
 
+from blocksim.common import interrupts
+
 Thing = TypeVar("Thing")
 
 
@@ -27,7 +29,9 @@ class Later(Mapping[str, Thing]):
     def __getitem__(self, name: str) -> Thing:
         """Return what has that name."""
         if name not in self._made:
-            self._made[name] = self._makers[name]()
+            # An interrupt in the middle of an import may be swallowed there.
+            with interrupts.KeptBack():
+                self._made[name] = self._makers[name]()
         return self._made[name]
 
     def __contains__(self, name: object) -> bool:
@@ -61,7 +65,7 @@ class Library:
 
     def __getattr__(self, name: str) -> Any:
         """Import the library, and keep what was asked for."""
-        with _silence() if self._quiet else nullcontext():
+        with interrupts.KeptBack(), _silence() if self._quiet else nullcontext():
             found = getattr(import_module(self._name), name)
         setattr(self, name, found)
         return found
