@@ -222,9 +222,9 @@ def caught(mutation: Mutation, copy: Path) -> bool:
     where = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(run, cwd=copy, env=where, capture_output=True, check=False)
     file.write_text(right, encoding="utf-8")
-    if done.returncode not in {0, 1}:
+    if done.returncode not in {0, 1, 2} or b"error" in done.stdout.splitlines()[-1].lower():
         raise SystemExit(done.stdout.decode())
-    return done.returncode == 1
+    return done.returncode > 0
 
 
 def main(word: str = "") -> int:

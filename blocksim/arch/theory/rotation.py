@@ -13,6 +13,7 @@ nodes; its hinge goes to the crown like a square root, y does not.
 
 from __future__ import annotations
 
+import json
 import sys
 from functools import cache
 from itertools import pairwise
@@ -39,7 +40,7 @@ EDGES = (0.0, 0.75, 0.94, 0.985, 0.996, 1.0)
 """Pieces of the interpolation in (alpha/alpha_l)^2: a branch point lies just beyond."""
 NODES = 36
 """Of a piece."""
-STORED = Path(__file__).with_name("rotational.npz")
+STORED = Path(__file__).with_name("rotational.json")
 """Their coefficients; `store` writes them anew where edges, nodes or equations change."""
 TIGHT = 4 * sys.float_info.epsilon
 ROUNDS = 100
@@ -204,18 +205,19 @@ def widest_rotational(weight: Weight) -> float:
 @cache
 def _rotational(weight: Weight) -> Rotational:
     """Read what `solved` found, which takes longer than all else in an answer."""
-    with np.load(STORED) as stored:
-        return Rotational(float(stored[f"{weight} widest"]), list(stored[weight]))
+    stored = json.loads(STORED.read_text(encoding="utf-8"))[weight]
+    return Rotational(stored["widest"], [np.array(piece) for piece in stored["pieces"]])
 
 
 def store() -> None:
     """Solve for both weights and write the file that is read."""
-    stored: dict[str, Any] = {}
     weights: tuple[Weight, ...] = get_args(Weight)
-    for weight in weights:
-        found = solved(weight)
-        stored |= {weight: np.stack(found.pieces), f"{weight} widest": np.array(found.widest)}
-    np.savez(STORED, **stored)
+    found = {weight: solved(weight) for weight in weights}
+    table = {
+        weight: {"widest": each.widest, "pieces": [piece.tolist() for piece in each.pieces]}
+        for weight, each in found.items()
+    }
+    STORED.write_text(json.dumps(table, indent=0) + "\n", encoding="utf-8")
 
 
 def solved(weight: Weight) -> Rotational:
