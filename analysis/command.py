@@ -6,7 +6,9 @@ from collections.abc import Callable
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
-import typer
+import click
+
+from blocksim.cli.arguments import command_of
 
 Asked = ParamSpec("Asked")
 Found = TypeVar("Found")
@@ -17,6 +19,6 @@ def run(main: Callable[Asked, Found], show: Callable[[Found], object] = str) -> 
 
     @wraps(main)
     def command(*args: Asked.args, **options: Asked.kwargs) -> None:
-        typer.echo(show(main(*args, **options)))
+        click.echo(show(main(*args, **options)))
 
-    typer.run(command)
+    command_of(command).main()

@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 from blocksim.common import interrupts
+from blocksim.common.version import __version__
 
 if interrupts.is_program():
-    # Before the imports below, which take a second.
+    # Before the imports that commands make.
     interrupts.install()
 
-from blocksim.arch.bracket import Bracket, bracket
-from blocksim.arch.check import ArchCheck, check
-from blocksim.arch.circular import Arch
-from blocksim.arch.modes import Mode
-from blocksim.arch.motion import load_recording, simulate
-from blocksim.blocks.assembly import Assembly, Block, Joint
-from blocksim.blocks.joints import JointState
-from blocksim.blocks.problem import Load, Problem
-from blocksim.common.errors import BlocksimError, InputError, MissingPart
-from blocksim.common.version import __version__
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.files import load_structure, structure_of
-from blocksim.limit import collapse, equilibrium
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from blocksim.arch.bracket import Bracket, bracket
+    from blocksim.arch.check import ArchCheck, check
+    from blocksim.arch.circular import Arch
+    from blocksim.arch.modes import Mode
+    from blocksim.arch.motion import load_recording, simulate
+    from blocksim.blocks.assembly import Assembly, Block, Joint
+    from blocksim.blocks.joints import JointState
+    from blocksim.blocks.problem import Load, Problem
+    from blocksim.common.errors import BlocksimError, InputError, MissingPart
+    from blocksim.evidence.recording import Recording
+    from blocksim.evidence.verdict import Verdict
+    from blocksim.kinds.files import load_structure, structure_of
+    from blocksim.limit import collapse, equilibrium
 
 __all__ = [
     "Arch",
@@ -49,3 +53,35 @@ __all__ = [
     "simulate",
     "structure_of",
 ]
+
+_PLACES = {
+    "arch.bracket": ("Bracket", "bracket"),
+    "arch.check": ("ArchCheck", "check"),
+    "arch.circular": ("Arch",),
+    "arch.modes": ("Mode",),
+    "arch.motion": ("load_recording", "simulate"),
+    "blocks.assembly": ("Assembly", "Block", "Joint"),
+    "blocks.joints": ("JointState",),
+    "blocks.problem": ("Load", "Problem"),
+    "common.errors": ("BlocksimError", "InputError", "MissingPart"),
+    "evidence.recording": ("Recording",),
+    "evidence.verdict": ("Verdict",),
+    "kinds.files": ("load_structure", "structure_of"),
+    "limit": ("collapse", "equilibrium"),
+}
+"""Where the public names are; each is loaded when it is first used."""
+
+
+def __getattr__(name: str) -> object:
+    """Load a public name."""
+    for place, names in _PLACES.items():
+        if name in names:
+            found = getattr(import_module(f"blocksim.{place}"), name)
+            globals()[name] = found
+            return found
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """List the public names, loaded or not."""
+    return sorted({*globals(), *__all__})

@@ -28,7 +28,8 @@ from blocksim.common.files import json_text
 from blocksim.evidence.recording import Recording
 from blocksim.report import answers, structures
 from blocksim.report.recordings import recording_lines, recording_record
-from blocksim.report.sizes import problem_size_lines, size_lines, size_record
+from blocksim.report.sizes import size_lines, size_record
+from blocksim.report.structuresizes import problem_size_lines
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import cast
 
 import click
-import typer
 from format_tables import of_format
 from markdown_table import table
 from validation_tables import of_validation
@@ -109,7 +108,7 @@ def _parameters(name: str) -> str:
 
 def _commands(_: str) -> str:
     """Every command with its options, as `--help` has them; shared ones once, at the end."""
-    group = cast(click.Group, typer.main.get_command(app))
+    group = app
     context = click.Context(group)
     parts, shared = list[str](), dict[str, dict[str, list[str]]]()
     for name in group.list_commands(context):
@@ -117,7 +116,7 @@ def _commands(_: str) -> str:
         panels = list[str]()
         rows = list[list[str]]()
         for one in command.params:
-            panel = getattr(one, "rich_help_panel", None)
+            panel = getattr(command, "headings", dict[str, str]()).get(str(one.name))
             if one.name == "help":
                 continue
             if panel is None:
@@ -142,7 +141,8 @@ def _option(one: click.Parameter) -> list[str]:
     """Return an option's names and what its help says."""
     names = [*one.opts, *one.secondary_opts]
     shown = names if one.param_type_name == "option" else [str(one.name).upper()]
-    said = " ".join((getattr(one, "help", "") or "").split()).replace("|", "\\|")
+    told = getattr(one, "help", None) or getattr(one, "about", "")
+    said = " ".join(told.split()).replace("|", "\\|")
     return [", ".join(f"`{each}`" for each in shown), said]
 
 

@@ -14,8 +14,11 @@ from sweeps import SIMULATED, Rows, design_of, rows_of
 
 from blocksim.many import sweep
 
-# The same examples in every run, time not asserted.
-settings.register_profile("blocksim", deadline=None, derandomize=True, database=None)
+# The same examples in every run, time not asserted; tests of numbers that cost little ask
+# for more.
+settings.register_profile(
+    "blocksim", deadline=None, derandomize=True, database=None, max_examples=30
+)
 settings.load_profile("blocksim")
 
 

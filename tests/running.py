@@ -30,10 +30,11 @@ def blocksim(
     )
 
 
-def inside(*arguments: str) -> subprocess.CompletedProcess[str]:
+def inside(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run a command within this process, which has loaded its libraries once for all."""
     out, complaints = io.StringIO(), io.StringIO()
     with (
+        contextlib.chdir(cwd or Path.cwd()),
         mock.patch.object(sys, "argv", ["blocksim", *arguments]),
         contextlib.redirect_stdout(out),
         contextlib.redirect_stderr(complaints),

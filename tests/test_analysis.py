@@ -34,6 +34,12 @@ def study(name: str) -> ModuleType:
     return import_module(f"analysis.{name}")
 
 
+@pytest.mark.parametrize("path", sorted(STUDIES.glob("*.py")), ids=lambda path: path.stem)
+def test_every_study_finds_what_it_takes_from_blocksim(path: Path) -> None:
+    """Those that are long are run with `-m long`; a name that has gone is seen at once."""
+    assert study(path.stem)
+
+
 def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> None:
     result = study("random_arches").main(tmp_path, quick=True)
     assert result.arches == result.confirmed == result.same_mode == 4
@@ -42,6 +48,7 @@ def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> N
     assert (tmp_path / "random_arches.png").stat().st_size > 0
 
 
+@pytest.mark.long
 def test_pulses_overturn_a_block_where_housner_says(tmp_path: Path) -> None:
     module = study("shaking")
     result = module.main(tmp_path, quick=True)
@@ -83,6 +90,7 @@ def test_random_assemblies_fall_at_the_load_of_the_linear_programme(tmp_path: Pa
     assert (tmp_path / "random_assemblies.png").stat().st_size > 0
 
 
+@pytest.mark.long
 def test_random_arches_of_every_kind_fall_where_limit_analysis_says(tmp_path: Path) -> None:
     module = study("random_kinds")
     result = module.main(tmp_path, quick=True)
@@ -103,6 +111,7 @@ def test_random_arches_of_every_kind_fall_where_limit_analysis_says(tmp_path: Pa
     assert (told.right, told.false, len(told.undecided)) == (2, 1, 1)
 
 
+@pytest.mark.long
 def test_arches_on_spreading_supports(tmp_path: Path) -> None:
     module = study("spreading")
     result = module.main(tmp_path, quick=True)
@@ -139,6 +148,7 @@ def test_wrong_forces_and_mechanisms_of_random_assemblies_would_be_seen() -> Non
     assert min(wrong.imbalance, wrong.power) > 1e-3
 
 
+@pytest.mark.long
 def test_what_limits_pybullet(tmp_path: Path) -> None:
     pytest.importorskip("pybullet")
     result = study("pybullet_settings").main(tmp_path, quick=True)
@@ -158,6 +168,7 @@ def test_every_method_is_charted(tmp_path: Path) -> None:
     assert (tmp_path / "chart.png").stat().st_size > 0
 
 
+@pytest.mark.long
 def test_where_engines_stop_working(tmp_path: Path) -> None:
     """By the rules' settings nothing is wrong or open; with far too few sweeps it is open."""
     rows = study("stability").main(tmp_path, quick=True, engines=["direct", "pymunk"])
@@ -227,6 +238,7 @@ def test_no_arch_without_slip_is_open_or_false(tmp_path: Path) -> None:
     assert result.false == result.undecided == 0
 
 
+@pytest.mark.long
 def test_the_map_by_simulation_goes_on_where_it_was(tmp_path: Path) -> None:
     module = study("mode_sweep")
     (first,) = module.main(tmp_path, quick=True)
@@ -335,6 +347,7 @@ def test_an_island_would_be_seen() -> None:
     assert not islands.monotone([{"verdict": each} for each in island])
 
 
+@pytest.mark.long
 def test_early_ends_say_what_late_ones_do(tmp_path: Path) -> None:
     result = study("early_decisions").main(tmp_path, quick=True)
     assert (result.runs, result.differ) == (12, 0)
@@ -343,6 +356,7 @@ def test_early_ends_say_what_late_ones_do(tmp_path: Path) -> None:
     assert 0 < result.simulated_share < 0.5
 
 
+@pytest.mark.long
 def test_the_benchmark_stores_and_compares(tmp_path: Path) -> None:
     benchmark = study("benchmark")
     first = benchmark.main(tmp_path, quick=True)
@@ -370,6 +384,7 @@ def test_the_timings_kept_with_the_code_can_be_compared_with() -> None:
         assert benchmark.stored(path) == record.seconds
 
 
+@pytest.mark.long
 def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
     costs = study("costs").main(tmp_path, quick=True)
     assert [cost.method for cost in costs] == ["theory"] * 2 + ["limit"] * 2 + ["direct"] * 3
@@ -422,6 +437,7 @@ def test_other_engines_are_asked_about_structures_with_known_answers(tmp_path: P
     assert line.false == 1
 
 
+@pytest.mark.long
 def test_rubble_is_solid_and_gains_no_energy(tmp_path: Path) -> None:
     """One arch and one wall; `test_rubble` has every engine."""
     module = study("rubble")

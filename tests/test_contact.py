@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from blocksim.engines.contact.banded import Bands
-from blocksim.engines.contact.coulomb import Friction, cut
+from blocksim.engines.contact.coulomb import Friction
 from blocksim.engines.contact.path_following import come_together
 from blocksim.engines.contact.solver import ContactProblem
 from blocksim.engines.contact.step import Step

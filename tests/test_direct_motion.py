@@ -24,7 +24,12 @@ def world_of(assembly, mu, step):
     return Blocks(Problem(assembly=assembly, mu=mu), settings)
 
 
-FALLS = [(90, 0.9, 20, 0.9), (125, 0.9, 15, 0.9), (150, 2.0, 15, 0.97), (65, 0.35, 12, 0.7)]
+FALLS = [
+    (90, 0.9, 20, 0.9),
+    pytest.param(125, 0.9, 15, 0.9, marks=pytest.mark.long),
+    pytest.param(150, 2.0, 15, 0.97, marks=pytest.mark.long),
+    (65, 0.35, 12, 0.7),
+]
 
 
 def clipped(polygon, other):

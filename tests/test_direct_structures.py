@@ -144,7 +144,7 @@ def exchanged(assembly: Assembly) -> Assembly:
     return replace(assembly, joints=tuple(map(turned, assembly.joints)))
 
 
-@pytest.mark.parametrize("other_way", [False, True])
+@pytest.mark.parametrize("other_way", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_a_smooth_ladder_leaves_its_wall_at_two_thirds_of_its_height(other_way: bool) -> None:
     """Energy gives its speed, and the wall's force is gone at 2/3, whatever its inertia."""
     problem = ladder(60)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from running import blocksim
+from running import inside as blocksim
 
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import least_thicknesses

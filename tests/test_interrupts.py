@@ -50,8 +50,19 @@ def test_while_it_starts(delay: float, sent: signal.Signals) -> None:
     interrupted(imports, delay, sent, "bracket", *ARCH, "--tol", "1e-4")
 
 
-@pytest.mark.parametrize("sent", CODES)
-@pytest.mark.parametrize("delay", [0.0, 0.1, 0.5])
+MOMENTS = [(0.0, signal.SIGTERM), (0.5, signal.SIGINT)]
+OTHERS = [
+    (0.0, signal.SIGINT),
+    (0.1, signal.SIGINT),
+    (0.1, signal.SIGTERM),
+    (0.5, signal.SIGTERM),
+]
+
+
+@pytest.mark.parametrize(
+    ("delay", "sent"),
+    [*MOMENTS, *(pytest.param(*other, marks=pytest.mark.long) for other in OTHERS)],
+)
 @pytest.mark.parametrize("command", ["validate", "sweep"])
 def test_while_workers_start(
     command: str, delay: float, sent: signal.Signals, tmp_path: Path
@@ -75,7 +86,7 @@ def test_an_interrupt_that_a_library_swallows_still_counts() -> None:
             "        os.kill(os.getpid(), signal.SIGINT)",
             "    except KeyboardInterrupt as error:",
             "        raise ImportError('half a module') from error",
-            "cli.app = run",
+            "cli.run = run",
             "cli.main()",
         ]
     )

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 from report_rows import ROW
-from running import blocksim
-from running import inside as within
+from running import inside as blocksim
 from structure_cases import case
 from test_report import MAP, Page
 
@@ -101,12 +100,12 @@ def test_a_structure_is_asked_by_its_name(tmp_path: Path) -> None:
     assert answer["load_factor"] == pytest.approx(0.3705338738135736, rel=1e-9)
     moves = [at for at, each in enumerate(answer["joints"]) if each["state"] != "closed"]
     assert moves == [0, 3, 5, 7]
-    found = json.loads(within("bracket", "gable", "--over", "mu", "--json").stdout)
+    found = json.loads(blocksim("bracket", "gable", "--over", "mu", "--json").stdout)
     assert found["limit"] == pytest.approx(6 / 13, rel=1e-9)
     picture = tmp_path / "pointed.svg"
-    assert within("render", "pointed_e0_25", "--out", str(picture)).returncode == 0
+    assert blocksim("render", "pointed_e0_25", "--out", str(picture)).returncode == 0
     assert "A pointed arch of two arcs" in re.sub(r"<!-- (.*?) -->", r"\1", picture.read_text())
-    listed = within("scenarios").stdout
+    listed = blocksim("scenarios").stdout
     assert "oppenheim_7" in listed
     assert "--over load 0.370534" in listed
     with pytest.raises(InputError, match="or a shipped structure"):
@@ -115,15 +114,15 @@ def test_a_structure_is_asked_by_its_name(tmp_path: Path) -> None:
 
 def test_only_arches_have_an_intrados() -> None:
     """A column turns about the right-hand end of its base; an arch says which edge stays."""
-    told = json.loads(within("check", "column_six_drums", "--tilt", "16", "--json").stdout)
+    told = json.loads(blocksim("check", "column_six_drums", "--tilt", "16", "--json").stdout)
     base = told["joints"][0]
     assert base["state"] == "hinge"
     assert base["hinge"] == pytest.approx(max(base["ends"]))
     assert {joint["state"] for joint in told["joints"][1:]} == {"closed"}
     assert {joint["hinge"] and 1 for joint in told["joints"][1:]} == {None}
-    lines = within("check", "column_six_drums", "--tilt", "16").stdout
+    lines = blocksim("check", "column_six_drums", "--tilt", "16").stdout
     assert re.search(r"joints +floor-drum 1 hinge\n", lines)
-    arch = json.loads(within("check", "oppenheim_7", "--load", "0.372", "--json").stdout)
+    arch = json.loads(blocksim("check", "oppenheim_7", "--load", "0.372", "--json").stdout)
     states = [joint["state"] for joint in arch["joints"] if joint["state"] != "closed"]
     assert states == ["hinge-intrados", "hinge-extrados"] * 2
     assert arch["joints"][3]["hinge"] == arch["joints"][3]["ends"][1]
@@ -131,14 +130,14 @@ def test_only_arches_have_an_intrados() -> None:
 
 def test_events_of_spreading_are_told_in_json() -> None:
     found = json.loads(
-        within("bracket", "spread_90_12_20", "--over", "spread", "--json").stdout
+        blocksim("bracket", "spread_90_12_20", "--over", "spread", "--json").stdout
     )
     first, last = found["events"]
     assert (first["value"], first["what"]) == (0.0, "hinges")
     assert [joint["a"] for joint in first["joints"]] == ["4", "10", "16"]
     assert last["what"] == "collapse"
     assert last["value"] == pytest.approx(found["limit"]) == pytest.approx(0.0166808, rel=1e-5)
-    other = json.loads(within("bracket", "oppenheim_7", "--over", "load", "--json").stdout)
+    other = json.loads(blocksim("bracket", "oppenheim_7", "--over", "load", "--json").stdout)
     assert other["events"] is None
 
 
@@ -313,7 +312,7 @@ def test_the_exit_code_counts_both_parts(
     monkeypatch.setattr(f"{at}run_validation", lambda *_, **__: [replace(ROW, miss=arch)])
     told = [replace(rows[0], miss=structure), *rows[1:]]
     monkeypatch.setattr(f"{at}validate_structures", lambda *_, **__: told)
-    done = within("validate", "--quick", "--out", str(tmp_path))
+    done = blocksim("validate", "--quick", "--out", str(tmp_path))
     assert done.returncode == code
     agree = "10 of 11" if structure else "All 11"
     assert f"{agree} answers on 4 other structures agree with their sources" in done.stdout

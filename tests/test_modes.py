@@ -7,7 +7,7 @@ import math
 
 import pytest
 from arches import arch_at
-from typer.testing import CliRunner
+from click.testing import CliRunner
 
 from blocksim.arch import limit, theory
 from blocksim.arch.bracket import bracket

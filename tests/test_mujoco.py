@@ -78,7 +78,7 @@ def test_bracket_holds_the_limit() -> None:
     assert found.undecided == 0
 
 
-@pytest.mark.parametrize("ratio", [0.99, 1.002])
+@pytest.mark.parametrize("ratio", [pytest.param(0.99, marks=pytest.mark.long), 1.002])
 def test_few_thick_voussoirs_with_much_friction(ratio: float) -> None:
     """Known limit: below its least thickness joints slide too fast for its contacts.
 

@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from report_rows import ARCH, ROW, sliding
-from running import blocksim
+from running import inside as blocksim
 
 import blocksim as package
 from blocksim import load_recording
 from blocksim.arch.scenario import load_scenario, shipped
-from blocksim.cli.console import validation_lines, validation_table
+from blocksim.cli.tables import validation_lines, validation_table
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text
 from blocksim.engines import get_engine

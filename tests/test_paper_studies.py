@@ -17,12 +17,14 @@ def test_every_printed_number(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.long
 def test_sector_map(tmp_path: Path) -> None:
     result = study("sector_map").main(tmp_path, quick=True)
     assert result["largest_difference"] <= 1e-7
     assert (tmp_path / "sector_map.png").stat().st_size > 0
 
 
+@pytest.mark.long
 def test_theory_against_limit(tmp_path: Path) -> None:
     result = study("theory_against_limit").main(tmp_path, quick=True)
     assert result["largest_difference"] <= 1e-6

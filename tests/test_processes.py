@@ -33,7 +33,10 @@ def at_work(pid: int) -> list[int]:
     return [each for each in children(pid) if len([*Path(f"/proc/{each}/task").iterdir()]) > 1]
 
 
-@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("sent", "code"),
+    [pytest.param(signal.SIGINT, 130, marks=pytest.mark.long), (signal.SIGTERM, 143)],
+)
 def test_an_interrupted_validation_leaves_nothing(
     tmp_path: Path, sent: signal.Signals, code: int
 ) -> None:

@@ -121,7 +121,7 @@ def test_turned_by_any_angle_where_nothing_slides(
     assert held(assembly, 0.7, within(Frame(math.radians(degrees))))[0] is expected
 
 
-@pytest.mark.parametrize("degrees", [15, 30, 45])
+@pytest.mark.parametrize("degrees", [pytest.param(15, marks=pytest.mark.long), 30, 45])
 @pytest.mark.parametrize(("ratio", "expected"), SIDES)
 def test_turned_friction_is_never_more_than_it_is(
     ratio: float, expected: Verdict, degrees: float

@@ -221,7 +221,9 @@ def test_mirrored_ground_moves_blocks_the_other_way() -> None:
     assert two == pytest.approx(-one, abs=1e-4)
 
 
-@pytest.mark.parametrize("name", ["rocking_1x4_5", "rocking_0_5x4_5"])
+@pytest.mark.parametrize(
+    "name", ["rocking_1x4_5", pytest.param("rocking_0_5x4_5", marks=pytest.mark.long)]
+)
 def test_time_to_the_first_impact_converges_to_housners(name: str) -> None:
     """Errors halve with the step, and what two of them leave is less than 2e-5."""
     known, problem = case(name), structure_of(tipped(name))

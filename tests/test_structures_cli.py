@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import structure_cases
-from running import blocksim
+from running import inside as blocksim
 
 from blocksim import load_recording
 

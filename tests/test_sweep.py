@@ -13,7 +13,8 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecu
 from pathlib import Path
 
 import pytest
-from running import blocksim, inside
+from running import inside
+from running import inside as blocksim
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim import Arch, bracket, check

@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from running import alive, blocksim, children, started, until
+from running import alive, blocksim, children, inside, started, until
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim.common.errors import InputError
@@ -137,7 +137,7 @@ def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows)
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
     ) as cluster:
         address = cluster.scheduler_address
-        done = blocksim(*asked, "--scheduler", address, "--json")
+        done = inside(*asked, "--scheduler", address, "--json")
     assert done.returncode == 0
     assert json.loads(done.stdout)["rows"] == 80
     assert rows_of(tmp_path / "out") == uninterrupted

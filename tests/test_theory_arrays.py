@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses
+from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses, rotation
 from blocksim.arch.theory.arrays import BIT
 from blocksim.common.errors import InputError
 
@@ -180,3 +180,11 @@ def test_shapes() -> None:
     assert least_thicknesses(np.empty((0, 3)), 1.0).eta.shape == (0, 3)
     assert least_thicknesses(1.0, 1.0).eta.shape == ()
     assert least_thicknesses(1.0, 1.0).mode == "rrr"
+
+
+@pytest.mark.parametrize("weight", ["centreline", "sector"])
+def test_the_rotational_mode_that_is_read_is_the_one_that_is_solved(weight: str) -> None:
+    stored, solved = rotation._rotational(weight), rotation.solved(weight)
+    assert stored.widest == pytest.approx(solved.widest, rel=1e-15)
+    for one, other in zip(stored.pieces, solved.pieces, strict=True):
+        assert one == pytest.approx(other, abs=2e-14)

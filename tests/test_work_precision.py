@@ -13,13 +13,14 @@ import pytest
 from blocksim import Arch
 from blocksim.arch import limit, theory
 from blocksim.ask.methods import METHODS
-from blocksim.cli.console import chart_table
+from blocksim.cli.tables import chart_table
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
 from blocksim.evidence.motion import QUIET
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.chart import read_points, write_chart, write_points
+from blocksim.studies import refinement
 from blocksim.studies.chart import ChartArch, Point, front, gain, measure, on_front
 from blocksim.studies.refinement import REFINEMENTS, let_go, look
 from blocksim.view.chartfigure import chart_figures
@@ -132,7 +133,7 @@ def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     coarser = replace(ENGINES["pymunk"], chart={"hold_sweeps": (300, 600, 5000)})
-    monkeypatch.setitem(METHODS, "pymunk", coarser)
+    monkeypatch.setattr(refinement, "METHODS", {**METHODS, "pymunk": coarser})
     for case in (SMALL, SLIDING):
         points = measure([case], ["pymunk"], ["hold_sweeps"])
         for each in points:

@@ -5,23 +5,24 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from blocksim.arch import limit, theory
 from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.circular import Arch
-from blocksim.arch.limit.mechanism import Mechanism, mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
-from blocksim.arch.reduction import Reduction
 from blocksim.ask.carried import Carried
 from blocksim.ask.check import Check
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.common.checks import require_friction
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.observation import observe
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
+
+if TYPE_CHECKING:
+    from blocksim.arch.limit.mechanism import Mechanism
 
 TIMES = 0.5
 """Share above the least thickness from which on it is told how many times that it is."""
@@ -128,9 +129,16 @@ def check(
     elif rung.name == "limit":
         verdict, reason = _static(arch, mu, built.eta)
         if verdict is Verdict.COLLAPSES:
+            # Its linear programmes take longer to load than an arch that stands to answer.
+            from blocksim.arch.limit.mechanism import mechanism
+
             found = mechanism(arch, mu)
             mode, joints = found.mode, _limit_joints(found)
     else:
+        # What moves blocks is loaded where it is asked for.
+        from blocksim.arch.reduction import Reduction
+        from blocksim.evidence.observation import observe
+
         seen = observe(
             leaning or arch.problem(mu),
             rung.name,

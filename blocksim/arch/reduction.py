@@ -23,16 +23,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import weakest_joints
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
+from blocksim.common.later import Library
 from blocksim.engines.base import Quality, TakesForces, TellsForces, World
+
+if TYPE_CHECKING:
+    from scipy.spatial import transform
+else:
+    transform = Library("scipy.spatial.transform")
 
 UNTURNED = 1e18
 """Factor on the inertia of half a keystone."""
@@ -157,7 +162,7 @@ class Reduction:
         if spatial:
             turns[:, :2] = moved[:, 4:]
         offsets[:, :2] = self._offsets
-        carried = Rotation.from_rotvec(turns).apply(offsets)
+        carried = transform.Rotation.from_rotvec(turns).apply(offsets)
         moved[:, :2] += carried[:, :2]
         if spatial:
             moved[:, 3] += carried[:, 2]

@@ -6,20 +6,22 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from blocksim.ask.families import Family
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.ask.search import Answer, Bisection
-from blocksim.ask.spread import Happening, Spreading
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
-from blocksim.evidence.observation import Held, Observation, conclude, hold
-from blocksim.evidence.shaken import shake
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
+
+if TYPE_CHECKING:
+    from blocksim.ask.spread import Happening, Spreading
+    from blocksim.evidence.observation import Held, Observation
 
 SURE = 1e-8
 """How far to both sides of its value limit analysis is asked again, relative."""
@@ -178,6 +180,9 @@ def bracket(
     else:
         known = exact and math.isfinite(exact) and low <= exact <= high
         start = exact if exact and known else low + GUESS * (high - low)
+        # What moves blocks is loaded where it is asked for.
+        from blocksim.evidence.observation import hold
+
         found = by_engine(
             lambda value: hold(family.at(value), chosen.name, settings=settings),
             start,
@@ -244,6 +249,8 @@ def _shaken(
     progress: Progress,
 ) -> Search:
     """Search for the change by shaking the blocks, each time until they lie still."""
+    from blocksim.evidence.shaken import shake
+
     least, most = max(within[0], start / FARTHEST), min(within[1], start * FARTHEST)
 
     def judge(value: float) -> Answer:
@@ -325,6 +332,8 @@ def by_engine(
         Let the blocks go at both ends.
     progress : Progress, optional
     """
+    from blocksim.evidence.observation import conclude
+
     ends: dict[Verdict, tuple[float, Held]] = {}
     blocks = splits = both = 0
 

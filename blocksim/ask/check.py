@@ -6,6 +6,7 @@ import math
 import time
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,13 +17,13 @@ from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
-from blocksim.engines.base import Method
-from blocksim.evidence.observation import observe
-from blocksim.evidence.onset import PROBE
-from blocksim.evidence.shaken import Shaken, shake
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import Equilibrium, collapse, equilibrium
+
+if TYPE_CHECKING:
+    from blocksim.engines.base import Method
+    from blocksim.evidence.shaken import Shaken
 
 SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
@@ -143,6 +144,9 @@ def check(
     started = time.perf_counter()
     chosen = choose(method, problem=problem, settings=settings)
     if problem.shaking is not None:
+        # What moves blocks is loaded where it is asked for.
+        from blocksim.evidence.shaken import shake
+
         shaken = shake(problem, chosen.name, settings=settings, progress=progress)
         return _of_shaken(problem, chosen, shaken, chosen_words(method, chosen), started)
     planar = problem.is_planar
@@ -156,6 +160,8 @@ def check(
         reason = _static_words(static, problem)
         mechanism = static.mechanism
     else:
+        from blocksim.evidence.observation import observe
+
         seen = observe(problem, chosen.name, settings=settings, progress=progress)
         verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
         if seen.onset.may_rest or seen.onset.forces is not None:
@@ -207,6 +213,8 @@ def _of_shaken(
 
 def _observed(problem: Problem, rates: Array) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does as blocks begin to move at some rates, (blocks, 3)."""
+    from blocksim.evidence.onset import PROBE
+
     assembly = problem.assembly
     start = np.column_stack([assembly.centres / assembly.size, np.zeros(len(rates))])
     return classify(assembly, start + PROBE * rates[:, :3])

@@ -6,17 +6,22 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy.optimize import brentq
 
-from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.shaking import LONGEST, SHORTEST, STRONGEST, Shaking
 from blocksim.common.errors import InputError
-from blocksim.kinds.files import kind_behind, with_parameter
+from blocksim.common.later import Library
 from blocksim.limit import collapse, equilibrium
+
+if TYPE_CHECKING:
+    from scipy import optimize
+
+    from blocksim.ask.spread import Spreading
+else:
+    optimize = Library("scipy.optimize")
 
 Stands = Literal["low", "high"]
 LARGEST_FRICTION = 1e3
@@ -93,6 +98,8 @@ def family_of(problem: Problem, over: str) -> Family:
 
 def families_of(problem: Problem) -> tuple[str, ...]:
     """Names of the parameters there are: of any problem, of its shaking, and of its kind."""
+    from blocksim.kinds.files import kind_behind
+
     kind = kind_behind(problem)
     still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
     always = [name for name in FAMILIES if name not in still]
@@ -169,6 +176,9 @@ def _over_mu(problem: Problem) -> Family:
 
 
 def _over_spread(problem: Problem) -> Family:
+    # It moves blocks, by an engine.
+    from blocksim.ask.spread import Spreading
+
     spreading = Spreading(problem)
     return Family(
         name="spread",
@@ -233,6 +243,8 @@ def _over_parameter(problem: Problem, name: str) -> Family:
 
     Its range is where the kind can be built, around the value at hand.
     """
+    from blocksim.kinds.files import kind_behind, with_parameter
+
     kind = kind_behind(problem)
     assert kind is not None  # noqa: S101
     known, low, high = kind.number(name)
@@ -329,7 +341,7 @@ def _root(
         return None
     if margin(falling) >= 0:
         return math.inf if stands == "low" else 0.0
-    found = float(brentq(margin, low, high, xtol=1e-13, rtol=1e-12))
+    found = float(optimize.brentq(margin, low, high, xtol=1e-13, rtol=1e-12))
     # What is enough is a little too little: where the margin grows evenly on the standing
     # side, its zero is taken from there.
     step = NEAR * max(found, low) * (1 if stands == "high" else -1)

@@ -10,9 +10,11 @@ says how fine a bracket it is good for, as measured (`analysis/random_arches.py`
 from __future__ import annotations
 
 import math
+from functools import partial
 
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
+from blocksim.common.later import Later
 from blocksim.engines import ENGINES
 from blocksim.engines.base import Engine, Method
 from blocksim.evidence.simulation import BY_RULE, Overrides, require_setting
@@ -34,8 +36,11 @@ _STATICS = (
     ),
 )
 STATIC = tuple(method.name for method in _STATICS)
-METHODS: dict[str, Method] = {method.name: method for method in _STATICS} | ENGINES
-SPATIAL = next(engine.name for engine in ENGINES.values() if engine.is_spatial)
+METHODS = Later[Method](
+    {method.name: partial(_STATICS.__getitem__, k) for k, method in enumerate(_STATICS)}
+    | {name: partial(ENGINES.__getitem__, name) for name in ENGINES}
+)
+SPATIAL = "pybullet"
 """The method that sees out of the plane."""
 
 CHOICES = ("auto", *METHODS)

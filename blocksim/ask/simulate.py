@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from blocksim.ask.methods import choose
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.observation import hold
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.shaken import shake
 from blocksim.evidence.simulation import BY_RULE, Overrides
+
+if TYPE_CHECKING:
+    from blocksim.evidence.recording import Recording
 
 
 def simulate(
@@ -44,6 +46,10 @@ def simulate(
     MissingPart
         If the engine's library is not installed.
     """
+    # What moves blocks is loaded where it is asked for.
+    from blocksim.evidence.observation import hold
+    from blocksim.evidence.shaken import shake
+
     chosen = choose(method, problem=problem, moving=True, settings=settings)
     if problem.shaking is not None:
         seen = shake(

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from contextlib import suppress
 
-import typer
+import click
 
-from blocksim.cli import commands, converting, reporting, studies
-from blocksim.cli.app import app
+from blocksim.cli.app import app as app
+from blocksim.cli.app import run
 from blocksim.common import interrupts
 from blocksim.common.errors import BlocksimError
 
-COMMANDS = (commands, converting, reporting, studies)
-"""Modules whose commands hang themselves into the program."""
 WRONG_INPUT = 2
 CRASHED = 70
 """After what should not happen: Python's own 1 would say that the arch collapses."""
@@ -38,36 +37,26 @@ def main() -> None:
 def _code() -> int:
     """Run the command line and return its exit code."""
     try:
-        return app(standalone_mode=False) or 0
+        return run()
     except SystemExit as end:
-        # With 1 typer and rich leave where nobody reads on.
+        # With 1 rich leaves where nobody reads on.
         return CLOSED if end.code == 1 else int(end.code or 0)
+    except BrokenPipeError:
+        # What is left cannot be written; Python would say so at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return CLOSED
     except (BlocksimError, OSError) as error:
         return _complain(str(error) or type(error).__name__)
-    except Exception as error:
-        message = _complaint(error)
-        if message is not None:
-            return _complain(message)
+    except click.ClickException as error:
+        return _complain(" ".join(error.format_message().split()))
+    except Exception:
         if not interrupts.code():
             traceback.print_exc()
         return CRASHED
 
 
-def _complaint(error: Exception) -> str | None:
-    """Return what typer says of options, in one line with the value it may leave out."""
-    message = getattr(error, "format_message", None)
-    if message is None:
-        return None
-    said = " ".join(str(message()).split())
-    details = getattr(error.__cause__, "errors", None)
-    if details is None:
-        return said
-    given = repr(details()[0]["input"])
-    return said if given in said else f"{said}, not {given}"
-
-
 def _complain(message: str) -> int:
     if not interrupts.code():
         with suppress(OSError):
-            typer.echo(f"blocksim: {message}", err=True)
+            click.echo(f"blocksim: {message}", err=True)
     return WRONG_INPUT

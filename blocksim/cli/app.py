@@ -1,30 +1,137 @@
-"""The program: its name, its options, and the commands that are hung into it."""
+"""The program: its name, its options, and its commands, each loaded when it is asked for."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import os
+import sys
+from functools import partial
+from importlib import import_module
+from typing import Any
 
-import typer
+import click
+from click.shell_completion import shell_complete
 
-from blocksim.cli.console import say
+from blocksim.cli.arguments import command_of
+from blocksim.cli.output import say
+from blocksim.common import interrupts
+from blocksim.common.later import Later
 from blocksim.common.version import __version__
 
-app = typer.Typer(
-    name="blocksim",
+COMMANDS = {
+    "check": (
+        "asking.check",
+        "Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided.",
+    ),
+    "bracket": (
+        "asking.bracket",
+        "Find where it starts to fall as one parameter changes: how thin an arch can be.",
+    ),
+    "simulate": ("commands.simulate", "Let it go and record its motion."),
+    "render": ("commands.render", "Draw what is built to scale, or film its motion."),
+    "convert": (
+        "converting.convert",
+        "Turn a drawing into a structure file, so that loads, weights or friction "
+        "can be added.",
+    ),
+    "report": (
+        "reporting.report",
+        "Write a report on one structure, a page to print. Exit codes are those of check.",
+    ),
+    "validate": (
+        "studies.validate",
+        "Simulate published arches and structures; compare with the map and their sources.",
+    ),
+    "chart": (
+        "studies.chart",
+        "Chart the error of every method, from coarse to fine, against time and work.",
+    ),
+    "sweep": (
+        "sweeping.sweep",
+        "Ask about many arches. A run that was killed goes on where it was.",
+    ),
+    "map": (
+        "mapping.draw_map",
+        "Draw the analytical map of least thickness and collapse modes.",
+    ),
+    "scenarios": (
+        "listing.list_scenarios",
+        "List the scenarios and structures that come with blocksim.",
+    ),
+    "kinds": (
+        "listing.list_kinds",
+        "List the kinds of structures, or the parameters of one.",
+    ),
+    "doctor": (
+        "installed.doctor",
+        "Tell what is installed and what each method can do here.",
+    ),
+    "cite": (
+        "citing.cite",
+        "Print BibTeX of blocksim, of the paper, and of what methods rest on.",
+    ),
+}
+"""File and function of each command, and the first line of its help."""
+
+
+COMPLETES = "_BLOCKSIM_COMPLETE"
+
+
+class Commands(click.Group):
+    """The commands by name, none of which is loaded to be listed."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - as called
+        """Return the names, in the order of the help."""
+        return list(COMMANDS)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """Write the commands and what they are for."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, about) for name, (_, about) in COMMANDS.items()])
+
+
+def _command(name: str, place: str) -> click.Command:
+    """Load a command."""
+    file, _, function = place.partition(".")
+    with interrupts.AtOnce():
+        return command_of(getattr(import_module(f"blocksim.cli.{file}"), function), name)
+
+
+@click.pass_context
+def start(context: click.Context, version: bool) -> None:
+    """Answer whether a masonry arch stands, how thin it can be and how it falls."""
+    if version:
+        say(f"blocksim {__version__}")
+    elif context.invoked_subcommand is None:
+        say(context.get_help())
+    if version:
+        context.exit()
+
+
+_commands: Any = Later(
+    {name: partial(_command, name, place) for name, (place, _) in COMMANDS.items()}
+)
+app = Commands(
+    "blocksim",
+    _commands,
+    callback=start,
+    params=[click.Option(["--version"], is_flag=True, help="Print the version.")],
     invoke_without_command=True,
-    pretty_exceptions_enable=False,
+    help=start.__doc__,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
-@app.callback()
-def start(
-    context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
-) -> None:
-    """Answer whether a masonry arch stands, how thin it can be and how it falls."""
-    if version:
-        say(f"blocksim {__version__}")
-        raise typer.Exit
-    if context.invoked_subcommand is None:
-        say(context.get_help())
+def run() -> int:
+    """Run the command that the program was given, and return its exit code.
+
+    Not by click's own `main`, which has words of its own for interrupts and readers that went.
+    A shell that completes a line says so in the environment, as click's documentation has it.
+    """
+    if COMPLETES in os.environ:
+        return shell_complete(app, {}, "blocksim", COMPLETES, os.environ[COMPLETES])
+    try:
+        with app.make_context("blocksim", sys.argv[1:]) as context:
+            app.invoke(context)
+    except click.exceptions.Exit as end:
+        return end.exit_code
+    return 0

@@ -5,34 +5,31 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, cast
 
-import typer
-
-from blocksim.cli.app import app
-from blocksim.cli.console import say
+from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.options import named_options, require_given
+from blocksim.cli.output import say
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.kinds.files import is_drawing, named_file, structure_of, with_friction
 
 
-@app.command()
 def convert(
     source: Annotated[
-        str, typer.Argument(help="A drawing, .dxf or .svg, or an assembly of compas, .json.")
+        str, Argument(help="A drawing, .dxf or .svg, or an assembly of compas, .json.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="Structure file to write, .json; required.")
+        Path | None, Option(help="Structure file to write, .json; required.")
     ] = None,
     mu: Annotated[
-        float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")
+        float | None, Option(help="Friction coefficient, above 0; inf allowed.")
     ] = None,
     unit: Annotated[
         float | None,
-        typer.Option(help="Metres that a unit of the drawing is; 0.001 for mm."),
+        Option(help="Metres that a unit of the drawing is; 0.001 for mm."),
     ] = None,
     fixed: Annotated[
-        str | None, typer.Option(help="Blocks that stay where they are: ids, with commas.")
+        str | None, Option(help="Blocks that stay where they are: ids, with commas.")
     ] = None,
 ) -> None:
     """Turn a drawing into a structure file, so that loads, weights or friction can be added."""

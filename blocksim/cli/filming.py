@@ -8,17 +8,16 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-import typer
-
+from blocksim.arch.asked import Scenario
 from blocksim.arch.circular import Arch
 from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.arch.motion import load_recording
-from blocksim.arch.scenario import Scenario
 from blocksim.ask.methods import SPATIAL
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY
-from blocksim.cli.console import progress, say
+from blocksim.cli.arguments import Option
 from blocksim.cli.options import Given, Loading, named_options, option_of
+from blocksim.cli.output import progress, say
 from blocksim.cli.structures import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
@@ -42,30 +41,26 @@ SHOWN = 0.2
 MODELS, TABLES = ("glb", "gltf"), ("csv", "json")
 """Endings of recordings as glTF, and as numbers."""
 
-Beside = Annotated[
-    Path | None, typer.Option(help="A second recording, .npz, to show side by side.")
-]
-View = Annotated[Literal["2d", "3d"], typer.Option(help="From the front, or in perspective.")]
+Beside = Annotated[Path | None, Option(help="A second recording, .npz, to show side by side.")]
+View = Annotated[Literal["2d", "3d"], Option(help="From the front, or in perspective.")]
 Slow = Annotated[
     float | None,
-    typer.Option(help="Times slower than it happened (by default it takes about 6 s)."),
+    Option(help="Times slower than it happened (by default it takes about 6 s)."),
 ]
 Time = Annotated[
     float | None,
-    typer.Option(
+    Option(
         help="For .png, .svg, .pdf: time since the release, as the clock shows it (the end)."
     ),
 ]
 Height = Annotated[
     int | None,
-    typer.Option(
-        help="In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture."
-    ),
+    Option(help="In pixels: of a frame (720 if left out; frames are 16:9) or a .png picture."),
 ]
 EngineOption = Annotated[
     str | None,
-    typer.Option(
-        "--method", help=f"Simulates a scenario: auto (if left out), {', '.join(ENGINES)}."
+    Option(
+        name="--method", help=f"Simulates a scenario: auto (if left out), {', '.join(ENGINES)}."
     ),
 ]
 

@@ -9,12 +9,11 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from typing import Annotated, ClassVar
 
-import typer
-
 from blocksim.arch.dimensions import LINES, friction_of, require_friction_angle
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.blocks.shaking import COLUMNS, SHAPES
+from blocksim.cli.arguments import Argument, Option
 from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.evidence.simulation import SETTINGS
@@ -22,48 +21,51 @@ from blocksim.evidence.verdict import Verdict
 
 Scene = Annotated[
     str | None,
-    typer.Argument(
+    Argument(
         help="Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
         ".json or .toml, or the name of a kind (blocksim kinds)."
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
-MethodOption = Annotated[str, typer.Option(help=f"{', '.join(CHOICES)}.")]
+MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}.")]
 Over = Annotated[
     str | None,
-    typer.Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
+    Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
 ]
 Within = Annotated[
     tuple[float, float] | None,
-    typer.Option(
-        metavar="LOW HIGH", help="Where to search, instead of where limit analysis says."
-    ),
+    Option(metavar="LOW HIGH", help="Where to search, instead of where limit analysis says."),
 ]
 Set = Annotated[
     list[str] | None,
-    typer.Option(
-        "--set",
+    Option(
+        name="--set",
         metavar="NAME=VALUE",
         help=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
     ),
 ]
 Reduce = Annotated[
     bool,
-    typer.Option(
-        "--reduce", help="Simulate half the arch; voussoirs that stay together are one block."
+    Option(
+        name="--reduce",
+        
+        help="Simulate half the arch; voussoirs that stay together are one block.",
+    ,
     ),
 ]
 AtJoint = Annotated[
     str | None,
-    typer.Option(
-        "--joint",
+    Option(
+        name="--joint",
         metavar="A-B",
         help="Joint whose thrust is printed, named by its two blocks; the crown if left out.",
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, nothing else.")]
+Json = Annotated[bool, Option(name="--json", help="Print one JSON object, nothing else.")]
 
 
+THICKNESS = "thickness"
+"""The parameter of `bracket` that is left out: of arches."""
 OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters"}
 """Options that say how anything is built, not only an arch."""
 LARGEST_FRICTION = 10.0
@@ -80,26 +82,22 @@ class Given:
     heading: ClassVar[str] = "What is built"
 
     alpha: Annotated[
-        float | None, typer.Option(help="Half-angle of embrace in degrees, 0 to 180.")
+        float | None, Option(help="Half-angle of embrace in degrees, 0 to 180.")
     ] = None
-    eta: Annotated[float | None, typer.Option(help="Thickness-to-radius ratio, up to 2.")] = (
-        None
-    )
+    eta: Annotated[float | None, Option(help="Thickness-to-radius ratio, up to 2.")] = None
     span: Annotated[
         float | None,
-        typer.Option(
-            help="Instead of --alpha and --eta: distance between the springings in m."
-        ),
+        Option(help="Instead of --alpha and --eta: distance between the springings in m."),
     ] = None
     rise: Annotated[
-        float | None, typer.Option(help="Beside --span: height of the crown above them in m.")
+        float | None, Option(help="Beside --span: height of the crown above them in m.")
     ] = None
     thickness: Annotated[
-        float | None, typer.Option(help="Beside --span: thickness of the arch in m.")
+        float | None, Option(help="Beside --span: thickness of the arch in m.")
     ] = None
     at: Annotated[
         str | None,
-        typer.Option(
+        Option(
             metavar="LINE",
             help=f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
             "which gives the clear span.",
@@ -107,43 +105,43 @@ class Given:
     ] = None
     ratio: Annotated[
         float | None,
-        typer.Option(
+        Option(
             help="Instead of --eta or --thickness: thickness over the least one that stands, "
             "as built."
         ),
     ] = None
-    mu: Annotated[
-        float | None, typer.Option(help="Friction coefficient, above 0; inf allowed.")
-    ] = None
+    mu: Annotated[float | None, Option(help="Friction coefficient, above 0; inf allowed.")] = (
+        None
+    )
     friction_angle: Annotated[
-        float | None, typer.Option(help="Instead of --mu: angle of friction in degrees.")
+        float | None, Option(help="Instead of --mu: angle of friction in degrees.")
     ] = None
     voussoirs: Annotated[
-        int | None, typer.Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
+        int | None, Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
     ] = None
     weight: Annotated[
         str | None,
-        typer.Option(
+        Option(
             help="Where weight acts: centreline, or sector, as it does in true voussoirs. "
             "If left out: sector with --span, else centreline."
         ),
     ] = None
     unit_weight: Annotated[
         float | None,
-        typer.Option(help="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
+        Option(help="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
     ] = None
     depth: Annotated[
         float | None,
-        typer.Option(help="Depth out of the plane in m; 1 if left out, as the radius is."),
+        Option(help="Depth out of the plane in m; 1 if left out, as the radius is."),
     ] = None
     lean: Annotated[
         float | None,
-        typer.Option(help="Angle by which gravity leans out of the plane, in degrees."),
+        Option(help="Angle by which gravity leans out of the plane, in degrees."),
     ] = None
     parameters: Annotated[
         list[str] | None,
-        typer.Option(
-            "--with",
+        Option(
+            name="--with",
             metavar="NAME=VALUE",
             help="Parameter of a kind of structure (blocksim kinds NAME lists them); "
             "repeatable.",
@@ -197,15 +195,15 @@ class Loading:
 
     fill: Annotated[
         float | None,
-        typer.Option(help="Of arches and portals: height of fill over the crown in m."),
+        Option(help="Of arches and portals: height of fill over the crown in m."),
     ] = None
     fill_unit_weight: Annotated[
         float | None,
-        typer.Option(help="Unit weight of the fill in kN/m3; that of the blocks if left out."),
+        Option(help="Unit weight of the fill in kN/m3; that of the blocks if left out."),
     ] = None
     point_load: Annotated[
         tuple[float, float] | None,
-        typer.Option(
+        Option(
             metavar="X KN",
             help="Weight on the road at x (m from the crown of an arch; else from the "
             "structure's origin), live. It goes straight down to the block below; fill does "
@@ -214,35 +212,31 @@ class Loading:
     ] = None
     patch_load: Annotated[
         tuple[float, float, float] | None,
-        typer.Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2."),
+        Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2."),
     ] = None
     load: Annotated[
         float | None,
-        typer.Option(
+        Option(
             help="Factor on the live loads; if left out 1 with --point-load or --patch-load, "
             "else what the file says."
         ),
     ] = None
     tilt: Annotated[
         float | None,
-        typer.Option(
-            help="Tilt of the table in the plane, in degrees: its right side goes down."
-        ),
+        Option(help="Tilt of the table in the plane, in degrees: its right side goes down."),
     ] = None
     shake: Annotated[
         str | None,
-        typer.Option(
+        Option(
             metavar="SHAPE|FILE",
             help=f"Ground that shakes: {', '.join(SHAPES)}, or a .csv file "
             f"({','.join(COLUMNS)}); does it survive?",
         ),
     ] = None
     amplitude: Annotated[
-        float | None, typer.Option(help="Largest acceleration of the ground, in g.")
+        float | None, Option(help="Largest acceleration of the ground, in g.")
     ] = None
-    duration: Annotated[
-        float | None, typer.Option(help="How long the ground shakes, in s.")
-    ] = None
+    duration: Annotated[float | None, Option(help="How long the ground shakes, in s.")] = None
 
     @property
     def given(self) -> bool:

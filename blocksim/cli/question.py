@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from blocksim.arch.asked import Scenario
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import (
     Dimensions,
@@ -14,7 +16,6 @@ from blocksim.arch.dimensions import (
     require_unit_weight,
 )
 from blocksim.arch.limit import least_thickness
-from blocksim.arch.scenario import Scenario, load_scenario
 from blocksim.ask.search import ETA_MAX
 from blocksim.cli.options import Given, named_options, option_of, require_given
 from blocksim.common.checks import is_number, require, require_friction
@@ -78,7 +79,7 @@ def question(
     no_kind = "left out: it is for kinds of structures"
     require(given.parameters is None, "--with", " ".join(given.parameters or ()), no_kind)
     _require_ranges(given)
-    asked = load_scenario(scene) if scene is not None else NO_SCENARIO
+    asked = NO_SCENARIO if scene is None else _scenario(scene)
     alpha, lean, heavy = given.alpha, given.lean, given.unit_weight
     changes: dict[str, object] = {
         "half_angle": None if alpha is None else math.radians(alpha),
@@ -92,6 +93,13 @@ def question(
     }
     found = {key: value for key, value in changes.items() if value is not None}
     return replace(asked, **{**_shape(asked, given), **found})
+
+
+def _scenario(scene: str) -> Scenario:
+    # Files are read with libraries that options do not need.
+    from blocksim.arch.scenario import load_scenario
+
+    return load_scenario(scene)
 
 
 IN_METRES = " (or --span, --rise and --thickness, in m)"
@@ -183,3 +191,9 @@ def thickness_words(asked: Scenario, ratio: float | None) -> str:
     if asked.eta is not None or ratio is not None:
         return ""
     return f"; no thickness was given, so it is {ASIDE:g} of the least as built"
+
+
+def joint_of(said: str, names: Sequence[str]) -> int:
+    """Return the joint that is named so."""
+    require(said in names, "--joint", said, f"one like {names[len(names) // 2]}")
+    return names.index(said)

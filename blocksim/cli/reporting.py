@@ -8,14 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-import typer
+import click
 
 from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.arch.observed import observed_mode
 from blocksim.ask.check import check
-from blocksim.cli.app import app
-from blocksim.cli.console import progress, say
-from blocksim.cli.groups import grouped
+from blocksim.cli.arguments import Option
 from blocksim.cli.options import (
     EXIT_CODES,
     Given,
@@ -27,6 +25,7 @@ from blocksim.cli.options import (
     require_given,
     settings_of,
 )
+from blocksim.cli.output import progress, say
 from blocksim.cli.question import question, thickness_words
 from blocksim.cli.structures import is_structure, problem_asked
 from blocksim.common.checks import require
@@ -34,12 +33,10 @@ from blocksim.common.files import require_place, write_whole
 from blocksim.evidence.verdict import Verdict
 
 
-@app.command()
-@grouped
 def report(
     given: Given,
     loading: Loading,
-    out: Annotated[Path | None, typer.Option(help="Page to write, .html; required.")] = None,
+    out: Annotated[Path | None, Option(help="Page to write, .html; required.")] = None,
     scene: Scene = None,
     method: MethodOption = "auto",
     settings: Set = None,
@@ -71,4 +68,4 @@ def report(
     )
     write_whole(out, lambda file: file.write(page.encode()))
     say(f"wrote {out}: {answer.verdict.value}, by {answer.method}")
-    raise typer.Exit(EXIT_CODES[answer.verdict])
+    raise click.exceptions.Exit(EXIT_CODES[answer.verdict])

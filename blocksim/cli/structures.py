@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import typer
+import click
 
+from blocksim.arch.asked import Scenario
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import require_unit_weight
-from blocksim.arch.scenario import Scenario
 from blocksim.arch.structure import structure_of_arch
 from blocksim.ask.bracket import bracket
 from blocksim.ask.carried import carried_by
@@ -22,9 +21,9 @@ from blocksim.ask.simulate import simulate
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
-from blocksim.cli.console import answer_with, progress, say
 from blocksim.cli.options import (
     EXIT_CODES,
+    THICKNESS,
     Given,
     Loading,
     named_options,
@@ -33,7 +32,8 @@ from blocksim.cli.options import (
     require_given,
     settings_of,
 )
-from blocksim.cli.question import arch_of, question
+from blocksim.cli.output import answer_with, progress, say
+from blocksim.cli.question import arch_of, joint_of, question
 from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
@@ -56,8 +56,6 @@ from blocksim.report.structures import (
     joint_names,
 )
 
-THICKNESS = "thickness"
-"""The parameter of `bracket` that is left out: of arches."""
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
 
@@ -183,6 +181,32 @@ def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
     return shaking
 
 
+def check_problem(
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    method: str,
+    settings: list[str] | None,
+    joint: str | None,
+    *,
+    reduce: bool,
+    as_json: bool,
+) -> None:
+    """Answer `check` of a structure, or of an arch that bears loads, and leave.
+
+    Nothing is done where an arch bears its own weight only.
+    """
+    if scene is not None and is_structure(scene):
+        require(not reduce, "--reduce", reduce, "left out: it is for arches")
+        problem = structure(scene, given, loading)
+        check_structure(problem, method, settings, joint, as_json=as_json)
+    if loading.given:
+        asked = question(scene, given, thick=True)
+        require(not reduce, "--reduce", reduce, "left out with a load or a tilt")
+        problem = problem_of_arch(arch_of(asked, given.ratio), asked, loading)
+        check_structure(problem, method, settings, joint, as_json=as_json)
+
+
 def check_structure(
     problem: Problem,
     method: str,
@@ -200,13 +224,29 @@ def check_structure(
             report(1.0, "thrust")
             told = carried_by(problem, at)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
-    raise typer.Exit(EXIT_CODES[answer.verdict])
+    raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 
 
-def joint_of(said: str, names: Sequence[str]) -> int:
-    """Return the joint that is named so."""
-    require(said in names, "--joint", said, f"one like {names[len(names) // 2]}")
-    return names.index(said)
+def bracket_problem(
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    over: str | None,
+    within: tuple[float, float] | None,
+    method: str,
+    tol: float,
+    settings: list[str] | None,
+    *,
+    reduce: bool,
+    as_json: bool,
+) -> bool:
+    """Answer `bracket` but over the thickness of an arch; tell whether it was answered."""
+    if not (is_structure(scene) or loading.on_road or over not in {None, THICKNESS}):
+        return False
+    require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
+    problem = problem_asked(scene, given, loading, thick=True)
+    bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
+    return True
 
 
 def bracket_structure(

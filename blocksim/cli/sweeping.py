@@ -1,16 +1,50 @@
-"""The `sweep` command: a design to an executor, and what became of it in words."""
+"""The command sweep: a design to an executor, and what became of it in words."""
 
 from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
+from typing import Annotated
 
-from blocksim.cli.console import answer_with, progress
+from blocksim.cli.arguments import Argument, Option
+from blocksim.cli.options import Json, require_given
+from blocksim.cli.output import answer_with, progress
+from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.many import Summary, load_design, write_parquet
 from blocksim.many import sweep as ask_sweep
 from blocksim.many.cluster import cluster
 from blocksim.many.table import require_parquet, write_csv
+
+
+def sweep(
+    design: Annotated[
+        Path | None, Argument(help="Which arches to ask about: a .toml file; required.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        Option(help="Folder for the rows; one that has some is resumed; required."),
+    ] = None,
+    workers: Annotated[int, Option(low=1, high=256, help="Processes.")] = 2,
+    scheduler: Annotated[
+        str | None, Option(help="Address of a dask scheduler, instead of processes.")
+    ] = None,
+    parquet: Annotated[
+        bool, Option(name="--parquet", help="Write all rows as a table, too: rows.parquet.")
+    ] = False,
+    csv: Annotated[
+        bool, Option(name="--csv", help="Write all rows as CSV, too: rows.csv.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Ask about many arches. A run that was killed goes on where it was."""
+    if design is None:
+        extra = " and --out" if out is None else ""
+        raise InputError(f"DESIGN{extra}", ALL_MISSING if extra else MISSING, "given")
+    require_given(out=out)
+    run_sweep(
+        design, out or Path(), workers, scheduler, parquet=parquet, csv=csv, as_json=as_json
+    )
 
 
 def run_sweep(

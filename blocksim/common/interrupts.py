@@ -70,12 +70,22 @@ class KeptBack:
     """Nothing is told inside, where half of something would be left, but after it."""
 
     def __enter__(self) -> None:
-        _State.waiting = True
+        self._inside, _State.waiting = _State.waiting, True
 
     def __exit__(self, *_: object) -> None:
-        _State.waiting = False
-        if _State.code and _State.working:
+        _State.waiting = self._inside
+        if _State.code and _State.working and not _State.waiting:
             raise KeyboardInterrupt
+
+
+class AtOnce:
+    """The process may end at once inside, as before there was any work."""
+
+    def __enter__(self) -> None:
+        self._outside, _State.working = _State.working, False
+
+    def __exit__(self, *_: object) -> None:
+        _State.working = self._outside
 
 
 def code() -> int:

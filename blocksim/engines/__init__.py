@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
+from importlib import import_module
+
 from blocksim.common.errors import MissingPart
-from blocksim.engines import direct, mujoco, pybullet, pymunk
+from blocksim.common.later import Later
 from blocksim.engines.base import Engine
 
-ENGINES: dict[str, Engine] = {
-    module.ENGINE.name: module.ENGINE for module in (direct, pymunk, pybullet, mujoco)
-}
+
+def _engine(name: str) -> Engine:
+    """Load the file of an engine, which has its name."""
+    return import_module(f"blocksim.engines.{name}").ENGINE
+
+
+NAMES = ("direct", "pymunk", "pybullet", "mujoco")
 """From the cheapest to the dearest, as `method` takes them."""
+ENGINES = Later({name: partial(_engine, name) for name in NAMES})
 
 
 def get_engine(name: str) -> Engine:

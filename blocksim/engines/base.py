@@ -9,17 +9,14 @@ an unexpected unit.
 from __future__ import annotations
 
 import math
-import os
-import sys
-from collections.abc import Callable, Generator, Mapping
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
 from importlib.util import find_spec
-from typing import Any, Protocol
+from typing import Protocol
 
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
+from blocksim.common.later import Library as Library
 
 FRICTION_CAP = 1e3
 """Most friction of an engine without a bound of its own.
@@ -270,41 +267,3 @@ class Engine(Method):
     def missing(self) -> str | None:
         """How to install what it needs; None where that is there."""
         return None if find_spec(self.library) else self.remedy
-
-
-class Library:
-    """A library that is imported when it is first used.
-
-    So that engines can be listed where their libraries are not installed.
-
-    Parameters
-    ----------
-    name : str
-    quiet : bool
-        Whether to keep what it writes to standard error on import from the terminal.
-    """
-
-    def __init__(self, name: str, *, quiet: bool = False) -> None:
-        self._name, self._quiet = name, quiet
-
-    def __getattr__(self, name: str) -> Any:
-        """Import the library, and keep what was asked for."""
-        with _silence() if self._quiet else nullcontext():
-            found = getattr(import_module(self._name), name)
-        setattr(self, name, found)
-        return found
-
-
-@contextmanager
-def _silence() -> Generator[None]:
-    """Keep what a C library writes to standard error from the terminal."""
-    sys.stderr.flush()
-    kept = os.dup(2)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)

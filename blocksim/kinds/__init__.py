@@ -1,36 +1,38 @@
 """Kinds of structures by name: parameters in, blocks and joints out."""
 
-from blocksim.kinds.arcade import Arcade
-from blocksim.kinds.base import Kind as Kind
-from blocksim.kinds.basket import BasketHandleArch
-from blocksim.kinds.catenary import CatenaryArch
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.column import Column
-from blocksim.kinds.elliptic import EllipticArch
-from blocksim.kinds.flat import FlatArch
-from blocksim.kinds.parabolic import ParabolicArch
-from blocksim.kinds.pointed import PointedArch
-from blocksim.kinds.portal import Portal
-from blocksim.kinds.rubble import Rubble
-from blocksim.kinds.stack import Stack
-from blocksim.kinds.wall import Wall
+from __future__ import annotations
 
-KINDS: dict[str, type[Kind]] = {
-    kind.name: kind
-    for kind in (
-        CircularArch,
-        PointedArch,
-        EllipticArch,
-        ParabolicArch,
-        CatenaryArch,
-        BasketHandleArch,
-        FlatArch,
-        Portal,
-        Arcade,
-        Wall,
-        Column,
-        Stack,
-        Rubble,
-    )
+from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from blocksim.common.later import Later
+
+if TYPE_CHECKING:
+    from blocksim.kinds.base import Kind
+
+
+def _kind(place: str) -> type[Kind]:
+    """Load a kind, given as file and class."""
+    file, _, name = place.partition(".")
+    return getattr(import_module(f"blocksim.kinds.{file}"), name)
+
+
+PLACES = {
+    "circular-arch": "circular.CircularArch",
+    "pointed-arch": "pointed.PointedArch",
+    "elliptic-arch": "elliptic.EllipticArch",
+    "parabolic-arch": "parabolic.ParabolicArch",
+    "catenary-arch": "catenary.CatenaryArch",
+    "basket-handle-arch": "basket.BasketHandleArch",
+    "flat-arch": "flat.FlatArch",
+    "portal": "portal.Portal",
+    "arcade": "arcade.Arcade",
+    "wall": "wall.Wall",
+    "column": "column.Column",
+    "stack": "stack.Stack",
+    "rubble": "rubble.Rubble",
 }
+"""File and class of each, by its name."""
+KINDS = Later({name: partial(_kind, place) for name, place in PLACES.items()})
 """All there are."""

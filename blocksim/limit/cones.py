@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import lsmr
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
+from blocksim.common.later import Library
+
+if TYPE_CHECKING:
+    from scipy import sparse
+    from scipy.sparse import linalg
+else:
+    sparse, linalg = Library("scipy.sparse"), Library("scipy.sparse.linalg")
 
 ROUND_OFF = 1e-9
 """Lack of force that is round-off [mean weights]."""
@@ -85,7 +90,7 @@ class Cones:
             rows.append(PLANAR * np.maximum(mine, 0)[:, None] + np.arange(PLANAR))
             values.append(part)
         columns = np.repeat(np.arange(self.count), PLANAR)
-        self.balance = csc_array(
+        self.balance = sparse.csc_array(
             (
                 np.concatenate([each.ravel() for each in values]),
                 (
@@ -123,7 +128,7 @@ class Cones:
         held = np.flatnonzero((parts > 1.0) | (self.bounded == 0))
         if np.abs(left).max() < ROUND_OFF or not len(held):
             return parts
-        solve: Any = lsmr
+        solve: Any = linalg.lsmr
         change = solve(self.balance[:, held], left, atol=1e-14, btol=1e-14)[0]
         better = parts.copy()
         better[held] += change

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-import highspy
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import csc_array
 
 from blocksim.blocks.assembly import Array
+from blocksim.common.later import Library
+
+if TYPE_CHECKING:
+    import highspy
+    from scipy import sparse
+else:
+    highspy, sparse = Library("highspy"), Library("scipy.sparse")
 
 FINEST = 1e-10
 """HiGHS's own least tolerance."""
 MANY = 1000
 """Unknowns from which on the interior point is faster than the simplex at first."""
 Ends = tuple[Array, Array]
-Matrix = csc_array | NDArray[np.float64]
+Matrix: TypeAlias = "sparse.csc_array | Array"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,7 +81,7 @@ class LinearProgramme:
         bounds : two of (unknowns,) float
             Least and greatest value of each unknown.
         """
-        columns = csc_array(matrix)
+        columns = sparse.csc_array(matrix)
         again = columns.shape == self._shape and self._basis is not None
         self._highs.passModel(_model(cost, columns, rows, bounds))
         if again:
@@ -110,7 +114,7 @@ class LinearProgramme:
         return UNBOUNDED if status == highspy.HighsModelStatus.kUnbounded else NONE
 
 
-def _model(cost: Array, columns: csc_array, rows: Ends, bounds: Ends) -> Any:
+def _model(cost: Array, columns: sparse.csc_array, rows: Ends, bounds: Ends) -> Any:
     model: Any = highspy.HighsLp()
     model.num_row_, model.num_col_ = columns.shape
     model.col_cost_ = cost

@@ -14,15 +14,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import csc_array, hstack
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
+from blocksim.common.later import Library
 from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.linear import LinearProgramme, Optimum
+
+if TYPE_CHECKING:
+    from scipy import sparse
+else:
+    sparse = Library("scipy.sparse")
 
 SPARE = 1.0
 """Most that is asked for along every edge of a cone [mean weights]."""
@@ -122,7 +127,7 @@ def collapse(problem: Problem) -> Collapse:
     cones = Cones(problem)
     live = sum((problem.of_load(load) for load in problem.live), np.zeros(cones.shape))
     dead = problem.with_load(0.0).pull()
-    column = csc_array(cones.loads(live)[:, None])
+    column = sparse.csc_array(cones.loads(live)[:, None])
     found = _most(cones, column, -cones.loads(dead), (-math.inf, math.inf))
     if found.unbounded:
         return Collapse(load_factor=math.inf, forces=None, mechanism=None)
@@ -180,7 +185,7 @@ def falling(problem: Problem) -> Array | None:
     most = np.where(cones.bounded > 0, math.inf, 0.0)
     ones = np.ones(pull.size)
     found = LinearProgramme().solve(
-        -pull, csc_array(cones.balance.T), (np.zeros(most.size), most), (-ones, ones)
+        -pull, sparse.csc_array(cones.balance.T), (np.zeros(most.size), most), (-ones, ones)
     )
     if not found.exists or pull @ found.values < ROUND_OFF:
         return None
@@ -192,7 +197,7 @@ def most_common(cones: Cones, pull: Array, solver: LinearProgramme | None = None
 
     What all parts have in common comes last in the optimum's values.
     """
-    common = csc_array(cones.balance @ cones.bounded[:, None])
+    common = sparse.csc_array(cones.balance @ cones.bounded[:, None])
     return _most(cones, common, -cones.loads(pull), (-TENSION, SPARE), solver)
 
 
@@ -216,7 +221,7 @@ def _most(
     """Make the factor on a column as large as the balance of forces allows."""
     low, high = (np.append(each, end) for each, end in zip(cones.bounds, bounds, strict=True))
     cost = np.append(np.zeros(cones.count), -1.0)
-    matrix = hstack([cones.balance, column], format="csc")
+    matrix = sparse.hstack([cones.balance, column], format="csc")
     return (solver or LinearProgramme()).solve(cost, matrix, (right, right), (low, high))
 
 

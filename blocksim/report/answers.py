@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-from blocksim.arch.bracket import Bracket
-from blocksim.arch.check import ArchCheck
 from blocksim.arch.circular import GRAVITY, Arch
-from blocksim.arch.dimensions import At
-from blocksim.arch.modes import Mode
-from blocksim.ask.carried import Carried
 from blocksim.blocks.joints import JointState
 from blocksim.common.version import __version__
-from blocksim.evidence.motion import EARLY
 from blocksim.report.carried import carried_lines, carried_record
 from blocksim.report.sizes import size_lines, size_record
+
+if TYPE_CHECKING:
+    from blocksim.arch.bracket import Bracket
+    from blocksim.arch.check import ArchCheck
+    from blocksim.arch.dimensions import At
+    from blocksim.arch.modes import Mode
+    from blocksim.ask.carried import Carried
 
 
 def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str, object]:
@@ -187,6 +189,8 @@ def _modes(answer: ArchCheck | Bracket, of: str) -> list[str]:
     if answer.mode:
         lines.append(f"  mode    {answer.mode.value}, {answer.mode.description}, {of}")
     if answer.mode_in_motion and answer.mode_in_motion is not answer.mode:
+        from blocksim.evidence.motion import EARLY
+
         later = answer.mode_in_motion
         lines.append(
             f"  moving  {later.value}, {later.description}, once it has moved {EARLY:g} r"

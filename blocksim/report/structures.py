@@ -17,7 +17,7 @@ from blocksim.blocks.shaking import shaking_record
 from blocksim.common.version import __version__
 from blocksim.kinds.files import kind_behind
 from blocksim.report.carried import carried_lines, carried_record
-from blocksim.report.sizes import problem_size_lines, problem_size_record
+from blocksim.report.structuresizes import problem_size_lines, problem_size_record
 
 SHOWN = 8
 """Joints and blocks told in a line of text."""

@@ -11,7 +11,7 @@ import pytest
 from blocksim.view.explorer import explorer_page, read_results
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("explorer")
     row = {

@@ -13,26 +13,35 @@ nodes; its hinge goes to the crown like a square root, y does not.
 
 from __future__ import annotations
 
+import json
 import sys
 from functools import cache
 from itertools import pairwise
-from typing import NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.optimize import elementwise
 
 from blocksim.arch.circular import Weight
 from blocksim.arch.theory.equations import BEYOND, ETA_MAX
 from blocksim.arch.theory.roots import root
 from blocksim.arch.theory.sliding import Thrusts
 from blocksim.blocks.assembly import Array
+from blocksim.common.later import Library
 from blocksim.common.series import p_series, r_series
+
+if TYPE_CHECKING:
+    from scipy.optimize import elementwise
+else:
+    elementwise = Library("scipy.optimize.elementwise")
 
 EDGES = (0.0, 0.75, 0.94, 0.985, 0.996, 1.0)
 """Pieces of the interpolation in (alpha/alpha_l)^2: a branch point lies just beyond."""
 NODES = 36
 """Of a piece."""
+STORED = Path(__file__).with_name("rotational.json")
+"""Their coefficients; `store` writes them anew where edges, nodes or equations change."""
 TIGHT = 4 * sys.float_info.epsilon
 ROUNDS = 100
 """Newton steps allowed; halving alone would need about as many."""
@@ -40,7 +49,7 @@ SETTLED = 1e-9
 """Relative step after which Newton's method, being quadratic, has reached round-off."""
 
 
-class _Rotational(NamedTuple):
+class Rotational(NamedTuple):
     """Chebyshev coefficients in alpha^2 of the purely rotational mode.
 
     One array a piece; its columns are (1 - h)/alpha^2, eta/alpha^4 and
@@ -194,7 +203,24 @@ def widest_rotational(weight: Weight) -> float:
 
 
 @cache
-def _rotational(weight: Weight) -> _Rotational:
+def _rotational(weight: Weight) -> Rotational:
+    """Read what `solved` found, which takes longer than all else in an answer."""
+    stored = json.loads(STORED.read_text(encoding="utf-8"))[weight]
+    return Rotational(stored["widest"], [np.array(piece) for piece in stored["pieces"]])
+
+
+def store() -> None:
+    """Solve for both weights and write the file that is read."""
+    weights: tuple[Weight, ...] = get_args(Weight)
+    found = {weight: solved(weight) for weight in weights}
+    table = {
+        weight: {"widest": each.widest, "pieces": [piece.tolist() for piece in each.pieces]}
+        for weight, each in found.items()
+    }
+    STORED.write_text(json.dumps(table, indent=0) + "\n", encoding="utf-8")
+
+
+def solved(weight: Weight) -> Rotational:
     """Solve eqs (1), (3) and (4) at the Chebyshev nodes of every piece."""
 
     def excess(short: Array, alpha: Array) -> Array:
@@ -212,8 +238,8 @@ def _rotational(weight: Weight) -> _Rotational:
     alpha = np.sqrt(square)
     # The shoulder asks for less as the thrust falls.
     ends = np.zeros_like(alpha), np.minimum(square, 1.0)
-    found = elementwise.find_root(excess, ends, args=(alpha,), tolerances={"xrtol": TIGHT})
-    short: Array = found.x
+    find: Any = elementwise.find_root
+    short: Array = find(excess, ends, args=(alpha,), tolerances={"xrtol": TIGHT}).x
     # Near alpha_l the thickness the crown asks for is all but undetermined.
     eta, hinge = inner_hinges(short, alpha, alpha, weight)
     values = np.stack([short / square, eta / square**2, hinge / square], axis=1)
@@ -221,4 +247,4 @@ def _rotational(weight: Weight) -> _Rotational:
         np.asarray(chebyshev.chebfit(points, piece, NODES - 1), dtype=float)
         for piece in np.split(values, len(places))
     ]
-    return _Rotational(widest, pieces)
+    return Rotational(widest, pieces)

@@ -1,47 +1,17 @@
-"""What a terminal shows: lines, tables, a bar while something goes on, pictures saved."""
+"""Tables on a terminal, and what is said below them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
-import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from blocksim.common.checks import require
-from blocksim.common.files import json_text, require_place, write_whole
-from blocksim.common.progress import Progress as Report
 from blocksim.report.answers import ratio, signed
 from blocksim.report.structurewords import found_of, question_of, summary_of_structures
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.chart import Point, on_front
 from blocksim.studies.questions import StructureRow
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-WIDE = 128
-"""Characters in a line of the widest table."""
-
-
-@contextmanager
-def progress() -> Generator[Report]:
-    """Show a bar on standard error while something goes on."""
-    columns = (TextColumn("{task.description:34}"), BarColumn(), TimeElapsedColumn())
-    console = Console(stderr=True)
-    hidden = not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=hidden) as bar:
-        task = bar.add_task("", total=1.0)
-
-        def report(share: float, what: str) -> None:
-            bar.update(task, completed=share, description=what)
-
-        yield report
 
 
 def validation_table(rows: list[Validation]) -> Table:
@@ -155,36 +125,3 @@ def _answer(row: Validation | None) -> str:
         return "-"
     error = "" if row.error is None else f" {signed(100 * row.error, 3)}%"
     return f"{row.mode_observed or row.verdict or '-'}{error}{' !' if row.miss else ''}"
-
-
-def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
-    """Return the kind of a picture, by the ending of a file that can be written."""
-    kind = out.suffix.removeprefix(".")
-    *most, last = (f".{each}" for each in kinds)
-    allowed = f"a file name ending in {', '.join(most)} or {last}"
-    require(kind in kinds, "--out", str(out), allowed)
-    require_place(out)
-    return kind
-
-
-def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None) -> None:
-    """Write a picture whole, so many pixels high if it is a png, and say so."""
-    from blocksim.view.drawing import save_figure
-
-    write_whole(out, lambda file: save_figure(figure, file, kind, height=height))
-    say(f"wrote {out}")
-
-
-def answer_with(record: dict[str, object], lines: list[str], *, as_json: bool) -> None:
-    """Print an answer, as one JSON object or as lines for people."""
-    say(json_text(record) if as_json else "\n".join(lines))
-
-
-def show(table: Table) -> None:
-    """Print a table; a narrow window wraps its lines rather than losing columns."""
-    Console(width=max(Console().width, WIDE)).print(table)
-
-
-def say(text: str) -> None:
-    """Print a line on standard output."""
-    typer.echo(text)

@@ -1,0 +1,185 @@
+"""Commands from functions: parameters become options, and dataclasses groups of options."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, is_dataclass
+from inspect import Parameter, getdoc, signature
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import click
+
+KINDS: dict[object, click.ParamType[Any]] = {
+    str: click.STRING,
+    int: click.INT,
+    float: click.FLOAT,
+    Path: click.Path(path_type=Path),
+}
+
+
+@dataclass(frozen=True)
+class Option:
+    """What is said of an option, beside its type and default.
+
+    Parameters
+    ----------
+    help : str
+    name : str
+        With its dashes, where it is not that of the parameter; `--yes/--no` of a flag.
+    metavar : str, optional
+    low, high : int, optional
+        Range of a whole number, ends included.
+    """
+
+    help: str
+    name: str = ""
+    metavar: str | None = None
+    low: int | None = None
+    high: int | None = None
+
+
+@dataclass(frozen=True)
+class Argument:
+    """What is said of an argument, which may be left out."""
+
+    help: str
+
+
+class _Argument(click.Argument):
+    """An argument that is told in the help, too."""
+
+    about = ""
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str]:
+        return self.make_metavar(ctx), self.about
+
+
+class Command(click.Command):
+    """A command whose help shows options below the headings of their groups."""
+
+    headings: dict[str, str]
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write groups of options, arguments, and other options."""
+        sections: dict[str, list[tuple[str, str]]] = {}
+        for each in self.get_params(ctx):
+            told = each.get_help_record(ctx)
+            usual = "Arguments" if isinstance(each, click.Argument) else "Options"
+            if told is not None:
+                heading = self.headings.get(each.name or "", usual)
+                sections.setdefault(heading, []).append(told)
+        for heading, told in sections.items():
+            with formatter.section(heading):
+                formatter.write_dl(told)
+
+
+def command_of(function: Callable[..., None], name: str | None = None) -> Command:
+    """Make a command of a function.
+
+    Parameters
+    ----------
+    function : callable
+        Each parameter is annotated with its type and an `Option` or an `Argument`; without
+        either it is an option, an argument if it has no default. Those whose type is a
+        dataclass get one, whose fields are options below its `heading`.
+    name : str, optional
+        Of the command.
+    """
+    groups: dict[str, type[Any]] = {}
+    parameters: list[click.Parameter] = []
+    headings: dict[str, str] = {}
+    hints = get_type_hints(function, include_extras=True)
+    for each in signature(function).parameters.values():
+        hint = hints[each.name]
+        if is_dataclass(hint) and isinstance(hint, type):
+            groups[each.name] = hint
+            own = get_type_hints(hint, include_extras=True)
+            for field in fields(hint):
+                parameters.append(_parameter(field.name, own[field.name], field.default))
+                headings[field.name] = getattr(hint, "heading", "Options")
+        else:
+            needed = each.default is Parameter.empty
+            default = None if needed else each.default
+            parameters.append(_parameter(each.name, hint, default, needed=needed))
+
+    def called(**given: Any) -> None:
+        given = {key: _listed(value) for key, value in given.items()}
+        made = {
+            key: group(**{field.name: given.pop(field.name) for field in fields(group)})
+            for key, group in groups.items()
+        }
+        function(**given, **made)
+
+    made = Command(name, callback=called, params=parameters, help=getdoc(function))
+    made.headings = headings
+    return made
+
+
+def _listed(value: object) -> object:
+    """Return an option that may be repeated as a list, None where it was not given."""
+    return None if value == [] else value
+
+
+def _parameter(
+    name: str, hint: Any, default: object, *, needed: bool = False
+) -> click.Parameter:
+    """Make an option or an argument of an annotated type."""
+    kind, said = _said(hint)
+    if needed and said == Option(""):
+        said = Argument("")
+    if isinstance(said, Argument):
+        made = _Argument([name], type=_type(kind, None), required=needed, default=default)
+        made.about = said.help
+        return made
+    flags = [said.name or f"--{name.replace('_', '-')}", name]
+    if kind is bool:
+        return click.Option(flags, is_flag=True, default=default, help=said.help)
+    many = get_origin(kind) is list
+    return click.Option(
+        flags,
+        type=_type(get_args(kind)[0] if many else kind, said),
+        multiple=many,
+        default=default,
+        required=needed,
+        metavar=said.metavar,
+        show_default=default is not None,
+        help=said.help,
+        callback=_as_list if many else None,
+    )
+
+
+def _as_list(context: object, parameter: object, value: tuple[str, ...]) -> list[str]:  # noqa: ARG001
+    return list(value)
+
+
+def _said(hint: Any) -> tuple[Any, Option | Argument]:
+    """Return the type of an annotation, None left out, and what is said of it."""
+    found: Option | Argument = Option("")
+    for part in _parts(hint):
+        if isinstance(part, Option | Argument):
+            found = part
+        elif part is not NoneType:
+            hint = part
+    return hint, found
+
+
+def _parts(hint: Any) -> Iterator[Any]:
+    """Go through what an annotation consists of."""
+    if get_origin(hint) in {Union, UnionType} or hasattr(hint, "__metadata__"):
+        for part in get_args(hint):
+            yield from _parts(part)
+        yield from getattr(hint, "__metadata__", ())
+    else:
+        yield hint
+
+
+def _type(kind: Any, said: Option | None) -> Any:
+    if get_origin(kind) is Literal:
+        return click.Choice(get_args(kind))
+    if get_origin(kind) is tuple:
+        return click.Tuple([KINDS[each] for each in get_args(kind)])
+    if said is not None and said.high is not None:
+        return click.IntRange(said.low, said.high)
+    return KINDS[kind]

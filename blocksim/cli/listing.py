@@ -1,0 +1,70 @@
+"""The commands that list what is there: scenarios and kinds."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from rich.table import Table
+
+from blocksim.arch.scenario import load_scenario, shipped
+from blocksim.cli.arguments import Argument
+from blocksim.cli.output import say
+from blocksim.cli.terminal import show
+from blocksim.common.checks import require
+from blocksim.kinds import KINDS
+from blocksim.kinds.base import parameters_of
+from blocksim.studies.structures import structures
+
+NUMBERS = {"alpha", "mu", "n", "eta"}
+"""Columns of numbers."""
+
+
+def list_scenarios() -> None:
+    """List the scenarios and structures that come with blocksim."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for heading in ("name", "alpha", "mu", "n", "eta", "title", "source"):
+        table.add_column(heading, justify="right" if heading in NUMBERS else "left")
+    for name in shipped():
+        each = load_scenario(name)
+        eta = "-" if each.eta is None else f"{each.eta:g}"
+        numbers = f"{math.degrees(each.half_angle):g}", f"{each.mu:.4g}", str(each.voussoirs)
+        table.add_row(name, *numbers, eta, each.title, each.source)
+    show(table)
+    say("")
+    built = Table(box=None, header_style="bold", pad_edge=False)
+    for heading in ("structure", "blocks", "mu", "known", "title", "source"):
+        built.add_column(heading, justify="right" if heading in {"blocks", "mu"} else "left")
+    for known in structures(quick=False):
+        told = [
+            f"{one.verdict}" if one.verdict else f"--over {one.over} {one.value:.6g}"
+            for one in known.expect
+        ]
+        problem = known.problem
+        size = str(len(problem.assembly.blocks)), f"{problem.mu:.4g}"
+        built.add_row(known.name, *size, ", ".join(told), problem.title, problem.source)
+    show(built)
+
+
+def list_kinds(
+    name: Annotated[
+        str | None, Argument(help="One of them, whose parameters are to be listed.")
+    ] = None,
+) -> None:
+    """List the kinds of structures, or the parameters of one."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    if name is None:
+        for heading in ("kind", "what it is", "parameters"):
+            table.add_column(heading)
+        for kind in KINDS.values():
+            table.add_row(kind.name, kind.about, ", ".join(parameters_of(kind)))
+        show(table)
+        return
+    require(name in KINDS, "kind", name, f"one of {', '.join(KINDS)}")
+    for heading in ("parameter", "if left out", "may be", "what it is", "--over"):
+        table.add_column(heading)
+    usual = KINDS[name]()
+    for each, known in parameters_of(KINDS[name]).items():
+        over = ", ".join(over for over in usual.bracketed if over.partition(".")[0] == each)
+        table.add_row(each, *known.words(getattr(usual, each)), known.about, over)
+    show(table)

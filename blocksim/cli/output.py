@@ -1,0 +1,54 @@
+"""What is said and written: lines, JSON, pictures, a bar where somebody sees it."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from blocksim.common.checks import require
+from blocksim.common.files import json_text, require_place, write_whole
+from blocksim.common.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def progress() -> AbstractContextManager[Progress]:
+    """Show a bar on standard error while something goes on, where that is a terminal."""
+    if not sys.stderr.isatty():
+        return nullcontext(silent)
+    from blocksim.cli.terminal import bar
+
+    return bar()
+
+
+def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
+    """Return the kind of a picture, by the ending of a file that can be written."""
+    kind = out.suffix.removeprefix(".")
+    *most, last = (f".{each}" for each in kinds)
+    allowed = f"a file name ending in {', '.join(most)} or {last}"
+    require(kind in kinds, "--out", str(out), allowed)
+    require_place(out)
+    return kind
+
+
+def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None) -> None:
+    """Write a picture whole, so many pixels high if it is a png, and say so."""
+    from blocksim.view.drawing import save_figure
+
+    write_whole(out, lambda file: save_figure(figure, file, kind, height=height))
+    say(f"wrote {out}")
+
+
+def answer_with(record: dict[str, object], lines: list[str], *, as_json: bool) -> None:
+    """Print an answer, as one JSON object or as lines for people."""
+    say(json_text(record) if as_json else "\n".join(lines))
+
+
+def say(text: str) -> None:
+    """Print a line on standard output."""
+    click.echo(text)

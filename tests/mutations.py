@@ -1,0 +1,247 @@
+"""Wrong lines that the tests must see: each is put into a copy, and the tests beside it run.
+
+    python tests/mutations.py             all, about ten minutes on 2 cores
+    python tests/mutations.py legend      those whose name has that word
+
+Tests marked `long` are left out, as in the usual run. A line that is no longer there is an
+error: put another in its place.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parent.parent
+
+
+class Mutation(NamedTuple):
+    """A line, what is put in its place, and the tests that must fail."""
+
+    name: str
+    file: str
+    line: str
+    wrong: str
+    tests: str
+
+
+MUTATIONS = (
+    Mutation(
+        "sign in eq. (9)",
+        "arch/theory/sliding.py",
+        "rise = sine - thrust * lag_series(square)",
+        "rise = sine + thrust * lag_series(square)",
+        "test_theory_map.py test_map.py validation/test_cocchetti_rizzi_2024.py",
+    ),
+    Mutation(
+        "half of eq. (9)",
+        "arch/theory/sliding.py",
+        "target = 2 * np.arctan(",
+        "target = np.arctan(",
+        "validation/test_cocchetti_rizzi_2024.py",
+    ),
+    Mutation(
+        "stored rotational mode of other nodes",
+        "arch/theory/rotation.py",
+        "NODES = 36",
+        "NODES = 35",
+        "test_theory_arrays.py",
+    ),
+    Mutation(
+        "sign of friction in the statics",
+        "arch/limit/halfplanes.py",
+        "rate = grip * cosine - sign * sine",
+        "rate = grip * cosine + sign * sine",
+        "test_limit.py",
+    ),
+    Mutation(
+        "order of joints in a mode",
+        "arch/modes.py",
+        "key=lambda joint: (-joint.angle",
+        "key=lambda joint: (joint.angle",
+        "test_modes.py",
+    ),
+    Mutation(
+        "inertia of the sector",
+        "arch/circular.py",
+        "(thick + factor**2 * _sine_deficit(half))",
+        "(thick - factor**2 * _sine_deficit(half))",
+        "test_arch.py",
+    ),
+    Mutation(
+        "rise of an arch",
+        "arch/dimensions.py",
+        "math.sin(arch.half_angle / 2) ** 2",
+        "math.sin(arch.half_angle / 2)",
+        "test_dimensions.py",
+    ),
+    Mutation(
+        "half keystones turn",
+        "arch/reduction.py",
+        "UNTURNED = 1e18",
+        "UNTURNED = 1.0",
+        "test_reduction.py",
+    ),
+    Mutation(
+        "friction one way only",
+        "limit/cones.py",
+        "along[finite], -along[rough]",
+        "along[finite], along[rough]",
+        "test_programme.py",
+    ),
+    Mutation(
+        "contacts pull",
+        "limit/cones.py",
+        "np.where(self.bounded > 0, 0.0, -math.inf)",
+        "np.where(self.bounded > 0, -1.0, -math.inf)",
+        "test_programme.py",
+    ),
+    Mutation(
+        "forces at the other end of a joint",
+        "limit/resultants.py",
+        "share = forces[:, 1, 0] / safe",
+        "share = forces[:, 0, 0] / safe",
+        "test_carried.py test_margins.py",
+    ),
+    Mutation(
+        "reactions the other way",
+        "limit/resultants.py",
+        "== SUPPORT, 1.0, -1.0)[:, None]",
+        "== SUPPORT, -1.0, 1.0)[:, None]",
+        "test_carried.py test_margins.py",
+    ),
+    Mutation(
+        "table tilted the other way",
+        "blocks/problem.py",
+        "[x * cos - y * sin, x * sin + y * cos, z]",
+        "[x * cos + y * sin, -x * sin + y * cos, z]",
+        "test_structure.py test_structures_cli.py",
+    ),
+    Mutation(
+        "overlap is taken",
+        "blocks/polygons.py",
+        "        if overlaps:\n            one, other, depth",
+        "        if overlaps[1:]:\n            one, other, depth",
+        "test_polygons.py",
+    ),
+    Mutation(
+        "velocity of the ground",
+        "blocks/shaking.py",
+        "(1 - math.cos(2 * math.pi * share)) / (2 * math.pi)",
+        "(1 - math.cos(2 * math.pi * share)) / math.pi",
+        "test_shaking.py",
+    ),
+    Mutation(
+        "joints may close in a mechanism",
+        "evidence/onset.py",
+        "overlap_share(assembly, mechanism) < settings.closing and (",
+        "True and (",
+        "test_onset.py test_pymunk.py test_pybullet.py",
+    ),
+    Mutation(
+        "a changed recording is read",
+        "evidence/recording.py",
+        'if header.get("state_hash") != recording.state_hash:',
+        "if False:",
+        "test_recording.py",
+    ),
+    Mutation(
+        "friction of a pair in pymunk",
+        "engines/pymunk.py",
+        "math.sqrt(min(float(mu), FRICTION_CAP))",
+        "min(float(mu), FRICTION_CAP)",
+        "test_pymunk.py validation/test_simple_truths.py",
+    ),
+    Mutation(
+        "one friction for all joints",
+        "engines/direct.py",
+        "friction[held] = self._friction[self._keys[held]]",
+        "",
+        "test_direct_structures.py",
+    ),
+    Mutation(
+        "names of joints off by one",
+        "report/answers.py",
+        "range(1, arch.voussoirs + 1)",
+        "range(arch.voussoirs)",
+        "test_carried.py test_dimensions.py",
+    ),
+    Mutation(
+        "undecided has another exit code",
+        "cli/options.py",
+        "Verdict.UNDECIDED: 3",
+        "Verdict.UNDECIDED: 2",
+        "test_cli.py",
+    ),
+    Mutation(
+        "wrong input has another exit code", "cli/__init__.py", "WRONG_INPUT = 2",
+        "WRONG_INPUT = 1", "test_cli.py",
+    ),
+    Mutation(
+        "loads in newtons", "cli/road.py", "low, high, 1000 * weight", "low, high, weight",
+        "test_road.py",
+    ),
+    Mutation(
+        "scipy is loaded by every command", "arch/circular.py", "import math\n",
+        "import math\nimport scipy.sparse\n", "test_start.py",
+    ),
+    Mutation(
+        "legend of the map is lost", "view/mapfigure.py", "            _legend(figure, points)",
+        "            pass", "test_mapfigure.py",
+    ),
+    Mutation(
+        "legend of a film is lost", "view/film.py", "[*lines, *legend])]", "lines)]",
+        "test_video.py test_structurefilm.py",
+    ),
+    Mutation(
+        "an interrupt has another exit code", "common/interrupts.py", "SIGTERM: 143",
+        "SIGTERM: 1", "test_interrupts.py test_processes.py",
+    ),
+    Mutation(
+        "rows that are there are asked again", "many/run.py",
+        "if identity in self._done:", "if False:", "test_sweep.py",
+    ),
+)  # fmt: skip
+
+
+def caught(mutation: Mutation, copy: Path) -> bool:
+    """Put a wrong line into the copy, run the tests, and put the right one back."""
+    file = copy / "blocksim" / mutation.file
+    right = file.read_text(encoding="utf-8")
+    if right.count(mutation.line) != 1:
+        raise SystemExit(f"{mutation.file}: not once there: {mutation.line!r}")
+    file.write_text(right.replace(mutation.line, mutation.wrong), encoding="utf-8")
+    tests = [f"tests/{each}" for each in mutation.tests.split()]
+    run = [sys.executable, "-m", "pytest", "-n", "0", "-x", *tests]
+    # Those of the copy, not of an installed blocksim.
+    where = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(run, cwd=copy, env=where, capture_output=True, check=False)
+    file.write_text(right, encoding="utf-8")
+    if done.returncode not in {0, 1}:
+        raise SystemExit(done.stdout.decode())
+    return done.returncode == 1
+
+
+def main(word: str = "") -> int:
+    """Try all whose name has a word, and return how many survived."""
+    survived = 0
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "blocksim"
+        left = shutil.ignore_patterns(".*", "__pycache__", "out")
+        shutil.copytree(ROOT, copy, ignore=left)
+        for mutation in MUTATIONS:
+            if word in mutation.name:
+                seen = caught(mutation, copy)
+                survived += not seen
+                sys.stdout.write(f"{'caught' if seen else 'SURVIVED'}: {mutation.name}\n")
+                sys.stdout.flush()
+    return survived
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,87 @@
+"""What a command loads: nothing that its answer does not need."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+from click.testing import CliRunner
+
+from blocksim.cli import app
+from blocksim.cli.app import COMMANDS
+from blocksim.common.later import Later
+from blocksim.kinds import KINDS
+
+SLOW = {
+    "PIL",
+    "av",
+    "distributed",
+    "ezdxf",
+    "filelock",
+    "highspy",
+    "jinja2",
+    "matplotlib",
+    "pyarrow",
+    "pydantic",
+    "rich",
+    "scipy",
+    "shapely",
+}
+ARCH = "--alpha 90 --mu 0.7"
+RUN = (
+    "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr));"
+    "from blocksim.cli import main; main()"
+)
+
+
+def loaded(arguments: str, code: int = 0) -> set[str]:
+    """Modules of a process that has run a command."""
+    words = [sys.executable, "-c", RUN, *arguments.split()]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == code, done.stderr
+    assert done.stdout
+    return set(done.stderr.split())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "besides"),
+    [
+        ("--help", {"numpy", "blocksim.arch", "blocksim.blocks"}),
+        ("map --help", {"blocksim.view", "blocksim.studies"}),
+        (f"check {ARCH} --eta 0.12 --method limit", {"blocksim.engines.direct"}),
+        (f"check {ARCH} --eta 0.12 --method theory", {"blocksim.engines.direct"}),
+        (f"bracket {ARCH} --method limit", {"blocksim.engines.direct", "blocksim.kinds.files"}),
+    ],
+)
+def test_no_command_waits_for_what_it_does_not_need(arguments: str, besides: set[str]) -> None:
+    assert not loaded(arguments) & (SLOW | besides)
+
+
+def test_an_arch_that_falls_is_told_by_the_solver_alone() -> None:
+    found = loaded(f"check {ARCH} --eta 0.1 --method limit", code=1)
+    assert "highspy" in found
+    assert not found & (SLOW - {"highspy", "scipy"} | {"scipy.optimize", "pymunk"})
+
+
+def test_help_lists_every_command_with_the_first_line_of_its_own_help() -> None:
+    told = " ".join(CliRunner().invoke(app, ["--help"]).output.split())
+    for name, (_, about) in COMMANDS.items():
+        own = CliRunner().invoke(app, [name, "--help"]).output
+        assert " ".join(own.split("\n\n")[1].split()) == about
+        assert f" {name} {about}" in told
+
+
+def test_kinds_have_the_names_by_which_they_are_found() -> None:
+    assert [kind.name for kind in KINDS.values()] == list(KINDS)
+
+
+def test_names_are_known_before_things_are_made() -> None:
+    made: list[str] = []
+    things = Later({name: lambda name=name: made.append(name) or name for name in ("a", "b")})
+    assert list(things) == ["a", "b"]
+    assert "a" in things
+    assert "c" not in things
+    assert not made
+    assert [things["b"], things["b"]] == ["b", "b"]
+    assert made == ["b"]
