@@ -292,11 +292,13 @@ def test_direct_answers_and_brackets_finely() -> None:
 
 
 def test_a_reduced_arch_answers_with_few_blocks() -> None:
-    done = blocksim("check", *ARCH, "--eta", "0.1", "--method", "pymunk", "--reduce", "--json")
-    answer = json.loads(done.stdout)
-    assert done.returncode == 1
-    assert (answer["blocks"], answer["splits"]) == (3, 0)
-    assert len(answer["joints"]) == 28
+    for given, blocks in (([], 3), (["--no-reduce"], 27)):
+        asked = (*ARCH, "--eta", "0.1", "--method", "pymunk", *given, "--json")
+        done = blocksim("check", *asked)
+        answer = json.loads(done.stdout)
+        assert done.returncode == 1
+        assert (answer["blocks"], answer["splits"]) == (blocks, 0)
+        assert len(answer["joints"]) == 28
     done = blocksim("bracket", *ARCH, "--reduce", "--json")
     assert done.returncode == 2
     assert done.stderr.startswith("blocksim: --reduce")

@@ -15,7 +15,7 @@ from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
 from blocksim.ask.carried import Carried
 from blocksim.ask.check import Check
-from blocksim.ask.methods import choose, chosen_words
+from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.common.checks import require_friction
 from blocksim.common.progress import Progress, silent
@@ -81,7 +81,7 @@ def check(
     method: str = "auto",
     lean: float = 0.0,
     settings: Overrides = BY_RULE,
-    reduce: bool = False,
+    reduce: bool | None = None,
     progress: Progress = silent,
 ) -> ArchCheck:
     """Tell whether an arch stands under its own weight.
@@ -98,8 +98,9 @@ def check(
         are those without it.
     settings : mapping of str to float
         Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
-    reduce : bool
-        Simulate no more blocks than it takes (`blocksim.arch.reduction`).
+    reduce : bool, optional
+        Simulate no more blocks than it takes (`blocksim.arch.reduction`); by default where
+        the engine says so (`Engine.reduces`) and gravity lies in the plane.
     progress : Progress, optional
 
     Returns
@@ -131,11 +132,12 @@ def check(
             found = mechanism(arch, mu)
             mode, joints = found.mode, _limit_joints(found)
     else:
+        reduced = reduces(rung, reduce, is_planar=not lean)
         seen = observe(
             leaning or arch.problem(mu),
             rung.name,
             settings=settings,
-            reduction=Reduction.of(arch, mu) if reduce else None,
+            reduction=Reduction.of(arch, mu) if reduced else None,
             progress=progress,
         )
         verdict, reason, joints = seen.verdict, seen.reason, seen.joints

@@ -92,7 +92,7 @@ def check(
     method: MethodOption = "auto",
     settings: Set = None,
     joint: AtJoint = None,
-    reduce: Reduce = False,
+    reduce: Reduce = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -137,7 +137,7 @@ def bracket(
     method: MethodOption = "auto",
     tol: Annotated[float, typer.Option(help="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
-    reduce: Reduce = False,
+    reduce: Reduce = None,
     as_json: Json = False,
 ) -> None:
     """Find the value of a parameter from which on it falls: how thin an arch can be."""

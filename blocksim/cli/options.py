@@ -48,8 +48,12 @@ Set = Annotated[
     ),
 ]
 Reduce = Annotated[
-    bool,
-    typer.Option("--reduce", help="Simulate half the arch, in no more blocks than it takes."),
+    bool | None,
+    typer.Option(
+        "--reduce/--no-reduce",
+        help="Simulate half the arch, in no more blocks than it takes: pymunk and pybullet do.",
+        show_default=False,
+    ),
 ]
 AtJoint = Annotated[
     str | None,

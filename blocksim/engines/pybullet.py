@@ -264,6 +264,7 @@ ENGINE = Engine(
     most_friction=MOST_FRICTION,
     takes_forces=True,
     tells_forces=True,
+    reduces=True,
     contacts=4,
     usual_sweeps=10,
     chart={
