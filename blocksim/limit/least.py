@@ -11,6 +11,7 @@ An engine that searches for contact forces may begin with these (`blocksim.evide
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +21,8 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit.cones import Cones
 
+ROUGH = 10.0
+"""Friction from which on it counts as unbounded: in steep cones forces wedge without need."""
 ROUNDS = 50
 """Most rounds of the solver, for each part of a force."""
 
@@ -57,7 +60,8 @@ def least_motion(problem: Problem) -> LeastMotion | None:
     from scipy.optimize import nnls
 
     solve: Any = nnls
-    cones = Cones(problem)
+    friction = np.where(problem.friction > ROUGH, math.inf, problem.friction)
+    cones = Cones(problem, friction=friction)
     balance, loads = cones.balance.toarray(), cones.loads(problem.pull())
     masses = problem.assembly.masses.ravel()
     scale = 1 / (cones.ease.ravel() * np.sqrt(masses))
