@@ -239,6 +239,8 @@ class Engine(Method):
     takes_forces, tells_forces : bool
         Whether its worlds are also `TakesForces` and `TellsForces`. A reduced arch asks for
         the second.
+    keeps_impulses : bool
+        Whether its worlds go on from forces that are given, also from such that do not balance.
     reduces : bool
         Whether arches are reduced where nothing else is said: shown to be right, and faster.
     contacts : int
@@ -258,6 +260,7 @@ class Engine(Method):
     finds_rest: bool = False
     takes_forces: bool = False
     tells_forces: bool = False
+    keeps_impulses: bool = False
     reduces: bool = False
     contacts: int = 2
     usual_sweeps: int = 1

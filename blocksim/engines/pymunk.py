@@ -375,6 +375,7 @@ ENGINE = Engine(
     shakes=True,
     takes_forces=True,
     tells_forces=True,
+    keeps_impulses=True,
     reduces=True,
     usual_sweeps=10,
     chart={

@@ -29,9 +29,9 @@ mode of sliding can take 10^6 sweeps to die away (125.02 deg, mu 0.8594, n = 10)
 Without sliding the answer is unique, and none of this is asked; nor is it of an engine that
 looks for rest first.
 
-Thin joints and many blocks take an engine millions of sweeps from nothing. One that keeps
-impulses is helped after `unaided` of its settings: it begins anew with forces of equilibrium,
-or where there are none with those that leave least acceleration (`blocksim.limit.least`).
+Thin joints and many blocks take an engine millions of sweeps from nothing. So it is helped
+after `unaided` of its settings: it begins anew with forces of equilibrium, or where there are
+none, if it keeps impulses, with those that leave least acceleration (`blocksim.limit.least`).
 Both criteria prove what they say whatever it began with: forces that press, rub within their
 cones and balance the weights prove that the blocks can rest; a motion that opens joints, closes
 none and is driven by the weights proves that they cannot (where joints slide, limit analysis
@@ -194,7 +194,7 @@ def onset(
             asked = simulated or problem
             forces = equilibrium(asked).forces
             may_rest, unasked, helped = forces is not None, False, helped or slow
-            if forces is None and slow and not decided:
+            if forces is None and engine.keeps_impulses and slow and not decided:
                 least = least_motion(asked)
                 forces = None if least is None else least.forces
             if forces is not None and engine.takes_forces:
