@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from arches import arch_at
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from structure_cases import case, names, scenes
@@ -314,3 +315,11 @@ def test_least_motion_is_none_where_forces_of_equilibrium_exist(name: str) -> No
     for share, moves in ((0.99, False), (1.01, True)):
         found = least_motion(problem.with_load(share * limit))
         assert bool(np.abs(found.accelerations).max() > 1e-7) == moves
+
+
+def test_least_motion_wedges_nothing_between_rough_joints() -> None:
+    """Forces are those of a thrust, at mu = 1000 as without slip: none of thousands of weights."""
+    arch = arch_at(0.99, 90, 1e3, 20)
+    rough, boundless = (least_motion(arch.problem(mu)) for mu in (1e3, math.inf))
+    assert rough.accelerations == pytest.approx(boundless.accelerations, abs=1e-9)
+    assert np.abs(rough.forces).max() < 20
