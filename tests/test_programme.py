@@ -318,7 +318,7 @@ def test_least_motion_is_none_where_forces_of_equilibrium_exist(name: str) -> No
 
 
 def test_least_motion_wedges_nothing_between_rough_joints() -> None:
-    """Forces are those of a thrust, at mu = 1000 as without slip: none of thousands of weights."""
+    """Forces at mu = 1000 are those of a thrust, as without slip, not thousands of weights."""
     arch = arch_at(0.99, 90, 1e3, 20)
     rough, boundless = (least_motion(arch.problem(mu)) for mu in (1e3, math.inf))
     assert rough.accelerations == pytest.approx(boundless.accelerations, abs=1e-9)
