@@ -123,6 +123,7 @@ def ask(draw: Draw, engine: str) -> Row:
         weight=draw.weight,
         method=engine,
         tol=PLANS[engine].tol,
+        reduce=False,
     )
     return {
         "low": found.eta_low and found.eta_low / draw.eta - 1,

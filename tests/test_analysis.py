@@ -293,6 +293,12 @@ def test_few_blocks_answer_as_all_voussoirs_do(tmp_path: Path) -> None:
     assert (tmp_path / "reduction.png").stat().st_size > 0
 
 
+def test_reduced_arches_are_right_by_default(tmp_path: Path) -> None:
+    result = study("reduced_arches").main(tmp_path, quick=True)
+    assert (result.asked, result.right) == (8, 8)
+    assert result.whole == 0
+
+
 def test_lmgc90_says_where_it_is_missing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -240,9 +240,9 @@ def test_pictures_are_written_whole(arguments: tuple[str, ...], tmp_path: Path) 
 def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
     asked = ("check", *ARCH, "--eta", "0.1", "--method", "pymunk", "--json")
     # No engine of impulses has converged after so few sweeps.
-    done = blocksim(*asked, "--set", "hold_sweeps=1000")
+    done = blocksim(*asked, "--set", "hold_sweeps=100")
     assert done.returncode == 3
-    assert json.loads(done.stdout)["reason"].endswith("; hold_sweeps 1000 as given")
+    assert json.loads(done.stdout)["reason"].endswith("; hold_sweeps 100 as given")
     done = blocksim("bracket", *ARCH, "--method", "direct", "--set", "step=0.005", "--json")
     answer = json.loads(done.stdout)
     assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
@@ -287,11 +287,13 @@ def test_direct_answers_and_brackets_finely() -> None:
 
 
 def test_a_reduced_arch_answers_with_few_blocks() -> None:
-    done = blocksim("check", *ARCH, "--eta", "0.1", "--method", "pymunk", "--reduce", "--json")
-    answer = json.loads(done.stdout)
-    assert done.returncode == 1
-    assert (answer["blocks"], answer["splits"]) == (3, 0)
-    assert len(answer["joints"]) == 28
+    for given, blocks in (([], 3), (["--no-reduce"], 27)):
+        asked = (*ARCH, "--eta", "0.1", "--method", "pymunk", *given, "--json")
+        done = blocksim("check", *asked)
+        answer = json.loads(done.stdout)
+        assert done.returncode == 1
+        assert (answer["blocks"], answer["splits"]) == (blocks, 0)
+        assert len(answer["joints"]) == 28
     done = blocksim("bracket", *ARCH, "--reduce", "--json")
     assert done.returncode == 2
     assert done.stderr.startswith("blocksim: --reduce")

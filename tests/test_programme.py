@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from arches import arch_at
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from structure_cases import case, names, scenes
 
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.limit import collapse, equilibrium, linear
+from blocksim.limit import collapse, equilibrium, least_motion, linear
 
 frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))
 lengths = st.floats(0.2, 5.0)
@@ -281,3 +282,44 @@ def test_twice_the_live_load_has_half_the_factor(name: str, times: float) -> Non
 
 def _times(load: Load, factor: float) -> Load:
     return replace(load, force=factor * load.force)
+
+
+@given(st.floats(1.0, 80.0), lengths, lengths)
+def test_a_smooth_block_slides_as_it_must(slope: float, width: float, height: float) -> None:
+    """Without friction it starts with sin of the slope, along it, whatever its shape."""
+    assume(height / width < 1 / math.tan(math.radians(slope)) * 0.99)
+    table = {"friction": 0.0, "blocks": [FLOOR, box("1", 0, 0, width, height)]}
+    found = least_motion(structure_of(table).tilted(math.radians(slope)))
+    want = [math.sin(math.radians(slope)), 0.0, 0.0]
+    assert found.accelerations[0] == pytest.approx(want, abs=1e-9)
+
+
+@given(st.floats(1.0, 80.0), lengths, lengths)
+def test_a_rough_block_tips_as_it_must(slope: float, width: float, height: float) -> None:
+    """About its lower corner: moment of its weight over the moment of inertia there."""
+    angle = math.radians(slope)
+    driven = height * math.sin(angle) - width * math.cos(angle)
+    assume(driven > 1e-3)
+    table = {"friction": "inf", "blocks": [FLOOR, box("1", 0, 0, width, height)]}
+    problem = structure_of(table).tilted(angle)
+    found, size = least_motion(problem), problem.assembly.size
+    turn = driven / 2 / ((width**2 + height**2) / 3)
+    want = [turn * height / 2, turn * width / 2, -turn * size]
+    assert found.accelerations[0] == pytest.approx(want, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", asked("load_factor")[:8])
+def test_least_motion_is_none_where_forces_of_equilibrium_exist(name: str) -> None:
+    (scene,) = scenes(name)
+    problem, limit = structure_of(scene), case(name)["expected"]["value"]
+    for share, moves in ((0.99, False), (1.01, True)):
+        found = least_motion(problem.with_load(share * limit))
+        assert bool(np.abs(found.accelerations).max() > 1e-7) == moves
+
+
+def test_least_motion_wedges_nothing_between_rough_joints() -> None:
+    """Forces at mu = 1000 are those of a thrust, as without slip, not thousands of weights."""
+    arch = arch_at(0.99, 90, 1e3, 20)
+    rough, boundless = (least_motion(arch.problem(mu)) for mu in (1e3, math.inf))
+    assert rough.accelerations == pytest.approx(boundless.accelerations, abs=1e-9)
+    assert np.abs(rough.forces).max() < 20

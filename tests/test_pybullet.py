@@ -307,3 +307,16 @@ def test_a_block_on_its_head_lies_still() -> None:
         poses.append(world.poses())
         assert poses[-1][0, 2] == pytest.approx(angle, abs=1e-9)
     assert lie_still(THIN.assembly(), poses)
+
+
+@pytest.mark.long
+def test_a_wall_that_is_stuck_is_given_forces_of_equilibrium() -> None:
+    """From nothing it is open after all sweeps allowed; 1 % beyond its limit it falls."""
+    name = "grid_wall_5"
+    (scene,) = scenes(name)
+    problem, value = structure_of(scene), case(name)["expected"]["value"]
+    inside = observe(problem.with_load(0.99 * value), "pybullet", moving=False)
+    assert inside.verdict is Verdict.STANDS
+    assert "begun with forces of limit analysis" in inside.reason
+    outside = observe(problem.with_load(1.01 * value), "pybullet", moving=False)
+    assert outside.verdict is Verdict.COLLAPSES

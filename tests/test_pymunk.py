@@ -35,6 +35,7 @@ from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.limit import least_motion
 
 ARCHES = [
     (90, 0.7, 27, "centreline", Mode.RRR),
@@ -103,16 +104,45 @@ def test_bracket_holds_the_limit(
 
 
 def test_thin_arches_are_never_answered_wrongly() -> None:
-    """Known limit: thin shallow arches of many voussoirs need more sweeps than allowed."""
+    """From nothing, thin shallow arches of many voussoirs need millions of sweeps."""
     for ratio, right in ((0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)):
         simulation = Simulation.of(arch_at(ratio, 20, 0.7, 27).problem(0.7), "pymunk")
         for sweeps in (1000, 20_000, 100_000):
-            chosen = replace(simulation.settings, hold_sweeps=sweeps)
+            chosen = replace(simulation.settings, hold_sweeps=sweeps, unaided=None)
             seen = onset(simulation.world(), simulation.engine, simulation.taken, chosen)
             assert seen.verdict in {right, Verdict.UNDECIDED}
             assert seen.sweeps <= sweeps
         assert seen.verdict is Verdict.UNDECIDED
         assert "not converged" in seen.reason
+
+
+@pytest.mark.parametrize(("ratio", "right"), [(0.999, "collapses"), (1.001, "stands")])
+def test_forces_to_begin_with_decide_thin_arches(ratio: float, right: str) -> None:
+    """All voussoirs; from nothing it took 17 million sweeps, two minutes."""
+    arch = arch_at(ratio, 20, 0.7, 27)
+    seen = observe(arch.problem(0.7), "pymunk")
+    assert seen.verdict.value == right
+    assert seen.motion.verdict.value == right
+    assert seen.onset.sweeps < 300_000
+    assert "begun with forces of limit analysis" in seen.reason
+    if right == "collapses":
+        assert observed_mode(seen.joints, arch) is Mode.RRR
+
+
+@pytest.mark.parametrize(("angle", "mu", "count"), [(30, 0.7, 27), (125, 0.9, 20)])
+@pytest.mark.parametrize(("ratio", "wrong"), [(0.99, "stands"), (1.01, "collapses")])
+@pytest.mark.parametrize("other", [0.9, 1.1])
+def test_no_forces_to_begin_with_make_a_verdict(
+    angle: float, mu: float, count: int, ratio: float, wrong: str, other: float
+) -> None:
+    """Forces of a thinner or a thicker arch: those that it would fall, or stand with."""
+    forces = least_motion(arch_at(other, angle, mu, count).problem(mu)).forces
+    simulation = Simulation.of(arch_at(ratio, angle, mu, count).problem(mu), "pymunk")
+    world = simulation.world()
+    world.begin(forces)
+    chosen = replace(simulation.settings, hold_sweeps=30_000, unaided=None)
+    seen = onset(world, simulation.engine, simulation.taken, chosen)
+    assert seen.verdict.value != wrong
 
 
 @pytest.mark.parametrize("count", [8, 10, 12])

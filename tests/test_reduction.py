@@ -427,6 +427,9 @@ def test_the_answer_tells_what_was_simulated(engine):
     assert answer.verdict is Verdict.COLLAPSES
     assert (answer.blocks, answer.splits) == (3, 0)
     assert "blocks: 3 of 27, joints split again: 0" in answer.reason
+    usual = check(arch, mu=0.7, method=engine)
+    assert usual.blocks == (27 if engine == "direct" else 3)
+    assert check(arch, mu=0.7, method=engine, reduce=False).blocks == 27
     assert check(arch, mu=0.7, method="limit").blocks is None
 
 
@@ -448,3 +451,6 @@ def test_there_is_nothing_to_reduce_where_nothing_is_simulated(method):
 def test_out_of_the_plane_nothing_is_reduced():
     with pytest.raises(InputError, match="reduce"):
         check(arch_at(1.0, 90, 0.7, 27), mu=0.7, method="pybullet", lean=0.1, reduce=True)
+    pytest.importorskip("pybullet")
+    thick = Arch(half_angle=math.radians(60), eta=0.4, voussoirs=3)
+    assert check(thick, mu=1.0, method="pybullet", lean=0.01).blocks == 3

@@ -11,7 +11,7 @@ from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import Reduction
 from blocksim.ask.bracket import by_engine
-from blocksim.ask.methods import choose, chosen_words
+from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.search import ETA_MAX, THINNEST
 from blocksim.common.checks import is_number, require, require_friction
 from blocksim.common.progress import Progress, silent
@@ -118,7 +118,7 @@ def bracket(
     depth: float = 1.0,
     confirm: bool = True,
     settings: Overrides = BY_RULE,
-    reduce: bool = False,
+    reduce: bool | None = None,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
@@ -146,8 +146,9 @@ def bracket(
         Let the arch go at both ends; without, an engine answers by the onset test alone.
     settings : mapping of str to float
         Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
-    reduce : bool
-        Simulate no more blocks than it takes (`blocksim.arch.reduction`).
+    reduce : bool, optional
+        Simulate no more blocks than it takes (`blocksim.arch.reduction`); by default where
+        the engine says so (`Engine.reduces`) and gravity lies in the plane.
     progress : Progress, optional
 
     Returns
@@ -211,9 +212,10 @@ def bracket(
             + (f": {ANY_THICKNESS}" if built.eta == 0 else ""),
         )
     else:
+        reduced = reduces(rung, reduce, is_planar=not lean)
         guess = ETA_MAX if continuous.eta is None else continuous.eta
         search = by_engine(
-            _Thinning(arch, mu, lean, rung.name, settings, reduce=reduce).held_at,
+            _Thinning(arch, mu, lean, rung.name, settings, reduce=reduced).held_at,
             guess,
             (THINNEST, ETA_MAX),
             tol,
@@ -236,7 +238,7 @@ def bracket(
             splits=search.splits,
             reason=search.reason,
         )
-        if reduce and search.blocks is not None and search.splits is not None:
+        if reduced and search.blocks is not None and search.splits is not None:
             words = reduced_words(search.blocks, voussoirs, search.splits)
             answer = replace(answer, reason=f"{answer.reason}; {words}")
     reason = answer.reason + given_words(settings) + chosen_words(method, rung)

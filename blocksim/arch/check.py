@@ -14,7 +14,7 @@ from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.ask.carried import Carried
 from blocksim.ask.check import Check
-from blocksim.ask.methods import choose, chosen_words
+from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.common.checks import require_friction
 from blocksim.common.progress import Progress, silent
@@ -82,7 +82,7 @@ def check(
     method: str = "auto",
     lean: float = 0.0,
     settings: Overrides = BY_RULE,
-    reduce: bool = False,
+    reduce: bool | None = None,
     progress: Progress = silent,
 ) -> ArchCheck:
     """Tell whether an arch stands under its own weight.
@@ -99,8 +99,9 @@ def check(
         are those without it.
     settings : mapping of str to float
         Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
-    reduce : bool
-        Simulate no more blocks than it takes (`blocksim.arch.reduction`).
+    reduce : bool, optional
+        Simulate no more blocks than it takes (`blocksim.arch.reduction`); by default where
+        the engine says so (`Engine.reduces`) and gravity lies in the plane.
     progress : Progress, optional
 
     Returns
@@ -139,11 +140,12 @@ def check(
         from blocksim.arch.reduction import Reduction
         from blocksim.evidence.observation import observe
 
+        reduced = reduces(rung, reduce, is_planar=not lean)
         seen = observe(
             leaning or arch.problem(mu),
             rung.name,
             settings=settings,
-            reduction=Reduction.of(arch, mu) if reduce else None,
+            reduction=Reduction.of(arch, mu) if reduced else None,
             progress=progress,
         )
         verdict, reason, joints = seen.verdict, seen.reason, seen.joints

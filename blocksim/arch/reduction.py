@@ -1,5 +1,7 @@
 """No more blocks than a question needs: half an arch, its voussoirs merged where none part.
 
+Impulse engines are asked so by default (`Engine.reduces`); recordings have all voussoirs.
+
 An arch and its weight are symmetric, and so can be what it does at its onset: half of it
 leans on its plane of symmetry, without friction. A joint at the crown lies in that plane
 and opens half as far. A keystone is cut by the plane, along which it slides without turning:

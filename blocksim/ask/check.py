@@ -164,7 +164,7 @@ def check(
 
         seen = observe(problem, chosen.name, settings=settings, progress=progress)
         verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
-        if seen.onset.may_rest or seen.onset.forces is not None:
+        if seen.onset.may_rest or seen.onset.may_slide:
             rest = "can"
     if mechanism is not None:
         mechanism = _unit(mechanism, problem)

@@ -53,7 +53,7 @@ def choose(
     problem: Problem | None = None,
     moving: bool = False,
     settings: Overrides = BY_RULE,
-    reduce: bool = False,
+    reduce: bool | None = None,
 ) -> Method:
     """Return the method asked for; for `auto` the cheapest that can answer.
 
@@ -69,8 +69,8 @@ def choose(
         Whether it is of motion at all.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
-    reduce : bool
-        Whether no more blocks are to be simulated than it takes.
+    reduce : bool, optional
+        Whether no more blocks are to be simulated than it takes; see `reduces`.
 
     Raises
     ------
@@ -101,8 +101,8 @@ def choose(
     if moving and rung.is_static:
         able = ", ".join(ENGINES)
         raise InputError("method", method, f"one of {able}: others move nothing")
-    if reduce and (spatial or not _reduces(rung)):
-        able = ", ".join(each.name for each in ENGINES.values() if _reduces(each))
+    if reduce and (spatial or not _can_reduce(rung)):
+        able = ", ".join(each.name for each in ENGINES.values() if _can_reduce(each))
         raise InputError("reduce", reduce, f"left out but for {able}, in the plane")
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
@@ -129,9 +129,16 @@ def _beyond(method: Method, problem: Problem | None) -> str:
     return ""
 
 
-def _reduces(method: Method) -> bool:
+def _can_reduce(method: Method) -> bool:
     """Tell whether it says what joints carry, which a reduced arch takes."""
     return isinstance(method, Engine) and method.tells_forces
+
+
+def reduces(method: Method, reduce: bool | None, *, is_planar: bool) -> bool:
+    """Tell whether an arch is reduced: as asked for, else by what the engine says of itself."""
+    if reduce is not None:
+        return reduce
+    return is_planar and isinstance(method, Engine) and method.reduces
 
 
 def chosen_words(method: str, rung: Method) -> str:

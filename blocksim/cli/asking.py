@@ -47,7 +47,7 @@ def check(
     method: MethodOption = "auto",
     settings: Set = None,
     joint: AtJoint = None,
-    reduce: Reduce = False,
+    reduce: Reduce = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -89,7 +89,7 @@ def bracket(
     method: MethodOption = "auto",
     tol: Annotated[float, Option(help="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
-    reduce: Reduce = False,
+    reduce: Reduce = None,
     as_json: Json = False,
 ) -> None:
     """Find where it starts to fall as one parameter changes: how thin an arch can be."""

@@ -45,12 +45,11 @@ Set = Annotated[
     ),
 ]
 Reduce = Annotated[
-    bool,
+    bool | None,
     Option(
-        name="--reduce",
-        
-        help="Simulate half the arch; voussoirs that stay together are one block.",
-    ,
+        name="--reduce/--no-reduce",
+        help="Simulate half the arch; voussoirs that stay together are one block: "
+        "pymunk and pybullet do.",
     ),
 ]
 AtJoint = Annotated[

@@ -189,7 +189,7 @@ def check_problem(
     settings: list[str] | None,
     joint: str | None,
     *,
-    reduce: bool,
+    reduce: bool | None,
     as_json: bool,
 ) -> None:
     """Answer `check` of a structure, or of an arch that bears loads, and leave.
@@ -237,7 +237,7 @@ def bracket_problem(
     tol: float,
     settings: list[str] | None,
     *,
-    reduce: bool,
+    reduce: bool | None,
     as_json: bool,
 ) -> bool:
     """Answer `bracket` but over the thickness of an arch; tell whether it was answered."""

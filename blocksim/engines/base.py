@@ -40,6 +40,8 @@ class Settings:
         Sweeps over all contacts in each step of a moving run.
     hold_sweeps : int
         Most sweeps the onset test may spend.
+    unaided : int or None
+        Sweeps after which it begins anew with forces of limit analysis; None for never.
     still : float
         Acceleration below which an arch held at rest counts as at rest [g].
     closing : float
@@ -62,6 +64,7 @@ class Settings:
     step: float
     sweeps: int
     hold_sweeps: int
+    unaided: int | None = None
     still: float = 1e-6
     closing: float = 1e-5
     rest: float = 1e-5
@@ -233,6 +236,10 @@ class Engine(Method):
     takes_forces, tells_forces : bool
         Whether its worlds are also `TakesForces` and `TellsForces`. A reduced arch asks for
         the second.
+    keeps_impulses : bool
+        Whether its worlds go on from forces that are given, also from such that do not balance.
+    reduces : bool
+        Whether arches are reduced where nothing else is said: shown to be right, and faster.
     contacts : int
         Contacts of a joint.
     usual_sweeps : int
@@ -250,6 +257,8 @@ class Engine(Method):
     finds_rest: bool = False
     takes_forces: bool = False
     tells_forces: bool = False
+    keeps_impulses: bool = False
+    reduces: bool = False
     contacts: int = 2
     usual_sweeps: int = 1
 

@@ -65,6 +65,8 @@ SLENDER, SLENDEREST = 80, 2.5e-4
 """The same over the length of the shortest joint, and the shortest that was measured [size]."""
 LONGEST_HOLD = 5e9
 """Most of these sweeps times blocks, about four minutes."""
+UNAIDED = 2e6
+"""These sweeps times blocks before the search for impulses is helped, 0.1 s."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -77,7 +79,9 @@ def rule(assembly: Assembly) -> Settings:
 
     The onset test needs about 40 sweeps for each pair of blocks, and in thin arches 10 to
     20 over the length of a joint: a small moment at it is a large change of its
-    pressures. It is allowed four times that, and more where modes die away slowly.
+    pressures. It is allowed four times that, and more where modes die away slowly. What
+    takes longer than `UNAIDED` goes on from forces of limit analysis: in a few thousand sweeps,
+    however thin or many the voussoirs.
     """
     count = len(assembly.blocks)
     step = LONGEST_STEP * min(1.0, math.sqrt(assembly.shortest / THICK))
@@ -88,6 +92,7 @@ def rule(assembly: Assembly) -> Settings:
         hold_sweeps=max(
             LEAST_HOLD, HOLD_SWEEPS * count**2, round(min(slender, LONGEST_HOLD / count))
         ),
+        unaided=round(UNAIDED / count),
     )
 
 
@@ -370,6 +375,8 @@ ENGINE = Engine(
     shakes=True,
     takes_forces=True,
     tells_forces=True,
+    keeps_impulses=True,
+    reduces=True,
     usual_sweeps=10,
     chart={
         "tolerance": (1e-2, 1e-3, 1e-4),

@@ -28,6 +28,14 @@ So it goes where sweeps run out (from `LATE` on) over what is a mechanism to a t
 mode of sliding can take 10^6 sweeps to die away (125.02 deg, mu 0.8594, n = 10).
 Without sliding the answer is unique, and none of this is asked; nor is it of an engine that
 looks for rest first.
+
+Thin joints and many blocks take an engine millions of sweeps from nothing. So it is helped
+after `unaided` of its settings: it begins anew with forces of equilibrium, or where there are
+none, if it keeps impulses, with those that leave least acceleration (`blocksim.limit.least`).
+Both criteria prove what they say whatever it began with: forces that press, rub within their
+cones and balance the weights prove that the blocks can rest; a motion that opens joints, closes
+none and is driven by the weights proves that they cannot (where joints slide, limit analysis
+has been asked).
 """
 
 from __future__ import annotations
@@ -44,7 +52,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, Settings, TakesForces, World, trusted
 from blocksim.evidence.verdict import Verdict
-from blocksim.limit import equilibrium
+from blocksim.limit import equilibrium, least_motion
 
 WORK = 0.99
 PROBE = 1e-6
@@ -74,7 +82,9 @@ class Onset:
     sweeps : int
         Sweeps spent.
     forces : (joints, 2, 2) float or None
-        Forces of equilibrium (`blocksim.limit`) it was given, if it was.
+        Forces it was given to begin with (`blocksim.limit`), if it was.
+    may_slide : bool
+        Whether forces of equilibrium exist, and begun with nothing it slides.
     may_rest : bool
         Whether it starts to move where forces of equilibrium exist.
     too_far : bool
@@ -86,6 +96,7 @@ class Onset:
     mechanism: Array
     sweeps: int
     forces: Array | None = None
+    may_slide: bool = False
     may_rest: bool = False
     too_far: bool = False
 
@@ -99,8 +110,10 @@ class Onset:
     def reason(self) -> str:
         """The evidence in words."""
         size = f"{self.acceleration:.1e} g after {self.sweeps} sweeps"
+        if self.forces is not None and not self.may_slide:
+            size += ", the last of them begun with forces of limit analysis"
         match self.verdict:
-            case Verdict.STANDS if self.forces is not None:
+            case Verdict.STANDS if self.may_slide:
                 given = "held at rest, it keeps forces of equilibrium it was given"
                 return f"{given}, to {size} (friction may let it move, too)"
             case Verdict.STANDS:
@@ -159,7 +172,9 @@ def onset(
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
     total, sweeps = 0, first
-    forces = given = None
+    begun = None
+    may_rest = may_slide = False
+    helped = not (engine.takes_forces and problem.is_planar and settings.unaided is not None)
     # Without bound on friction even an engine that looks for rest can miss it: forces may be
     # wedged, a thousand times their pressures.
     bounded = bool(np.isfinite(problem.friction).all())
@@ -172,15 +187,22 @@ def onset(
         nearly = falls or (
             total > LATE * allowed and overlap_share(assembly, seen.mechanism) < NEARLY
         )
-        if unasked and nearly and slip_share(assembly, seen.mechanism) > SLIPS:
-            unasked = False
-            forces = equilibrium(simulated or problem).forces
+        slides = unasked and nearly and slip_share(assembly, seen.mechanism) > SLIPS
+        slow = not helped and total >= (settings.unaided or 0)
+        decided = seen.verdict is not Verdict.UNDECIDED
+        if slides or (slow and not decided):
+            asked = simulated or problem
+            forces = equilibrium(asked).forces
+            may_rest, unasked, helped = forces is not None, False, helped or slow
+            if forces is None and engine.keeps_impulses and slow and not decided:
+                least = least_motion(asked)
+                forces = None if least is None else least.forces
             if forces is not None and engine.takes_forces:
                 cast("TakesForces", world).begin(forces)
-                sweeps, given = first, forces
+                sweeps, begun, may_slide = first, forces, slides
                 continue
-        seen = replace(seen, forces=given)
-        if falls and forces is not None:
+        seen = replace(seen, forces=begun, may_slide=may_slide)
+        if falls and may_rest:
             return replace(seen, verdict=Verdict.UNDECIDED, may_rest=True)
         if seen.verdict is not Verdict.UNDECIDED or total >= allowed:
             return seen

@@ -203,7 +203,7 @@ def _settings(written: dict[str, Any]) -> Settings:
     inf = math.inf
     given = dict(written).items()
     named: dict[str, Any] = {name: inf if each == "inf" else each for name, each in given}
-    if not all(isinstance(each, int | float) for each in named.values()):
+    if not all(each is None or isinstance(each, int | float) for each in named.values()):
         raise TypeError
     return Settings(**named)
 

@@ -1,5 +1,7 @@
 """Limit analysis of any assembly of blocks."""
 
+from blocksim.limit.least import LeastMotion as LeastMotion
+from blocksim.limit.least import least_motion as least_motion
 from blocksim.limit.margins import Margins as Margins
 from blocksim.limit.margins import Thrust as Thrust
 from blocksim.limit.margins import margins as margins

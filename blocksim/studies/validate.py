@@ -126,6 +126,7 @@ def validate_one(scenario: Scenario, engine: str) -> Validation:
         method=engine,
         tol=TOLS[engine],
         confirm=False,
+        reduce=False,
     )
     in_motion = below = above = recording = None
     if found.eta_low is not None:

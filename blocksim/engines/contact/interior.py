@@ -64,7 +64,8 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
     if not dilates:
         lift, turned = _lift(step, x, cones, SMOOTH)
     apart = bands.along(edges, x) + offset + lift
-    room, forces = np.maximum(np.abs(apart), 1.0), np.ones_like(apart)
+    room: Array = np.maximum(np.abs(apart), 1.0)
+    forces: Array = np.ones_like(apart)
     count = 0
     for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size
