@@ -180,7 +180,10 @@ def test_without_slip_it_is_as_limit_analysis_says(half_angle_deg, voussoirs, we
     [(157, 27, 1 - 1e-8), (153.6456, 33, 1 - 1.867e-8), (156.8836, 55, 1 - 1.187e-8)],
 )
 def test_friction_without_pressure_is_no_detour(half_angle_deg, voussoirs, ratio, monkeypatch):
-    """Left at contacts without pressure it took a thousand systems, and some led nowhere."""
+    """A hundred-millionth below the limit friction may act where nothing presses.
+
+    Two guesses lead nowhere; the path from all contacts apart does.
+    """
     solved, solve = [], ContactProblem.solve
 
     def counted(*args):
@@ -190,7 +193,8 @@ def test_friction_without_pressure_is_no_detour(half_angle_deg, voussoirs, ratio
     monkeypatch.setattr(ContactProblem, "solve", counted)
     arch = arch_at(ratio, half_angle_deg, math.inf, voussoirs)
     assert held(arch, math.inf) is Verdict.COLLAPSES
-    assert solved[0].iterations < 200
+    assert solved[0].residual < 1e-12
+    assert solved[0].iterations < 40 * voussoirs
 
 
 def test_without_slip_the_least_thickness_is_not_shifted():

@@ -30,8 +30,10 @@ SLOW, DRIFT = 0.1, 0.9
 """What is left of a yield after a system, from which it is slow, and without end."""
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
-FEW = 8
-"""Contacts to change, beyond twice the fewest before, that tell of no end."""
+MORE, FEW = 4, 16
+"""So many times the fewest contacts that had to change, and a few, tell of no end."""
+RELATIVE = 1e-8
+"""Residual over the accelerations at which contacts that still change are round-off."""
 
 
 def settle(step: Step, guess: Answer, precision: float) -> Answer:
@@ -62,16 +64,19 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
         forces = friction.as_said(preload - stiffness * rates, contacts, held)
         change = forces - preload
         most = float(np.abs(change).max(initial=0.0))
-        mended = _mended(
-            step, contacts, forces, rates, UNSURE * most, UNSURE * most / stiffness
-        )
+        unsure = UNSURE * most
+        mended = _mended(step, contacts, forces, rates, unsure, unsure / stiffness)
         changes = int(np.count_nonzero(mended != contacts))
         residual = step.residual(x, forces, rates)
-        if residual < best.residual or not changes:
-            best = Answer(x=x, forces=forces, contacts=contacts, residual=residual)
+        found = Answer(x=x, forces=forces, contacts=contacts, residual=residual)
+        best = found if residual < best.residual else best
+        largest = float(np.abs(x).max())
+        if changes and best.residual <= RELATIVE * largest:
+            best = replace(best, is_settled=True)
+            break
         if changes > allowed:
             break
-        allowed = min(allowed, 2 * changes + FEW)
+        allowed = min(allowed, MORE * changes + FEW)
         preload = forces
         if changes:
             seen.add(contacts.tobytes())
@@ -84,10 +89,9 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
             contacts, last = mended, math.inf
             continue
         yields = most / stiffness
-        largest = float(np.abs(x).max())
         nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
         if yields <= nothing:
-            best = replace(best, is_settled=True)
+            best = replace(found, is_settled=True)
             break
         ratio, last = yields / last, yields
         if ratio > SLOW:

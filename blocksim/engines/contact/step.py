@@ -118,10 +118,11 @@ class Step:
         rates = self.velocities(x) if rates is None else rates
         pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
         unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max(initial=0.0)
-        # Friction at the edge of the cone, against the slip, or no slip.
+        # Friction in the cone; at its edge, against the slip, or no slip.
         a, b = self.friction.room
+        beyond = (b * np.abs(friction) - a * pressure).max(initial=0.0)
         against = a * pressure + b * np.sign(slip) * friction
-        coulomb = np.minimum(against, np.abs(slip)).max(initial=0.0)
+        coulomb = max(beyond, np.minimum(against, np.abs(slip)).max(initial=0.0))
         if self.friction.some_steep:
             # Nor does friction help the slip, or act across a gap.
             for wrong in (
