@@ -282,6 +282,7 @@ def test_references_are_of_what_a_method_rests_on() -> None:
 
     assert keys() == ["blocksim", "CocchettiRizzi2024"]
     assert {"Moreau1988", "AlartCurnier1991", "Jean1999"} < {*keys("direct")}
+    assert {"Mehrotra1992", "DeSaxceFeng1998", "Acary2024", "Lemke1965"} < {*keys("direct")}
     assert keys("mujoco") == [*keys(), "Todorov2012"]
     every = keys(*METHODS)
     assert len(every) == len({*every})
@@ -303,14 +304,15 @@ def test_a_shell_completes_commands() -> None:
     # By its own name, as a shell asks it.
     program = str(Path(sys.executable).with_name("blocksim"))
     asked = {
-        "_BLOCKSIM_COMPLETE": "complete_bash",
+        "_BLOCKSIM_COMPLETE": "bash_complete",
         "COMP_WORDS": "blocksim c",
         "COMP_CWORD": "1",
     }
     done = subprocess.run(
         [program], env={**os.environ, **asked}, capture_output=True, text=True, check=False
     )
-    assert {*done.stdout.split()} == {"check", "chart", "cite", "convert"}
+    names = [line.removeprefix("plain,") for line in done.stdout.splitlines()]
+    assert sorted(names) == ["chart", "check", "cite", "convert"]
 
 
 def test_help_and_version_are_where_they_are_looked_for() -> None:
