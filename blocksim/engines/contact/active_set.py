@@ -28,6 +28,8 @@ NO_YIELD = 1e-13
 UNSURE = 0.1
 SLOW, DRIFT = 0.1, 0.9
 """What is left of a yield after a system, from which it is slow, and without end."""
+RIGID = 1e-7
+"""Yield without end, over the accelerations, that is round-off: faces that do not quite fit."""
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
 MORE, FEW = 4, 16
@@ -71,7 +73,7 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
         found = Answer(x=x, forces=forces, contacts=contacts, residual=residual)
         best = found if residual < best.residual else best
         largest = float(np.abs(x).max())
-        if changes and best.residual <= RELATIVE * largest:
+        if changes and best.residual <= RELATIVE * float(np.abs(best.x).max()):
             best = replace(best, is_settled=True)
             break
         if changes > allowed:
@@ -94,6 +96,9 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
             best = replace(found, is_settled=True)
             break
         ratio, last = yields / last, yields
+        if ratio > DRIFT and yields <= RIGID * largest:
+            best = replace(found, is_settled=True)
+            break
         if ratio > SLOW:
             # It goes on to change, less each time, or until a contact gives way.
             ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
