@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from importlib import import_module
+import importlib as _importlib
 
 from blocksim.common import interrupts
 from blocksim.common.version import __version__
@@ -76,7 +76,7 @@ def __getattr__(name: str) -> object:
     """Load a public name."""
     for place, names in _PLACES.items():
         if name in names:
-            found = getattr(import_module(f"blocksim.{place}"), name)
+            found = getattr(_importlib.import_module(f"blocksim.{place}"), name)
             globals()[name] = found
             return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -223,4 +223,6 @@ def test_all_that_is_public_is_there() -> None:
         assert getattr(blocksim, name) is not None
     rooms = {path.stem for path in Path(blocksim.__file__).parent.iterdir()}
     public = {name for name in vars(blocksim) if not name.startswith("_")} - rooms
-    assert public - {"annotations", "interrupts"} == set(blocksim.__all__) - {"__version__"}
+    assert public - {"annotations", "interrupts", "TYPE_CHECKING"} == set(blocksim.__all__) - {
+        "__version__"
+    }

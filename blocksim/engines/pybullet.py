@@ -19,7 +19,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, Array, Assembly, displacement
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.boxes import TURNS, Frame, unwound
@@ -84,11 +84,16 @@ def rule(assembly: Assembly) -> Settings:
     """
     pairs = _pairs(assembly)
     hold_sweeps = max(LEAST_HOLD, round(HOLD_SWEEPS * pairs))
+    # Rows of blocks get there by themselves, and in springs a tall stack rocks.
+    joints = assembly.joint_arrays
+    inner = (joints.before != SUPPORT) & (joints.after != SUPPORT)
+    is_row = bool((np.abs(joints.before - joints.after)[inner] <= 1).all())
+    helped = assembly.shortest >= SHORT and not is_row
     return Settings(
         step=STEP,
         sweeps=round(SWEEPS * pairs),
         hold_sweeps=hold_sweeps,
-        unaided=round(UNAIDED * hold_sweeps) if assembly.shortest >= SHORT else None,
+        unaided=round(UNAIDED * hold_sweeps) if helped else None,
         still=STILL,
         noise=NOISE,
         penetration=DEEPEST,
