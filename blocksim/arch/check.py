@@ -15,6 +15,7 @@ from blocksim.arch.observed import observed_mode
 from blocksim.ask.carried import Carried
 from blocksim.ask.check import Check
 from blocksim.ask.methods import choose, chosen_words, reduces
+from blocksim.ask.rest import require_rest, rest_of
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.common.checks import require_friction
 from blocksim.common.progress import Progress, silent
@@ -83,6 +84,7 @@ def check(
     lean: float = 0.0,
     settings: Overrides = BY_RULE,
     reduce: bool | None = None,
+    must_rest: bool = False,
     progress: Progress = silent,
 ) -> ArchCheck:
     """Tell whether an arch stands under its own weight.
@@ -102,6 +104,8 @@ def check(
     reduce : bool, optional
         Simulate no more blocks than it takes (`blocksim.arch.reduction`); by default where
         the engine says so (`Engine.reduces`) and gravity lies in the plane.
+    must_rest : bool
+        As of `blocksim.ask.check.check`: of the voussoirs as built, whatever the method.
     progress : Progress, optional
 
     Returns
@@ -120,6 +124,8 @@ def check(
     # Static methods need no blocks, which take longer to make than an answer.
     leaning = arch.problem(mu, lean) if lean else None
     rung = choose(method, problem=leaning, settings=settings, reduce=reduce)
+    if must_rest:
+        require_rest(arch.problem(mu, lean))
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
     mode = later = seen = None
@@ -151,6 +157,12 @@ def check(
         verdict, reason, joints = seen.verdict, seen.reason, seen.joints
         mode = observed_mode(joints, arch)
         later = observed_mode(seen.joints_in_motion, arch)
+    rest = rest_of(
+        arch.problem(mu) if must_rest else None,
+        exists=None if lean else limit.stands(arch, mu),
+        moved=seen is not None and seen.moved,
+        progress=progress,
+    )
     return ArchCheck(
         method=rung.name,
         verdict=verdict,
@@ -164,6 +176,8 @@ def check(
         mode_in_motion=later,
         mode_limit=built.mode,
         mode_theory=continuous.mode,
+        rest=rest,
+        asked_rest=must_rest,
         joints=joints,
         simulated=seen and seen.simulated,
         state_hash=seen and seen.state_hash,

@@ -12,6 +12,7 @@ import numpy as np
 
 from blocksim.ask.carried import Carried, carried_by
 from blocksim.ask.methods import choose, chosen_words
+from blocksim.ask.rest import Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
@@ -43,6 +44,12 @@ class Check(Shown):
     joints : tuple of ObservedJoint
         What each joint does as a collapse starts; closed where the blocks stand, and where
         the method does not tell.
+    rest : {"must", "can", "cannot"} or None
+        What friction allows: `must` where no motion can begin, `can` where forces of
+        equilibrium exist and a motion was found as well, `cannot` where there are no such
+        forces; None where it was not found out whether it must rest.
+    asked_rest : bool
+        Whether that was to be found out.
     simulated : float or None
         Time simulated [sqrt(size/g)]; None for static methods.
     state_hash : str or None
@@ -58,6 +65,8 @@ class Check(Shown):
     verdict: Verdict
     reason: str
     joints: tuple[ObservedJoint, ...]
+    rest: Rest | None
+    asked_rest: bool
     simulated: float | None
     state_hash: str | None
     blocks: int | None
@@ -76,10 +85,6 @@ class ProblemCheck(Check):
         Largest factor on the live loads at which forces of equilibrium exist, by limit
         analysis; inf where no live load is too much. None without live loads, or where
         there is no equilibrium at any factor.
-    rest : str or None
-        What friction allows: `can` where forces of equilibrium exist and a motion was
-        found as well, `cannot` where there are no such forces; None where it was not found
-        out whether it must rest.
     forces : (joints, 2, 2) float or None
         Forces of equilibrium at the ends of the joints, along their normals and tangents,
         in units of the mean block's weight; None where there are none.
@@ -93,7 +98,6 @@ class ProblemCheck(Check):
 
     problem: Problem
     load_factor: float | None
-    rest: str | None
     forces: Array | None
     mechanism: Array | None
     shaken: Shaken | None = None
@@ -117,6 +121,7 @@ def check(
     *,
     method: str = "auto",
     settings: Overrides = BY_RULE,
+    must_rest: bool = False,
     progress: Progress = silent,
 ) -> ProblemCheck:
     """Tell whether blocks stand under their loads.
@@ -128,6 +133,9 @@ def check(
         `auto`, `limit`, or the name of an engine.
     settings : mapping of str to float
         Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+    must_rest : bool
+        Find out as well whether it must rest, or friction may let it move
+        (`blocksim.limit.starting`): a second with 8 joints, ten with 28.
     progress : Progress, optional
 
     Returns
@@ -137,12 +145,15 @@ def check(
     Raises
     ------
     InputError
-        If the method cannot do what the problem asks for.
+        If the method cannot do what the problem asks for, or it cannot be found out whether
+        it must rest (`blocksim.ask.rest`).
     MissingPart
         If the engine's library is not installed.
     """
     started = time.perf_counter()
     chosen = choose(method, problem=problem, settings=settings)
+    if must_rest:
+        require_rest(problem)
     if problem.shaking is not None:
         # What moves blocks is loaded where it is asked for.
         from blocksim.evidence.shaken import shake
@@ -154,7 +165,6 @@ def check(
     factor = collapse(problem).load_factor if planar and problem.live else None
     joints = closed_joints(problem.assembly.joint_angles)
     mechanism = seen = None
-    rest = None if static is None or static.exists else "cannot"
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
         reason = _static_words(static, problem)
@@ -164,8 +174,11 @@ def check(
 
         seen = observe(problem, chosen.name, settings=settings, progress=progress)
         verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
-        if seen.onset.may_rest or seen.onset.may_slide:
-            rest = "can"
+    exists = None if static is None else static.exists
+    moved = seen is not None and seen.moved
+    rest = rest_of(
+        problem if must_rest else None, exists=exists, moved=moved, progress=progress
+    )
     if mechanism is not None:
         mechanism = _unit(mechanism, problem)
         if planar:
@@ -177,6 +190,7 @@ def check(
         problem=problem,
         load_factor=factor,
         rest=rest,
+        asked_rest=must_rest,
         joints=joints,
         forces=None if static is None else static.forces,
         mechanism=mechanism,
@@ -199,6 +213,7 @@ def _of_shaken(
         problem=problem,
         load_factor=None,
         rest=None,
+        asked_rest=False,
         joints=closed_joints(problem.assembly.joint_angles),
         forces=None,
         mechanism=None,

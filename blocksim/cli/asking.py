@@ -19,6 +19,7 @@ from blocksim.cli.options import (
     Json,
     Loading,
     MethodOption,
+    MustRest,
     Over,
     Reduce,
     Scene,
@@ -48,6 +49,7 @@ def check(
     settings: Set = None,
     joint: AtJoint = None,
     reduce: Reduce = None,
+    must_rest: MustRest = False,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -56,7 +58,15 @@ def check(
         from blocksim.cli.structures import check_problem
 
         check_problem(
-            scene, given, loading, method, settings, joint, reduce=reduce, as_json=as_json
+            scene,
+            given,
+            loading,
+            method,
+            settings,
+            joint,
+            reduce=reduce,
+            must_rest=must_rest,
+            as_json=as_json,
         )
     asked = question(scene, given, thick=True)
     arch = arch_of(asked, given.ratio)
@@ -69,6 +79,7 @@ def check(
             lean=asked.lean,
             settings=settings_of(settings),
             reduce=reduce,
+            must_rest=must_rest,
             progress=report,
         )
     answer = replace(answer, reason=answer.reason + thickness_words(asked, given.ratio))

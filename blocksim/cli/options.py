@@ -52,6 +52,14 @@ Reduce = Annotated[
         "pymunk and pybullet do.",
     ),
 ]
+MustRest = Annotated[
+    bool,
+    Option(
+        name="--must-rest",
+        help="Find out as well whether it must rest, or friction may let it move: "
+        "a second with 8 joints, ten with 28.",
+    ),
+]
 AtJoint = Annotated[
     str | None,
     Option(
@@ -303,6 +311,7 @@ OPTIONS = {
     "duration",
     "eta",
     "mu",
+    "must_rest",
     "voussoirs",
     "weight",
     "depth",

@@ -190,6 +190,7 @@ def check_problem(
     joint: str | None,
     *,
     reduce: bool | None,
+    must_rest: bool,
     as_json: bool,
 ) -> None:
     """Answer `check` of a structure, or of an arch that bears loads, and leave.
@@ -199,12 +200,12 @@ def check_problem(
     if scene is not None and is_structure(scene):
         require(not reduce, "--reduce", reduce, "left out: it is for arches")
         problem = structure(scene, given, loading)
-        check_structure(problem, method, settings, joint, as_json=as_json)
+        check_structure(problem, method, settings, joint, must_rest=must_rest, as_json=as_json)
     if loading.given:
         asked = question(scene, given, thick=True)
         require(not reduce, "--reduce", reduce, "left out with a load or a tilt")
         problem = problem_of_arch(arch_of(asked, given.ratio), asked, loading)
-        check_structure(problem, method, settings, joint, as_json=as_json)
+        check_structure(problem, method, settings, joint, must_rest=must_rest, as_json=as_json)
 
 
 def check_structure(
@@ -213,12 +214,19 @@ def check_structure(
     settings: list[str] | None,
     joint: str | None = None,
     *,
+    must_rest: bool = False,
     as_json: bool,
 ) -> None:
     """Answer `check` and leave with its exit code."""
     at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
     with named_options(), progress() as report:
-        answer = check(problem, method=method, settings=settings_of(settings), progress=report)
+        answer = check(
+            problem,
+            method=method,
+            settings=settings_of(settings),
+            must_rest=must_rest,
+            progress=report,
+        )
         told = answer.carried
         if at is not None and told is not None:
             report(1.0, "thrust")

@@ -85,6 +85,11 @@ class Observation:
     splits: int
 
     @property
+    def moved(self) -> bool:
+        """Whether a motion was seen where forces of equilibrium exist."""
+        return self.onset.may_rest or self.onset.may_slide
+
+    @property
     def simulated(self) -> float:
         """Time simulated [sqrt(size/g)]."""
         return float(self.motion.recording.times[-1]) if self.motion else 0.0

@@ -1,4 +1,4 @@
-"""Linear programmes, solved by HiGHS; the only place that knows it."""
+"""Linear programmes, also with whole unknowns, by HiGHS; the only place that knows it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.later import Library
@@ -46,6 +47,25 @@ class Optimum:
     def exists(self) -> bool:
         """Whether there is an optimum."""
         return bool(self.values.size)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Choice:
+    """What came of a programme with unknowns that are 0 or 1.
+
+    Parameters
+    ----------
+    values : (unknowns,) float
+        The best that was found; empty where nothing was.
+    least : float
+        What the cost cannot be below.
+    is_empty : bool
+        Whether nothing satisfies the rows.
+    """
+
+    values: Array
+    least: float
+    is_empty: bool
 
 
 NONE = Optimum(values=np.zeros(0), prices=np.zeros(0), unbounded=False)
@@ -112,6 +132,54 @@ class LinearProgramme:
         status = self._highs.getModelStatus()
         self._basis = None
         return UNBOUNDED if status == highspy.HighsModelStatus.kUnbounded else NONE
+
+
+def choose(
+    cost: Array,
+    matrix: Matrix,
+    rows: Ends,
+    bounds: Ends,
+    *,
+    whole: NDArray[np.bool_],
+    gap: float,
+    seconds: float,
+) -> Choice:
+    """Find the least cost where some of the unknowns have to be whole, by branch and bound.
+
+    Parameters
+    ----------
+    cost, matrix, rows, bounds
+        As of `LinearProgramme.solve`.
+    whole : (unknowns,) bool
+        Which unknowns are whole.
+    gap : float
+        By how much the cost found may be above the least.
+    seconds : float
+        Time after which it ends with the best it has.
+    """
+    model = _model(cost, sparse.csc_array(matrix), rows, bounds)
+    kinds = highspy.HighsVarType
+    model.integrality_ = [kinds.kInteger if each else kinds.kContinuous for each in whole]
+    highs: Any = highspy.Highs()
+    for name, value in (
+        ("output_flag", False),
+        ("parallel", "off"),
+        ("threads", 1),
+        ("mip_rel_gap", 0.0),
+        ("mip_abs_gap", gap),
+        ("mip_feasibility_tolerance", FINEST),
+        ("primal_feasibility_tolerance", FINEST),
+        ("time_limit", seconds),
+    ):
+        highs.setOptionValue(name, value)
+    highs.passModel(model)
+    highs.run()
+    solution, status = highs.getSolution(), highs.getModelStatus()
+    return Choice(
+        values=np.array(solution.col_value if solution.value_valid else []),
+        least=float(highs.getInfo().mip_dual_bound),
+        is_empty=status == highspy.HighsModelStatus.kInfeasible,
+    )
 
 
 def _model(cost: Array, columns: sparse.csc_array, rows: Ends, bounds: Ends) -> Any:

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.version import __version__
 from blocksim.report.carried import carried_lines, carried_record
@@ -44,6 +45,7 @@ def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str,
         "eta_theory": answer.eta_theory,
         "factor_of_safety": carried and carried.geometrical_factor,
         **carried_record(carried, joint_names_of(arch)),
+        "rest": answer.rest,
         "mode": answer.mode,
         "mode_in_motion": answer.mode_in_motion,
         "mode_limit": answer.mode_limit,
@@ -128,6 +130,8 @@ def check_lines(
             of = "of the continuous arch, of any thickness"
     else:
         of = f"of the voussoirs as built, at eta {arch.eta:g}"
+    if rest := rest_words(answer.rest, asked=answer.asked_rest):
+        lines.append(f"  rest    {rest}")
     lines += _modes(answer, of)
     active = [joint for joint in answer.joints if joint.state is not JointState.CLOSED]
     if active:

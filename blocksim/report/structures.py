@@ -10,6 +10,7 @@ from blocksim.arch.circular import arch_of
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.carried import Carried
 from blocksim.ask.check import SOUGHT, ProblemCheck
+from blocksim.ask.rest import rest_words
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
@@ -97,8 +98,8 @@ def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[st
     lines += carried_lines(carried, joint_names(problem.assembly))
     if carried is None and len(problem.assembly.joints) > SOUGHT:
         lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
-    if answer.rest == "can":
-        lines.append("  rest    it can rest, and friction may let it move as well")
+    if rest := rest_words(answer.rest, asked=answer.asked_rest):
+        lines.append(f"  rest    {rest}")
     named = joint_names(problem.assembly)
     words = _state_words(problem)
     active = [

@@ -1,0 +1,229 @@
+"""Whether Coulomb's law lets blocks at rest start to move, although they can rest.
+
+For accelerations a and contact forces p of blocks at rest the law is a complementarity problem,
+
+    M a = w + N^T p_n + T^T p_t,    0 <= p_n  _|_  N a >= 0,    |p_t| <= mu p_n,
+    p_t = -mu p_n sign(T a) where T a is not 0.
+
+It may have several solutions where blocks slide. Here the one with the largest power of the
+loads, w . a, is sought: what each contact does is chosen by branch and bound (a mixed-integer
+linear programme; J. Fortuny-Amat and B. McCarl, J. Oper. Res. Soc. 32, 1981, 783-792). The
+power of any motion is positive: w . a is a . M a and what friction takes away. So blocks must
+rest where the largest is 0. It also bounds the accelerations: as a . M a <= w . a, the norm of
+the motion, the root of a . M a, is at most that of the fall without contacts.
+
+Contact forces have no such bound, as blocks may be wedged; those above `LARGEST` are left out.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.problem import Problem
+from blocksim.common.checks import require
+from blocksim.common.later import Library
+from blocksim.limit.linear import choose
+
+if TYPE_CHECKING:
+    from scipy import sparse
+else:
+    sparse = Library("scipy.sparse")
+
+LARGEST = 3.0
+"""Largest contact force looked at, over the sum of all loads."""
+LEAST_POWER = 1e-7
+"""Power of the loads up to which nothing moves, over that of the fall without contacts."""
+SECONDS = 60.0
+WRONG = 1e-6
+"""Residual of a motion, over its largest rate, above which it is none."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Start:
+    """Whether blocks at rest may start to move.
+
+    Parameters
+    ----------
+    moves : bool or None
+        None where the time did not suffice to tell.
+    accelerations : (blocks, 3) float or None
+        x, y [g] and rotation [g/size] of the motion with the largest power; None without one.
+    forces : (joints, 2, 2) float or None
+        That act in it, as of `Equilibrium`; the friction of a joint is given to its ends in
+        the ratio of their pressures.
+    power : float
+        Of the loads in that motion, over that of the fall without contacts.
+    """
+
+    moves: bool | None
+    accelerations: Array | None = None
+    forces: Array | None = None
+    power: float = 0.0
+
+
+def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
+    """Tell whether blocks at rest may start to move, by Coulomb's law.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane, with bounded friction.
+    seconds : float
+        Time after which it gives up.
+
+    Returns
+    -------
+    Start
+
+    Raises
+    ------
+    InputError
+        If friction is unbounded: what the law says is a limit then, and no choice.
+    """
+    require(bool(np.isfinite(problem.friction).all()), "mu", math.inf, "finite to ask this")
+    law = _Law(problem)
+    found = choose(
+        law.cost,
+        law.matrix,
+        law.rows,
+        law.bounds,
+        whole=law.whole,
+        gap=LEAST_POWER / 2 * law.fall,
+        seconds=seconds,
+    )
+    power = float(-law.cost @ found.values) / law.fall if found.values.size else 0.0
+    if power > LEAST_POWER:
+        accelerations, forces, residual = law.motion(found.values)
+        if residual <= WRONG:
+            return Start(moves=True, accelerations=accelerations, forces=forces, power=power)
+        return Start(moves=None)
+    surely = found.values.size > 0 and -found.least / law.fall <= LEAST_POWER
+    return Start(moves=False if surely else None)
+
+
+def rates_of(problem: Problem) -> Array:
+    """Return what blocks' velocities are at joints, (joints, 3, 3 blocks).
+
+    Opening at both ends, and slip of the block after the joint. The ends of a straight joint
+    slip alike.
+    """
+    assembly, joints = problem.assembly, problem.assembly.joint_arrays
+    count = len(assembly.joints)
+    points = np.concatenate([joints.ends, joints.ends[:, :1]], axis=1)
+    ways = np.stack([joints.normal, joints.normal, joints.tangent], axis=1)
+    found = np.zeros((count, 3, len(assembly.blocks), PLANAR))
+    centres = assembly.centres / assembly.size
+    for sign, blocks in ((1.0, joints.after), (-1.0, joints.before)):
+        own = np.flatnonzero(blocks != SUPPORT)
+        arm = points[own] - centres[blocks[own], None]
+        turn = arm[..., 0] * ways[own, :, 1] - arm[..., 1] * ways[own, :, 0]
+        found[own, :, blocks[own], :2] += sign * ways[own]
+        found[own, :, blocks[own], 2] += sign * turn
+    return found.reshape(count, 3, -1)
+
+
+class _Law:
+    """Coulomb's law for blocks at rest as a mixed-integer linear programme.
+
+    Its unknowns are accelerations times the root of mass, pressures at both ends and friction
+    of each joint, and choices: which ends may press, and which joints may slip up or down.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        masses, pull = problem.assembly.masses.ravel(), problem.pull().ravel()
+        self._root, self._shape = np.sqrt(masses), problem.assembly.masses.shape
+        free = pull / self._root
+        self.fall = float(free @ free)
+        self._rates = rates_of(problem)
+        self._mu, joints = problem.friction, len(problem.assembly.joints)
+        self._blocks, self._joints = len(free), joints
+        self._first = np.cumsum([0, len(free), 2 * joints, joints, 2 * joints, joints, joints])
+        rates = self._rates / self._root
+        fastest = np.sqrt((rates**2).sum(axis=2) * self.fall)
+        largest = LARGEST * float(np.abs(problem.pull()[:, :2]).sum())
+        self._parts: list[tuple[sparse.csr_array, Array, Array]] = []
+        self._newton(rates, free)
+        self._ends(rates[:, :2].reshape(2 * joints, -1), fastest[:, :2].ravel(), largest)
+        self._slips(rates[:, 2], fastest[:, 2], largest)
+        self.matrix = sparse.vstack([each for each, _, _ in self._parts]).tocsc()
+        self.rows = (
+            np.concatenate([low for _, low, _ in self._parts]),
+            np.concatenate([high for _, _, high in self._parts]),
+        )
+        size = math.sqrt(self.fall)
+        rubs = 2 * self._mu * largest
+        ones, choices = np.ones(len(free)), np.ones(4 * joints)
+        pressed = np.full(2 * joints, largest)
+        self.bounds = (
+            np.concatenate([-size * ones, 0 * pressed, -rubs, 0 * choices]),
+            np.concatenate([size * ones, pressed, rubs, choices]),
+        )
+        self.whole: NDArray[np.bool_] = np.arange(self._first[-1]) >= self._first[3]
+        self.cost = np.zeros(self._first[-1])
+        self.cost[: len(free)] = -free
+
+    def motion(self, values: Array) -> tuple[Array, Array, float]:
+        """Return accelerations, forces, and by how much they are no solution."""
+        x, pressure, friction, _ = np.split(values, self._first[1:4])
+        pressure = np.maximum(pressure.reshape(-1, 2), 0.0)
+        rates = self._rates @ (x / self._root)
+        opening, slip = rates[:, :2], rates[:, 2]
+        bound = self._mu * pressure.sum(axis=1)
+        against = np.where(np.abs(slip) > WRONG, bound + np.sign(slip) * friction, 0.0)
+        wrong = [
+            np.minimum(pressure, np.abs(opening)),
+            -opening,
+            np.minimum(np.abs(against), np.abs(slip)),
+            np.abs(friction) - bound,
+        ]
+        residual = max(float(each.max(initial=0.0)) for each in wrong)
+        total = pressure.sum(axis=1, keepdims=True)
+        share = np.divide(pressure, total, out=np.full_like(pressure, 0.5), where=total > 0)
+        forces = np.stack([pressure, share * friction[:, None]], axis=2)
+        return (x / self._root).reshape(self._shape), forces, residual / np.abs(rates).max()
+
+    def _add(
+        self, parts: list[tuple[int, Array | sparse.csr_array]], low: Array, high: Array
+    ) -> None:
+        """Add rows: what stands before the unknowns of some kinds, and their bounds."""
+        row = [sparse.csr_array((len(low), width)) for width in np.diff(self._first)]
+        for kind, what in parts:
+            given = sparse.diags_array(what) if isinstance(what, np.ndarray) else what
+            row[kind] = sparse.csr_array(given)
+        self._parts.append((sparse.hstack(row).tocsr(), low, high))
+
+    def _newton(self, rates: Array, free: Array) -> None:
+        normal = rates[:, :2].reshape(2 * self._joints, -1)
+        every = np.ones(len(free))
+        forces = [sparse.csr_array(-each.T) for each in (normal, rates[:, 2])]
+        self._add([(0, every), (1, forces[0]), (2, forces[1])], free, free)
+
+    def _ends(self, rates: Array, fastest: Array, largest: float) -> None:
+        """Each end presses or opens."""
+        ones, none = np.ones(len(rates)), np.full(len(rates), -np.inf)
+        along = sparse.csr_array(rates)
+        self._add([(0, along)], 0 * ones, -none)
+        self._add([(0, along), (3, fastest)], none, fastest)
+        self._add([(1, ones), (3, -largest * ones)], none, 0 * ones)
+
+    def _slips(self, rates: Array, fastest: Array, largest: float) -> None:
+        """Each joint slips up or down, with friction against it, or not."""
+        ones, none = np.ones(self._joints), np.full(self._joints, -np.inf)
+        along = sparse.csr_array(rates)
+        self._add([(0, along), (4, -fastest)], none, 0 * ones)
+        self._add([(0, along), (5, fastest)], 0 * ones, -none)
+        self._add([(4, ones), (5, ones)], none, ones)
+        # Steep cones are scaled, or pressures would fade beside friction.
+        scale = 1 / np.maximum(1.0, self._mu)
+        bound = sparse.csr_array(np.kron(np.diag(self._mu * scale), np.ones((1, 2))))
+        most = 4 * self._mu * largest * scale
+        self._add([(1, -bound), (2, scale)], none, 0 * ones)
+        self._add([(1, bound), (2, scale)], 0 * ones, -none)
+        self._add([(1, bound), (2, scale), (4, most)], none, most)
+        self._add([(1, -bound), (2, scale), (5, -most)], -most, -none)
