@@ -45,9 +45,9 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, object]]) -> None:
     ----------
     path : Path
     rows : sequence of mapping
-        At least one; all with the same keys.
+        At least one; all with the same keys. Rows that say what made them keep that.
     """
-    made = provenance()
+    made = {} if "code" in rows[0] else provenance()
     text = io.StringIO()
     table = csv.DictWriter(text, [*rows[0], *made], lineterminator="\n")
     table.writeheader()

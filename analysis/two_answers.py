@@ -1,0 +1,287 @@
+"""Up to which thickness an arch that can rest may move as well, as friction does not dilate.
+
+Question: above the least thickness at which an arch can rest, is there a band in which
+Coulomb's law lets it also start to move, and where does that band end? The end is found twice:
+
+- `limit.starting` chooses what every contact does by branch and bound, and so proves that there
+  is no motion of any kind where it finds none;
+- `direct`'s solver follows a motion from thickness to thickness, begun with that of the last,
+  until it is no solution any more.
+
+Then arches are pushed. Just below the end of the band along the motion, with a speed of 1e-3:
+they go on. Just above it in random directions, with that speed: they come to rest.
+
+Expected: both ends agree to 0.1 %. Without sliding in the mode there is no band. It takes an
+odd number of voussoirs, whose keystone slides, and friction of about cot(alpha/n).
+
+    python -m analysis.two_answers OUT [--pushes N] [--quick]
+
+Rows are kept in OUT/two_answers.jsonl as they come, and written as two_answers.csv and
+two_answers_pushed.csv; the figure is two_answers.png.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from analysis.command import run
+from analysis.rows import write_rows
+from analysis.saved_answers import Row, answers
+from blocksim.arch.circular import Arch, Weight
+from blocksim.arch.limit.statics import least_thickness
+from blocksim.blocks.assembly import SUPPORT, Array, displacement
+from blocksim.blocks.problem import Problem
+from blocksim.engines.contact import ContactProblem, Solution
+from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS
+from blocksim.engines.direct import ENGINE
+from blocksim.limit.starting import LEAST_POWER, Start, may_start, rates_of
+
+ABOVE = 1.0005
+"""Thickness over the least at which a band is looked for."""
+STEP, FINE = 1.02, 1e-5
+"""Ratio of two thicknesses at which a motion is followed, and how near its end is found."""
+WIDTH = 1e-3
+"""How far above the end of a followed motion another is looked for."""
+THICKEST = 2.0
+NOTHING, SOLVED = 1e-9, 1e-9
+SPEED, FAR, LONG = 1e-3, 0.05, 30.0
+"""Speed of a push, way that counts as gone on, and time watched [sqrt(r/g)]."""
+BELOW, BEYOND = -1, -2
+ASIDE = 0.01
+"""How far from the end of the band arches are pushed."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """An arch of the map."""
+
+    voussoirs: int
+    weight: Weight
+    alpha_deg: float
+    mu: float
+
+    def problem(self, eta: float) -> Problem:
+        """Return the arch of a thickness."""
+        arch = Arch(
+            half_angle=math.radians(self.alpha_deg),
+            eta=eta,
+            voussoirs=self.voussoirs,
+            weight=self.weight,
+        )
+        return arch.problem(self.mu)
+
+
+@dataclass(frozen=True)
+class Push:
+    """An arch of the map that is pushed: along its motion (`BELOW`, `BEYOND`) or at random."""
+
+    case: Case
+    edge: float
+    index: int
+
+
+def cases() -> list[Case]:
+    """Return the arches asked about: where the keystone slides, and elsewhere."""
+    found: list[Case] = []
+    for weight in ("centreline", "sector"):
+        found += [
+            Case(7, weight, alpha, mu)
+            for alpha in (142.5, 145.0, 147.5, 150.0, 152.5, 155.0, 157.5)
+            for mu in (1.8, 2.2, 2.6, 3.0, 3.5, 4.0, 5.0)
+        ]
+        found += [
+            Case(15, weight, a, mu) for a in (147.0, 151.0, 155.0) for mu in (4.5, 5.5, 7.0)
+        ]
+        found += [Case(27, weight, 151.0, mu) for mu in (8.0, 10.0, 13.0)]
+        found += [
+            Case(n, weight, alpha, mu)
+            for n in (3, 5, 7, 8)
+            for alpha in (60.0, 90.0, 110.0, 125.0, 135.0)
+            for mu in (0.3, 0.5, 0.9, 1.4, 2.5)
+        ]
+    return [each for each in found if has_limit(each)]
+
+
+def has_limit(case: Case) -> bool:
+    """Tell whether a least thickness exists, and arches thicker than it."""
+    eta = limit_of(case)[0]
+    return 0 < eta < THICKEST / ABOVE
+
+
+def limit_of(case: Case) -> tuple[float, str]:
+    """Return the least thickness, 0 where there is none, and its mode."""
+    found = least_thickness(math.radians(case.alpha_deg), case.mu, case.voussoirs, case.weight)
+    return found.eta or 0.0, str(found.mode)
+
+
+def ask(case: Case) -> Row:
+    """Find the end of the band."""
+    least, mode = limit_of(case)
+    row: Row = {
+        "voussoirs": case.voussoirs,
+        "weight": case.weight,
+        "alpha_deg": case.alpha_deg,
+        "mu": case.mu,
+        "eta_limit": least,
+        "mode": mode,
+    }
+    below, above, followed = least, least * ABOVE, least
+    start = may_start(case.problem(above))
+    power = start.power
+    while start.moves:
+        below, followed = above, follow(case, above, start)
+        below = max(below, followed)
+        above = below * (1 + WIDTH)
+        if above >= THICKEST:
+            start = Start(moves=True)
+            break
+        start = may_start(case.problem(above))
+    known = start.moves is False
+    return {
+        **row,
+        "band": None if start.moves is None else below > least,
+        "eta_moves": below if below > least else None,
+        "eta_rests": above if known else None,
+        "eta_followed": followed if followed > least else None,
+        "power": power,
+    }
+
+
+def follow(case: Case, eta: float, start: Start) -> float:
+    """Follow a motion to the largest thickness at which `direct`'s solver still has it."""
+    solution = settled(case.problem(eta), begun(case.problem(eta), start))
+    if solution is None:
+        return eta
+    step = STEP
+    while step - 1 > FINE:
+        further = eta * step
+        after = settled(case.problem(further), solution) if further < THICKEST else None
+        if after is None:
+            step = 1 + (step - 1) / 2
+        else:
+            eta, solution = further, after
+    return eta
+
+
+def begun(problem: Problem, start: Start) -> Solution:
+    """Return a motion as the contact solver has it."""
+    if start.accelerations is None or start.forces is None:
+        raise ValueError("nothing moves")
+    rates = rates_of(problem) @ start.accelerations.ravel()
+    pressure, friction = start.forces[..., 0], start.forces[..., 1]
+    slips = np.abs(rates[:, 2:]) > NOTHING
+    contacts = np.full(pressure.shape, STICKS, dtype=np.int8)
+    contacts[slips & (friction > 0)] = SLIDES_UP
+    contacts[slips & (friction <= 0)] = SLIDES_DOWN
+    contacts[pressure <= NOTHING] = OPEN
+    return Solution(
+        acceleration=start.accelerations,
+        forces=np.hstack([pressure, friction]),
+        contacts=contacts,
+        residual=0.0,
+        iterations=0,
+        paths=0,
+    )
+
+
+def settled(problem: Problem, start: Solution) -> Solution | None:
+    """Solve the contacts at rest beginning with a motion; None where that ends in rest."""
+    joints, masses = problem.assembly.joint_arrays, problem.assembly.masses
+    rates = rates_of(problem).reshape(len(joints.before), 3, len(masses), 3)
+    rows = np.zeros((len(joints.before), 4, 6))
+    for side, blocks in enumerate((joints.before, joints.after)):
+        own = np.flatnonzero(blocks != SUPPORT)
+        rows[own, :, 3 * side : 3 * side + 3] = rates[own, :, blocks[own]][:, [0, 1, 2, 2]]
+    contact = ContactProblem(joints.before, joints.after, masses, problem.friction)
+    free = problem.pull() / masses
+    found = contact.solve(rows, np.zeros(rows.shape[:2]), free, start)
+    power = float((problem.pull() * found.acceleration).sum())
+    moves = power > LEAST_POWER * float((problem.pull() * free).sum())
+    return found if found.residual <= SOLVED and moves else None
+
+
+def pushed(push: Push) -> Row:
+    """Push an arch along its motion, or at random, on one side of the end of the band."""
+    case, along = push.case, push.index < 0
+    below = push.edge * (1 - ASIDE)
+    eta = below if push.index == BELOW else push.edge * (1 + ASIDE)
+    problem = case.problem(eta)
+    world = ENGINE.build(problem, ENGINE.rule(problem.assembly))
+    built = world.poses()
+    way: Array | None = may_start(case.problem(below)).accelerations if along else None
+    if way is None:
+        way = np.random.default_rng((push.index, case.voussoirs)).normal(size=built.shape)
+    world.push(way * SPEED / displacement(way, problem.assembly))
+    far = 0.0
+    steps = round(LONG / ENGINE.rule(problem.assembly).step)
+    for _ in range(steps // 100):
+        world.advance(100)
+        far = float(displacement(world.poses() - built, problem.assembly))
+        still = float(displacement(world.velocities, problem.assembly)) < NOTHING
+        if far > FAR or still:
+            break
+    return {
+        "voussoirs": case.voussoirs,
+        "weight": case.weight,
+        "alpha_deg": case.alpha_deg,
+        "mu": case.mu,
+        "eta": eta,
+        "below": push.index == BELOW,
+        "along": along,
+        "index": push.index,
+        "way": far,
+        "goes_on": far > FAR,
+        "residual": world.quality().residual,
+    }
+
+
+def main(out: Path, *, pushes: int = 1000, processes: int = 2, quick: bool = False) -> str:
+    """Draw the map of the band, and push arches on both sides of its end."""
+    asked = cases()
+    if quick:
+        asked = [Case(7, "centreline", 155.0, 3.0), Case(5, "centreline", 90.0, 0.5)]
+    rows = answers(out / "two_answers.jsonl", asked, ask, processes)
+    write_rows(out / "two_answers.csv", rows)
+    ends = [
+        (case, float(row["eta_followed"]))
+        for case, row in zip(asked, rows, strict=True)
+        if row["eta_followed"] and row["eta_rests"]
+    ]
+    asked_pushes = [Push(*end, side) for end in ends for side in (BELOW, BEYOND)]
+    asked_pushes += [Push(*ends[index % len(ends)], index) for index in range(pushes)]
+    kept = out / "two_answers_pushed.jsonl"
+    run_on = answers(kept, asked_pushes, pushed, processes)
+    write_rows(out / "two_answers_pushed.csv", run_on)
+    return summary(rows, run_on)
+
+
+def summary(rows: list[Row], run_on: list[Row]) -> str:
+    """Say in words what came out."""
+    band = [row for row in rows if row["band"]]
+    apart = [
+        float(row["eta_rests"]) / float(row["eta_followed"]) - 1
+        for row in band
+        if row["eta_rests"]
+    ]
+    along = [row["goes_on"] for row in run_on if row["below"]]
+    beyond = [row["goes_on"] for row in run_on if row["along"] and not row["below"]]
+    aside = [row["goes_on"] for row in run_on if not row["along"]]
+    widest = max((float(r["eta_moves"]) / float(r["eta_limit"]) - 1 for r in band), default=0.0)
+    return "\n".join(
+        [
+            f"{len(rows)} arches, {len(band)} with a band, the widest of {widest:.1%}",
+            f"unknown: {sum(row['band'] is None for row in rows)}",
+            f"both ends within {max(apart, default=0.0):.3%} at {len(apart)} arches",
+            f"pushed along the motion below: {sum(along)} of {len(along)} go on",
+            f"pushed along it above: {sum(beyond)} of {len(beyond)} go on",
+            f"pushed at random above: {sum(aside)} of {len(aside)} go on",
+        ]
+    )
+
+
+if __name__ == "__main__":
+    run(main)
