@@ -1,0 +1,152 @@
+"""Whether friction lets blocks that can rest begin to move."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from running import inside as blocksim
+
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit.statics import least_thickness
+from blocksim.ask.check import check
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.structure import structure_of
+from blocksim.common.errors import InputError
+from blocksim.limit import equilibrium
+from blocksim.limit.starting import Start, may_start, rates_of
+
+HALF_ANGLE = math.radians(155)
+
+
+def between_walls(lean: float, mu: float) -> Problem:
+    """A block between two walls that lean apart towards its top, by `lean` rad each."""
+    top, bottom = 0.5 + 0.5 * math.tan(lean), 0.5 - 0.5 * math.tan(lean)
+    corners = [[-bottom, -0.5], [bottom, -0.5], [top, 0.5], [-top, 0.5]]
+    out = 3.0
+    right = [[bottom, -0.5], [out, -0.5], [out, 0.5], [top, 0.5]]
+    left = [[-x, y] for x, y in reversed(right)]
+    return structure_of(
+        {
+            "friction": mu,
+            "blocks": [
+                {"id": "block", "vertices": corners},
+                {"id": "left", "vertices": left, "fixed": True},
+                {"id": "right", "vertices": right, "fixed": True},
+            ],
+        }
+    )
+
+
+def arch(mu: float, times: float) -> Problem:
+    """A wide arch of seven voussoirs, of so many times its least thickness."""
+    eta = least_thickness(HALF_ANGLE, mu, 7).eta
+    assert eta is not None
+    return Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=7).problem(mu)
+
+
+def wrong(problem: Problem, start: Start) -> float:
+    """By how much a motion breaks Newton's law or Coulomb's, joint by joint [g]."""
+    assert start.accelerations is not None
+    assert start.forces is not None
+    rates = rates_of(problem) @ start.accelerations.ravel()
+    pulls = np.einsum("je,jen->n", start.forces[..., 0], rates_of(problem)[:, :2]) + np.einsum(
+        "j,jn->n", start.forces[..., 1].sum(axis=1), rates_of(problem)[:, 2]
+    )
+    inertia = problem.assembly.masses.ravel() * start.accelerations.ravel()
+    worst = float(np.abs(inertia - problem.pull().ravel() - pulls).max())
+    for joint, mu in enumerate(problem.friction):
+        pressure, friction = start.forces[joint].sum(axis=0)
+        opening, slip = rates[joint, :2], rates[joint, 2]
+        for end in range(2):
+            press = start.forces[joint, end, 0]
+            worst = max(worst, -press, -opening[end], min(abs(press), abs(opening[end])))
+        beyond = abs(friction) - mu * pressure
+        against = mu * pressure + math.copysign(1, slip) * friction
+        worst = max(worst, beyond, min(abs(slip), abs(against)))
+    return worst
+
+
+@pytest.mark.parametrize("mu", [0.2, 0.6])
+def test_a_block_that_hangs_by_friction_may_fall(mu: float) -> None:
+    # Walls that lean together upwards carry it by squeezing from the friction angle on; as
+    # nothing need squeeze it, it may also fall freely.
+    angle = math.atan(mu)
+    hangs = may_start(between_walls(-0.9 * angle, mu))
+    assert hangs.moves
+    assert hangs.accelerations == pytest.approx(np.array([[0.0, -1.0, 0.0]]), abs=1e-6)
+    assert hangs.power == pytest.approx(1.0, abs=1e-6)
+    assert equilibrium(between_walls(-0.9 * angle, mu)).exists
+    assert not equilibrium(between_walls(-1.1 * angle, mu)).exists
+
+
+@pytest.mark.parametrize("mu", [0.2, 0.6])
+def test_a_block_in_a_wedge_must_rest(mu: float) -> None:
+    assert may_start(between_walls(0.3, mu)).moves is False
+
+
+def test_a_wide_arch_of_seven_may_move_up_to_a_third_above_its_least_thickness() -> None:
+    # The ends of the band by another method are in analysis/two_answers.py.
+    within, above = arch(3.0, 1.38), arch(3.0, 1.39)
+    assert equilibrium(within).exists
+    start = may_start(within)
+    assert start.moves
+    assert wrong(within, start) < 1e-6
+    assert may_start(above).moves is False
+
+
+def test_its_motion_is_none_with_other_friction() -> None:
+    problem = arch(3.0, 1.05)
+    start = may_start(problem)
+    assert wrong(problem, start) < 1e-6
+    assert wrong(arch(2.9, 1.05), start) > 1e-4
+
+
+def test_of_another_size_it_is_the_same() -> None:
+    powers = [
+        may_start(
+            Arch(eta=1.286, radius=radius, half_angle=HALF_ANGLE, voussoirs=7).problem(3.0)
+        ).power
+        for radius in (1.0, 250.0)
+    ]
+    assert powers[1] == pytest.approx(powers[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(("alpha", "mu"), [(90, 0.35), (90, 0.6), (115, 0.7), (140, 1.6)])
+def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
+    half_angle = math.radians(alpha)
+    eta = least_thickness(half_angle, mu, 7).eta
+    assert eta is not None
+    problem = Arch(half_angle=half_angle, eta=1.001 * eta, voussoirs=7).problem(mu)
+    assert may_start(problem).moves is False
+
+
+def test_below_the_least_thickness_it_moves() -> None:
+    problem = arch(3.0, 0.98)
+    start = may_start(problem)
+    assert start.moves
+    assert wrong(problem, start) < 1e-6
+
+
+def test_check_says_which_of_the_three() -> None:
+    said = [
+        check(arch(3.0, times), method="limit", must_rest=True).rest
+        for times in (0.98, 1.05, 1.5)
+    ]
+    assert said == ["cannot", "can", "must"]
+    assert check(arch(3.0, 1.5), method="limit").rest is None
+
+
+def test_unbounded_friction_is_refused() -> None:
+    with pytest.raises(InputError, match="unbounded"):
+        check(arch(3.0, 1.5).with_friction(math.inf), method="limit", must_rest=True)
+
+
+def test_the_command_says_it() -> None:
+    options = ("check", "--alpha", "155", "--mu", "3", "--voussoirs", "7", "--method", "limit")
+    words = blocksim(*options, "--ratio", "1.05", "--must-rest").stdout
+    assert "  rest    it can rest, and friction may let it move as well\n" in words
+    found = json.loads(blocksim(*options, "--ratio", "1.5", "--must-rest", "--json").stdout)
+    assert found["rest"] == "must"
