@@ -126,9 +126,12 @@ def _sliding(panels: list[Axes]) -> None:
                        (end, marks["B"].mu), xytext=(-140, 4),
                        textcoords="offset points")  # fmt: skip
     point = marks["T"]
-    for axes, value in zip(panels, (point.beta_s, point.mu, point.thrust), strict=True):
+    # The letter is above the curve: right of a point where it falls, left where it rises.
+    for axes, value, aside in zip(
+        panels, (point.beta_s, point.mu, point.thrust), (5, -13, 5), strict=True
+    ):
         axes.plot(point.half_angle, value, "o", mfc="white", mec=INK, ms=5, zorder=4)
-        axes.annotate("T", (point.half_angle, value), xytext=(-13, 5), fontweight="bold",
+        axes.annotate("T", (point.half_angle, value), xytext=(aside, 5), fontweight="bold",
                       textcoords="offset points")  # fmt: skip
     panels[1].set_ylim(0, MOST_FRICTION)
     panels[2].legend(frameon=False)
