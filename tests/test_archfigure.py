@@ -30,6 +30,18 @@ def test_four_modes_at_the_triple_point() -> None:
         np.testing.assert_allclose(found.motions, mirrored, atol=1e-9)
 
 
+def test_a_joint_that_turns_and_slides_is_one_joint() -> None:
+    """Fig. 21 (low): beta_r is beta_s but for round-off, and nothing is between them."""
+    alpha, mu = 2.603266515104794, 1.832508693777595
+    exact = least_thickness(alpha, mu)
+    for beta_s in (exact.beta_s, exact.beta_s + 1e-12):
+        found = collapse_of_mode(
+            Mode.RRS, alpha, exact.eta, mu, beta_r=exact.beta_r, beta_s=beta_s
+        )
+        assert len(found.angles) == 4
+        assert len(found.motions) == 3
+
+
 def test_mode_that_is_not_possible() -> None:
     """A springing steeper than the friction angle is pressed together, not pushed out."""
     with pytest.raises(ValueError, match="no mechanism srr"):
@@ -82,7 +94,7 @@ def test_legend_names_what_is_there_only() -> None:
     falls = arch_figure([picture_of_theory(critical, Mode.SRR, slides, 0.6)])
     assert legend(falls) == {
         "support", "line of thrust, the only one left", "line of friction", "mechanism",
-        "hinge", "sliding joint",
+        "hinge", "sliding joint: it opens, too (dilatancy)",
     }  # fmt: skip
     assert any(text.get_text() == "0.5 r" for text in falls.axes[0].texts)
     assert any("continuous arch" in text.get_text() for text in falls.axes[0].texts)

@@ -116,7 +116,8 @@ def test_a_drawing_has_what_there_is(
 def test_drawings_of_arches_tell_their_mode(shown: dict[str, Any]) -> None:
     """Of a check the arch itself, of a bracket the one of least thickness."""
     assert re.search(
-        "collapses, mode rrr: .* = 90°, μ = 0.7, η = 0.1 ", shown["arch check"]._repr_svg_()
+        r"collapses, mode rrr: .* = 90°, μ = 0.7 \(φ = 35.0°\), η = 0.1 ",
+        shown["arch check"]._repr_svg_(),
     )
     assert "η = 0.1067" in shown["arch bracket"]._repr_svg_()
     theory = blocksim.bracket(half_angle=ARCH.half_angle, mu=0.7, voussoirs=27, method="theory")

@@ -46,8 +46,10 @@ class Bracket(Shown):
     eta_limit, eta_theory : float or None
         Exact values for the voussoirs as built and the continuous arch; `eta_limit` is 0
         where any thickness stands (some arches of three voussoirs).
-    mode, mode_limit, mode_theory : Mode or None
+    mode, mode_limit : Mode or None
         Of the mechanism it starts with at `eta_low`; exact, at the least thickness.
+    modes_theory : tuple of Mode
+        Of the continuous arch at its least thickness: all that coincide.
     mode_in_motion : Mode or None
         As seen in the moving run at `eta_low`, see `Observation`; None where there was none.
     thrust, beta_r, beta_s : float or None
@@ -77,7 +79,7 @@ class Bracket(Shown):
     eta_theory: float | None
     mode: Mode | None
     mode_limit: Mode | None
-    mode_theory: Mode
+    modes_theory: tuple[Mode, ...]
     mode_in_motion: Mode | None = None
     thrust: float | None = None
     beta_r: float | None = None
@@ -91,6 +93,11 @@ class Bracket(Shown):
     wall_s: float = 0.0
     lean: float = 0.0
     depth: float = 1.0
+
+    @property
+    def mode_theory(self) -> Mode:
+        """The first of `modes_theory`."""
+        return self.modes_theory[0]
 
     def __repr__(self) -> str:
         return (
@@ -185,7 +192,7 @@ def bracket(
         eta_theory=continuous.eta,
         mode=None,
         mode_limit=built.mode,
-        mode_theory=continuous.mode,
+        modes_theory=continuous.modes,
     )
     if rung.name == "theory":
         answer = replace(

@@ -48,9 +48,11 @@ class ArchCheck(Check):
         `mode_theory`. None where it stands or the joints form none of the modes.
     mode_in_motion : Mode or None
         As seen in the moving run after a displacement of `motion.EARLY`; see `Observation`.
-    mode_limit, mode_theory : Mode or None
-        At the least thickness of the voussoirs as built and of the continuous arch, which
-        need not be `mode`; at eta = 2 where no thickness up to that stands.
+    mode_limit : Mode or None
+        At the least thickness of the voussoirs as built, which need not be `mode`; at
+        eta = 2 where no thickness up to that stands.
+    modes_theory : tuple of Mode
+        The same of the continuous arch: all that coincide, several on a line of the map.
     """
 
     arch: Arch
@@ -61,7 +63,12 @@ class ArchCheck(Check):
     mode: Mode | None
     mode_in_motion: Mode | None
     mode_limit: Mode | None
-    mode_theory: Mode
+    modes_theory: tuple[Mode, ...]
+
+    @property
+    def mode_theory(self) -> Mode:
+        """The first of `modes_theory`."""
+        return self.modes_theory[0]
 
     @cached_property
     def carried(self) -> Carried | None:
@@ -175,7 +182,7 @@ def check(
         mode=mode,
         mode_in_motion=later,
         mode_limit=built.mode,
-        mode_theory=continuous.mode,
+        modes_theory=continuous.modes,
         rest=rest,
         asked_rest=must_rest,
         joints=joints,

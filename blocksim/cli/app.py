@@ -53,6 +53,10 @@ COMMANDS = {
         "mapping.draw_map",
         "Draw the analytical map of least thickness and collapse modes.",
     ),
+    "paper": (
+        "paper.paper",
+        "Draw every figure of the paper, and compare every number that it prints.",
+    ),
     "scenarios": (
         "listing.list_scenarios",
         "List the scenarios and structures that come with blocksim.",

@@ -1,24 +1,28 @@
-"""The command map: the map as a picture or as a page."""
+"""The command map: the map as a picture, as a page or in numbers."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from blocksim.cli.arguments import Option
-from blocksim.cli.options import require_given
-from blocksim.cli.output import picture_kind, save_picture, say
+from blocksim.cli.options import Json, require_given
+from blocksim.cli.output import answer_with, picture_kind, save_picture, say
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 
 ZOOMS = {"whole": (0.0, 2.0), "central": (0.6, 1.2)}
 LINE_ZOOMS = {"whole": (0.0, 2.0), "lower": (0.0, 1.0), "upper": (0.6, 2.0)}
+OfWeight = Literal["centreline", "sector"]
 
 
 def draw_map(
     out: Annotated[
         Path | None,
-        Option(help="Picture, .svg, .png or .pdf, or a page, .html; required."),
+        Option(
+            help="Picture, .svg, .png or .pdf, page, .html, or numbers, .csv; required "
+            "without --table or --json."
+        ),
     ] = None,
     lines: Annotated[
         bool, Option(name="--lines", help="Dividing lines and lines of equal alpha instead.")
@@ -26,6 +30,17 @@ def draw_map(
     zoom: Annotated[
         str, Option(help="whole, central; with --lines: whole, lower, upper.")
     ] = "whole",
+    weight: Annotated[
+        OfWeight, Option(help="Where weight acts: of the paper, or of true voussoirs.")
+    ] = "centreline",
+    phi: Annotated[
+        bool, Option(name="--phi", help="Over the friction angle in degrees, up to 90.")
+    ] = False,
+    table: Annotated[
+        bool,
+        Option(name="--table", help="Print Table 1, special angles and rates of the modes."),
+    ] = False,
+    as_json: Json = False,
     results: Annotated[
         Path | None, Option(help="validate.json of a `validate` run, shown on the page.")
     ] = None,
@@ -33,28 +48,68 @@ def draw_map(
     """Draw the analytical map of least thickness and collapse modes.
 
     As a page (.html) it can be explored: any point's arch, its lines of thrust and
-    friction, and its collapse.
+    friction, and its collapse. In numbers (.csv, --table, --json) it has Table 1, the
+    special angles, points on all lines, and the rates of every mode there.
     """
-    require_given(out=out)
-    write_map(out or Path(), zoom, results, lines=lines)
+    numbers = table or as_json
+    if not numbers:
+        require_given(out=out)
+        write_map(out or Path(), zoom, results, lines=lines, weight=weight, phi=phi)
+        return
+    require(out is None, "--out", str(out), "left out with --table or --json")
+    from blocksim.report.maptable import map_lines, map_record
+
+    record = map_record(weight) if as_json else {}
+    answer_with(record, [] if as_json else map_lines(weight), as_json=as_json)
 
 
-def write_map(out: Path, zoom: str, results: Path | None, *, lines: bool) -> None:
-    """Write the map as a picture or as a page."""
-    kind = picture_kind(out, ("svg", "png", "pdf", "html"))
+def write_map(
+    out: Path,
+    zoom: str,
+    results: Path | None,
+    *,
+    lines: bool,
+    weight: OfWeight = "centreline",
+    phi: bool = False,
+) -> None:
+    """Write the map as a picture, as a page or as a table."""
+    kind = picture_kind(out, ("svg", "png", "pdf", "html", "csv"))
+    if kind != "html":
+        page = "left out unless --out ends in .html"
+        require(results is None, "--results", str(results), page)
+    if kind in {"html", "csv"}:
+        what = {"html": "left out where --out is a page", "csv": "left out where --out is .csv"}
+        require(not lines, "--lines", lines, what[kind])
+        require(zoom == "whole", "--zoom", zoom, what[kind])
+        require(not phi, "--phi", phi, what[kind])
     if kind == "html":
-        require(not lines, "--lines", lines, "left out where --out is a page")
-        require(zoom == "whole", "--zoom", zoom, "left out where --out is a page")
+        require(
+            weight == "centreline",
+            "--weight",
+            weight,
+            "left out where --out is a page: it asks",
+        )
         _map_page(out, results)
         return
-    require(results is None, "--results", str(results), "left out unless --out ends in .html")
+    if kind == "csv":
+        from blocksim.report.maptable import map_sheet
+
+        sheet = map_sheet(weight)
+        write_whole(out, lambda file: file.write(sheet))
+        say(f"wrote {out}")
+        return
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.view.linemap import line_map_figure
     from blocksim.view.mapfigure import map_figure
+    from blocksim.view.mapshapes import FrictionAxis
 
     zooms = LINE_ZOOMS if lines else ZOOMS
     require(zoom in zooms, "--zoom", zoom, f"one of {', '.join(zooms)}")
-    figure = line_map_figure(zooms[zoom]) if lines else map_figure(central=zoom == "central")
+    friction = FrictionAxis(angle=phi)
+    if lines:
+        figure = line_map_figure(zooms[zoom], weight, friction)
+    else:
+        figure = map_figure(central=zoom == "central", weight=weight, friction=friction)
     save_picture(figure, out, kind)
 
 

@@ -50,6 +50,7 @@ def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str,
         "mode_in_motion": answer.mode_in_motion,
         "mode_limit": answer.mode_limit,
         "mode_theory": answer.mode_theory,
+        "modes_theory": list(answer.modes_theory),
         "joints": [
             {"angle_deg": math.degrees(joint.angle), "state": joint.state.value}
             for joint in answer.joints
@@ -83,6 +84,7 @@ def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
         "mode_in_motion": answer.mode_in_motion,
         "mode_limit": answer.mode_limit,
         "mode_theory": answer.mode_theory,
+        "modes_theory": list(answer.modes_theory),
         "thrust": answer.thrust,
         "beta_r_deg": _degrees(answer.beta_r),
         "beta_s_deg": _degrees(answer.beta_s),

@@ -26,17 +26,21 @@ from blocksim.arch.theory.critical import Critical, inner_sliding
 from blocksim.arch.theory.equations import normal_force
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.blocks.assembly import Array
+from blocksim.view.drawing import friction_words
 from blocksim.view.style import FONT, FRICTION, GROUND, INK, MECHANISM, QUIET, THRUST
 
 MOVED = 0.16
 """Largest displacement drawn, in mean radii."""
-FINE = 400
+FINE, ROUND = 400, 100
+"""Points of a line on half an arch; of an arc, in a radian."""
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 SUPPORT, WIDER = 0.06, 0.25
 """Angle over which a support is drawn [rad]; how much it is wider than the springing."""
 FORCELESS = 1e-9
 FARTHEST = 0.3
 """Distance from the arch beyond which a line that leaves it is not drawn [r]."""
+SLIDES = "sliding joint: it opens, too (dilatancy)"
+"""The mechanisms drawn are associated: a joint that slides opens by mu times the slip."""
 FAINT = 1e-7
 """Share of the largest rate below which a joint counts as closed."""
 
@@ -92,7 +96,7 @@ def picture_of_arch(arch: Arch, mu: float) -> ArchPicture:
     )
     weight = "" if arch.weight == "centreline" else f", weight {arch.weight}"
     return ArchPicture(
-        title=f"{state}: {_figures(arch.half_angle, arch.eta, mu)}",
+        title=f"{state}: {figures_of(arch.half_angle, arch.eta, mu)}",
         subtitle=f"{arch.voussoirs} voussoirs as built, by limit analysis{weight}",
         line=" with most strength to spare" if stands else " that lacks least strength",
         half_angle=arch.half_angle,
@@ -130,7 +134,7 @@ def picture_of_theory(
     name = mode.description.split(" (")[0]
     acting = "" if weight == "centreline" else f", weight {weight}"
     return ArchPicture(
-        title=f"{name} [{mode.value}]: {_figures(half_angle, eta, mu)}",
+        title=f"{name} [{mode.value}]: {figures_of(half_angle, eta, mu)}",
         subtitle=f"the continuous arch at its least thickness{acting}",
         line=", the only one left",
         half_angle=half_angle,
@@ -146,33 +150,40 @@ def picture_of_theory(
     )
 
 
-def arch_figure(pictures: Sequence[ArchPicture]) -> Figure:
-    """Draw arches one above the other.
+def arch_figure(pictures: Sequence[ArchPicture], *, columns: int = 1) -> Figure:
+    """Draw arches one above the other, or in rows of several.
 
     Parameters
     ----------
     pictures : sequence of ArchPicture
-        One or more.
+        One or more, row by row.
+    columns : int
+        How many are side by side.
 
     Returns
     -------
     Figure
     """
     with mpl.rc_context(FONT):
-        heights = [1.0 + min(5.0, 6.6 * _slenderness(picture)) for picture in pictures]
+        firsts = pictures[::columns]
+        heights = [1.0 + min(5.0, 6.6 * _slenderness(picture)) for picture in firsts]
         layout = ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08)
-        figure = Figure(figsize=(7.6, 0.5 + sum(heights)), layout=layout)
+        figure = Figure(figsize=(7.6 * columns, 0.5 + sum(heights)), layout=layout)
         FigureCanvasAgg(figure)
-        grid = figure.add_gridspec(len(pictures), 1, height_ratios=heights)
+        grid = figure.add_gridspec(len(firsts), columns, height_ratios=heights)
         entries: dict[str, Artist] = {}
         for place, picture in enumerate(pictures):
-            axes = figure.add_subplot(grid[place])
+            axes = figure.add_subplot(grid[divmod(place, columns)])
             draw_arch(axes, picture)
             # Of what is drawn only, each once.
             handles, names = axes.get_legend_handles_labels()
             entries |= dict(zip(names, handles, strict=True))
         figure.legend(
-            entries.values(), entries.keys(), loc="outside lower center", ncols=3, frameon=False
+            entries.values(),
+            entries.keys(),
+            loc="outside lower center",
+            ncols=3 * columns,
+            frameon=False,
         )
     return figure
 
@@ -295,19 +306,21 @@ def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -
                           mfc="white", mec=INK, mew=1.5, zorder=7, label="hinge")  # fmt: skip
         if any(slides):
             axes.plot(*_radius(angle, inner, outer), color=INK, lw=3.2, zorder=6,
-                      solid_capstyle="butt", label="sliding joint")  # fmt: skip
+                      solid_capstyle="butt", label=SLIDES)  # fmt: skip
             axes.plot(*_radius(angle, inner, outer), color="white", lw=1.2, ls=(0, (2, 1)),
                       zorder=6)  # fmt: skip
 
 
-def _figures(half_angle: float, eta: float, mu: float) -> str:
-    friction = "∞" if math.isinf(mu) else f"{mu:.4g}"
-    return f"{ALPHA} = {math.degrees(half_angle):.6g}°, μ = {friction}, η = {eta:.4g}"
+def figures_of(half_angle: float, eta: float, mu: float) -> str:
+    """Write half-angle, friction with its angle, and thickness for a title."""
+    angle = math.degrees(math.atan(mu))
+    friction = f"{friction_words(mu)} (φ = {angle:.1f}°)"
+    return f"{ALPHA} = {math.degrees(half_angle):.6g}°, {friction}, η = {eta:.4g}"
 
 
 def _ring(start: float, stop: float, inner: float, outer: float) -> Array:
     """Outline of a piece, (k, 2)."""
-    angle = np.linspace(start, stop, max(3, int(FINE * (stop - start))))
+    angle = np.linspace(start, stop, max(3, int(ROUND * (stop - start))))
     rays = np.column_stack([np.sin(angle), np.cos(angle)])
     return np.concatenate([inner * rays, outer * rays[::-1]])
 

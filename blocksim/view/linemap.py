@@ -14,64 +14,84 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from blocksim.arch.circular import Weight
 from blocksim.arch.theory import Curve, equations, landmarks, least_thicknesses, regions
 from blocksim.arch.theory.critical import rotational_thrust
-from blocksim.view.mapshapes import LARGEST_MU, iso_angles, iso_continued, iso_line
+from blocksim.arch.theory.map import special_angles
+from blocksim.view.mapregions import draw_asymptote
+from blocksim.view.mapshapes import (
+    COEFFICIENT,
+    FrictionAxis,
+    iso_angles,
+    iso_continued,
+    iso_line,
+)
 from blocksim.view.style import FONT, INK, ISO
 
 DASHED = (0, (5, 2))
-SPACE, BESIDE = 0.024, 0.07
-"""Height of a label, as a share of the picture, and its distance from the frame [mu]."""
+SPACE, BESIDE = 0.024, 0.0175
+"""Height of a label, and its distance from the frame, as shares of the picture."""
 LABELS = {"S": (-17, -14), "J": (-12, 4), "T": (-12, 4), "B": (6, -12)}
 
 
-def line_map_figure(span: tuple[float, float] = (0.0, 2.0)) -> Figure:
+def line_map_figure(
+    span: tuple[float, float] = (0.0, 2.0),
+    weight: Weight = "centreline",
+    friction: FrictionAxis = COEFFICIENT,
+) -> Figure:
     """Draw the dividing lines and lines of equal half-angle (Figs 6-8).
 
     Parameters
     ----------
     span : (float, float)
         Thickness-to-radius ratios shown: (0, 2), (0, 1) and (0.6, 2) in the paper.
+    weight : {"centreline", "sector"}
+    friction : FrictionAxis
 
     Returns
     -------
     Figure
     """
     with mpl.rc_context(FONT):
-        return _line_map(span)
+        return _line_map(span, weight, friction)
 
 
-def _line_map(span: tuple[float, float]) -> Figure:
+def _line_map(span: tuple[float, float], weight: Weight, friction: FrictionAxis) -> Figure:
     figure = Figure(figsize=(8.6, 7.2), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    marks = landmarks()
-    axes.set(xlim=(0, LARGEST_MU), ylim=span, xlabel=r"friction coefficient $\mu$",
+    axes.set(xlim=(0, friction.end), ylim=span, xlabel=friction.label,
              ylabel=r"thickness-to-radius ratio $\eta = t/r$")  # fmt: skip
-    _iso_lines(axes, span)
-    _dividing_lines(axes)
-    for mark in marks.values():
+    _iso_lines(axes, span, weight, friction)
+    _dividing_lines(axes, weight, friction)
+    draw_asymptote(axes, weight)
+    for mark in landmarks(weight).values():
         if span[0] <= mark.eta <= span[1]:
-            axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4,
+            place = float(friction.place(mark.mu)), mark.eta
+            axes.plot(*place, "o", ms=5, mfc="white", mec=INK, zorder=4,
                       clip_on=False)  # fmt: skip
-            axes.annotate(mark.name, (mark.mu, mark.eta), xytext=LABELS[mark.name],
+            axes.annotate(mark.name, place, xytext=LABELS[mark.name],
                           fontweight="bold", textcoords="offset points",
                           annotation_clip=False)  # fmt: skip
     figure.legend(loc="outside upper center", ncols=4, frameon=False, fontsize=8.5)
     return figure
 
 
-def _iso_lines(axes: Axes, span: tuple[float, float]) -> None:
+def _iso_lines(
+    axes: Axes, span: tuple[float, float], weight: Weight, friction: FrictionAxis
+) -> None:
     """Draw lines of equal half-angle, each named where it leaves the picture."""
     beside: dict[str, float] = {}
     names = {
         "feasible": r"equal $\alpha$",
         "infeasible": r"equal $\alpha$, not feasible",
     }
-    for half_angle in iso_angles():
+    for half_angle in iso_angles(weight):
         name = angle_name(half_angle)
-        continued = iso_continued(half_angle)
-        line = iso_line(half_angle)
+        continued = iso_continued(half_angle, weight, friction)
+        line = iso_line(half_angle, weight, friction)
+        if not (line.mu.size or continued.mu.size):
+            continue  # wider than any that stands
         for kind, curve, dashes, width in (
             ("feasible", line, "-", 1.0),
             ("infeasible", continued, DASHED, 0.7),
@@ -79,7 +99,7 @@ def _iso_lines(axes: Axes, span: tuple[float, float]) -> None:
             if curve.mu.size and curve.eta.min() <= span[1]:
                 # Along the frame a line would be cut in half.
                 along = bool((curve.eta == span[1]).all())
-                axes.plot(curve.mu, curve.eta, color=ISO, gid=f"{kind} {name}",
+                axes.plot(friction.place(curve.mu), curve.eta, color=ISO, gid=f"{kind} {name}",
                           label=names.pop(kind, None), zorder=1.5,
                           clip_on=not along, ls=dashes,
                           lw=width)  # fmt: skip
@@ -87,19 +107,20 @@ def _iso_lines(axes: Axes, span: tuple[float, float]) -> None:
         if span[0] < end <= span[1]:
             beside[name] = end
         elif end <= span[0]:
-            _name_upright(axes, name, float(continued.mu[0]), span[1])
+            _name_upright(axes, name, float(friction.place(continued.mu[0])), span[1])
     for (name, end), place in zip(
         beside.items(), apart(list(beside.values()), SPACE * (span[1] - span[0])), strict=True
     ):
-        axes.annotate(name, (LARGEST_MU, end), xytext=(LARGEST_MU + BESIDE, place),
+        last = float(friction.place(friction.largest))
+        axes.annotate(name, (last, end), xytext=(friction.end * (1 + BESIDE), place),
                       va="center", color=ISO, fontsize=8, annotation_clip=False,
                       arrowprops={"arrowstyle": "-", "color": ISO, "lw": 0.5, "shrinkA": 0,
                                   "shrinkB": 0, "relpos": (0, 0.5)})  # fmt: skip
 
 
-def _name_upright(axes: Axes, name: str, mu: float, top: float) -> None:
+def _name_upright(axes: Axes, name: str, place: float, top: float) -> None:
     """Name a line above the picture, which it leaves upright."""
-    axes.annotate(name, (mu, top), xytext=(0, 3), textcoords="offset points", ha="center",
+    axes.annotate(name, (place, top), xytext=(0, 3), textcoords="offset points", ha="center",
                   va="bottom", rotation=90, color=ISO, fontsize=8,
                   annotation_clip=False)  # fmt: skip
 
@@ -132,25 +153,32 @@ def _ends(group: Sequence[float], space: float) -> tuple[float, float]:
 
 
 @cache
-def _between_regions() -> tuple[Curve, Curve, Curve]:
+def _between_regions(weight: Weight, friction: FrictionAxis) -> tuple[Curve, Curve, Curve]:
     """Divide, equal angles and crown hinge, computed once."""
-    marks = landmarks()
-    starts = (marks[name].mu + 1e-6 for name in "SJ")
-    right_of_s, right_of_j = (np.linspace(start, LARGEST_MU, 120) for start in starts)
+    marks = landmarks(weight)
+    right_of_s, right_of_j = (friction.frictions(marks[name].mu + 1e-6, 120) for name in "SJ")
     return (
-        regions.divide(np.linspace(0.02, marks["B"].mu, 200)),
-        regions.equal_angles(right_of_s),
-        regions.crown_hinge(right_of_j),
+        regions.divide(np.linspace(0.02, marks["B"].mu, 200), weight),
+        regions.equal_angles(right_of_s, weight),
+        regions.crown_hinge(right_of_j, weight),
     )
 
 
-def _dividing_lines(axes: Axes) -> None:
-    marks = landmarks()
-    wide, equal, crown = _between_regions()
-    axes.plot(wide.mu, wide.eta, color=INK, lw=2.0, label=r"$\mu=\mu_{ss}=\mu_{is}$")
-    alpha = 2.645 * (1 - np.linspace(0.97, 0.0, 240) ** 2)
-    thrust = np.array([rotational_thrust(float(a), "centreline") for a in alpha])
-    eta = least_thicknesses(alpha, math.inf).eta
+def _dividing_lines(axes: Axes, weight: Weight, friction: FrictionAxis) -> None:
+    marks = landmarks(weight)
+    wide, equal, crown = _between_regions(weight, friction)
+
+    def draw(curve: Curve, name: str, width: float, style: object) -> None:
+        axes.plot(
+            friction.place(curve.mu), curve.eta, color=INK, lw=width, ls=style, label=name
+        )
+
+    draw(wide, r"$\mu=\mu_{ss}=\mu_{is}$", 2.0, "-")
+    # Denser towards the wide arches, where friction runs off to infinity.
+    widest = special_angles(weight).zero_thrust
+    alpha = widest * (1 - np.linspace(0.985, 1e-4, 240) ** 2)
+    thrust = np.array([rotational_thrust(float(a), weight) for a in alpha])
+    eta = least_thicknesses(alpha, math.inf, weight).eta
     below = alpha <= marks["T"].half_angle
     for values, real, style, name in (
         (
@@ -166,8 +194,8 @@ def _dividing_lines(axes: Axes) -> None:
             r"$\mu=\mu_{is}$, $h=h_U=h_2$",
         ),
     ):
-        friction = np.asarray(values)
-        axes.plot(friction[real], eta[real], color=INK, lw=1.5, ls=style, label=name)
-        axes.plot(friction[~real], eta[~real], color=INK, lw=0.7, ls=DASHED)
-    axes.plot(equal.mu, equal.eta, color=INK, lw=1.2, ls=":", label=r"$\beta_r=\beta_s$")
-    axes.plot(crown.mu, crown.eta, color=INK, lw=1.2, ls="-.", label=r"$\beta_r=0$")
+        mu = np.asarray(values)
+        draw(Curve(mu=mu[real], eta=eta[real]), name, 1.5, style)
+        draw(Curve(mu=mu[~real], eta=eta[~real]), "_", 0.7, DASHED)
+    draw(equal, r"$\beta_r=\beta_s$", 1.2, ":")
+    draw(crown, r"$\beta_r=0$", 1.2, "-.")

@@ -16,19 +16,19 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from blocksim.arch import theory
+from blocksim.arch.circular import Weight
 from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
 from blocksim.view.mapregions import (
-    CENTRAL,
     LETTERS,
     NEAR,
     STRIP,
-    WHOLE,
     Section,
     draw_regions,
     draw_unbounded,
+    section_of,
 )
-from blocksim.view.mapshapes import LARGEST_MU, map_shapes
+from blocksim.view.mapshapes import COEFFICIENT, LARGEST_MU, FrictionAxis, map_shapes
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 
 INSET = (0.08, 0.535, 0.27, 0.39)
@@ -38,6 +38,8 @@ BESIDE_INSET = (0.5, 0.82)
 POINTS_ACROSS, POINTS_UP = 440.0, 400.0
 """Size of the map beside a legend in typographic points, about."""
 NONE = ": no thickness stands"
+OF: dict[Weight, str] = {"centreline": "", "sector": ", weight of sectors"}
+"""What a title says of the weight."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +81,12 @@ class MapPoint:
 
 
 def map_figure(
-    points: Sequence[MapPoint] = (), *, title: str = "", central: bool = False
+    points: Sequence[MapPoint] = (),
+    *,
+    title: str = "",
+    central: bool = False,
+    weight: Weight = "centreline",
+    friction: FrictionAxis = COEFFICIENT,
 ) -> Figure:
     """Draw the regions of the map (Fig. 9), with points in front.
 
@@ -89,33 +96,47 @@ def map_figure(
     title : str
     central : bool
         Only the middle, where most regions meet (Fig. 11).
+    weight : {"centreline", "sector"}
+    friction : FrictionAxis
+        The coefficient; without points the friction angle is possible, too.
 
     Returns
     -------
     Figure
+
+    Raises
+    ------
+    ValueError
+        If there are points on an axis of angles.
     """
+    if points and friction.angle:
+        message = "points are drawn on an axis of coefficients"
+        raise ValueError(message)
     with mpl.rc_context(FONT):
         figure = Figure(figsize=(10.4, 6.9) if points else (8.6, 7.0), layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.add_subplot()
         crowded = [point for point in points if NEAR.shows(point.mu, point.eta)]
-        section = CENTRAL if central else WHOLE
+        section = section_of(weight, central=central)
         if crowded:
             section = section._replace(names={**section.names, Mode.SS: BESIDE_INSET})
-        draw_regions(axes, section)
+        draw_regions(axes, section, weight, friction)
         # Room for the arrow of what never stands.
         pad = 26 if any(point.none_stands for point in points) else 12
         axes.set_title(
-            title or "Least thickness and collapse modes of circular arches", pad=pad
+            title or f"Least thickness and collapse modes of circular arches{OF[weight]}",
+            pad=pad,
         )
         if any(math.isinf(point.mu) for point in points):
-            draw_unbounded(axes)
+            draw_unbounded(axes, weight)
+        elif friction.angle and not central:
+            draw_unbounded(axes, weight, friction)
         if points:
             _draw_points(axes, section, points, unnamed=crowded)
             _legend(figure, points)
         if crowded:
             near = axes.inset_axes(INSET)
-            draw_regions(near, NEAR)
+            draw_regions(near, NEAR, weight)
             near.set(xlabel="", ylabel="", xticks=[1.7, 1.8, 1.9], yticks=[0.92, 0.97, 1.02])
             near.tick_params(labelsize=8)
             near.spines[:].set_visible(True)

@@ -10,8 +10,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
+from blocksim.arch.circular import Weight
 from blocksim.arch.modes import Mode
-from blocksim.view.mapshapes import LARGEST_MU, map_shapes
+from blocksim.arch.theory.critical import CROWN_ETA
+from blocksim.view.mapshapes import (
+    COEFFICIENT,
+    LARGEST_MU,
+    LARGEST_PHI,
+    FrictionAxis,
+    MapShapes,
+    map_shapes,
+)
 from blocksim.view.style import INK, MODES
 
 
@@ -24,14 +33,14 @@ class Section(NamedTuple):
         Friction and thickness shown.
     names : dict of Mode to (float, float)
         Where each mode is named.
-    thin : two of (float, float), optional
-        Where a line to the thin region rsr ends, and where it is named.
+    thin : (float, float, float), optional
+        Friction at which a line to the thin region rsr ends; where it is named.
     """
 
     mu: tuple[float, float]
     eta: tuple[float, float]
     names: dict[Mode, tuple[float, float]]
-    thin: tuple[tuple[float, float], tuple[float, float]] | None = None
+    thin: tuple[float, float, float] | None = None
 
     def shows(self, mu: float, eta: float) -> bool:
         """Tell whether a point is in it."""
@@ -48,7 +57,7 @@ WHOLE = Section(
         Mode.RRS: (2.45, 0.885),
         Mode.RS: (3.4, 1.6),
     },
-    ((3.4, 0.987), (3.4, 1.16)),
+    (3.4, 3.4, 1.16),
 )
 CENTRAL = Section(
     (1.2, 2.4),
@@ -60,9 +69,23 @@ CENTRAL = Section(
         Mode.RRS: (2.1, 0.87),
         Mode.RS: (2.15, 1.1),
     },
-    ((2.2, 0.972), (2.24, 1.02)),
+    (2.2, 2.24, 1.02),
 )
 """Where most regions meet (Fig. 11)."""
+WHOLE_SECTOR = WHOLE._replace(names={**WHOLE.names, Mode.RRS: (2.45, 0.835)})
+CENTRAL_SECTOR = Section(
+    (1.05, 2.25),
+    (0.52, 1.12),
+    {
+        Mode.RRR: (1.85, 0.58),
+        Mode.SS: (1.25, 0.9),
+        Mode.SRR: (1.098, 0.532),
+        Mode.RRS: (1.9, 0.8),
+        Mode.RS: (1.95, 1.03),
+    },
+    (2.0, 2.05, 0.95),
+)
+"""The same two where voussoirs weigh at their own centroids."""
 NEAR = Section(
     (1.70, 1.90),
     (0.92, 1.02),
@@ -80,43 +103,82 @@ LETTERS = {"T": (-13, 4), "S": (-19, -12), "J": (-17, 6), "B": (13, -9)}
 """Where the letter of each landmark begins, in points from it."""
 
 
-def draw_regions(axes: Axes, section: Section = WHOLE) -> None:
+def section_of(weight: Weight, *, central: bool) -> Section:
+    """Return the part of the map to draw: all of it, or where most regions meet."""
+    if weight == "centreline":
+        return CENTRAL if central else WHOLE
+    return CENTRAL_SECTOR if central else WHOLE_SECTOR
+
+
+def draw_regions(
+    axes: Axes,
+    section: Section = WHOLE,
+    weight: Weight = "centreline",
+    friction: FrictionAxis = COEFFICIENT,
+) -> None:
     """Fill the regions of the six modes at finite friction, and name them (Figs 9-11)."""
-    shapes = map_shapes()
+    shapes = map_shapes(weight, friction)
     for part in shapes.regions:
-        tint = MODES[part.mode].tint
-        axes.fill_between(part.mu, part.bottom, part.top, color=tint, lw=0)
+        axes.fill_between(
+            friction.place(part.mu), part.bottom, part.top, color=MODES[part.mode].tint, lw=0,
+            gid=f"region {part.mode}",
+        )  # fmt: skip
     lines = (
-        (shapes.divide, "-"),
-        (shapes.first, "-"),
-        (shapes.equal, ":"),
-        (shapes.crown, "--"),
+        ("divide", shapes.divide, "-"),
+        ("first sliding", shapes.first, "-"),
+        ("equal angles", shapes.equal, ":"),
+        ("crown hinge", shapes.crown, "--"),
     )
-    for curve, style in lines:
-        axes.plot(curve.mu, curve.eta, style, color=INK, lw=1.1)
-    _name_regions(axes, section)
+    for name, curve, style in lines:
+        axes.plot(friction.place(curve.mu), curve.eta, style, color=INK, lw=1.1, gid=name)
+    _name_regions(axes, section, shapes, friction)
     for mark in shapes.landmarks.values():
         if not section.shows(mark.mu, mark.eta):
             continue
-        axes.plot(mark.mu, mark.eta, "o", ms=5, mfc="white", mec=INK, zorder=4, clip_on=False)
+        place = float(friction.place(mark.mu)), mark.eta
+        axes.plot(*place, "o", ms=5, mfc="white", mec=INK, zorder=4, clip_on=False)
         axes.annotate(
             mark.name,
-            (mark.mu, mark.eta),
+            place,
             xytext=LETTERS[mark.name],
             textcoords="offset points",
             fontweight="bold",
             annotation_clip=False,
         )
-    axes.set(xlim=section.mu, ylim=section.eta)
-    axes.set_xlabel(r"friction coefficient $\mu$")
+    low, high = friction.place(section.mu).tolist()
+    axes.set(xlim=(low, friction.end if section.mu == WHOLE.mu else high), ylim=section.eta)
+    axes.set_xlabel(friction.label)
     axes.set_ylabel(r"thickness-to-radius ratio $\eta = t/r$")
 
 
-def draw_unbounded(axes: Axes) -> None:
-    """Draw the far end of the map, unbounded friction, as a strip beyond a gap."""
-    for mode, (low, high) in ((Mode.RRR, (0.0, 1.0)), (Mode.R, (1.0, 2.0))):
-        axes.fill_between(STRIP, low, high, color=MODES[mode].tint, lw=0)
-    axes.plot(STRIP, (1.0, 1.0), color=INK, lw=1.1)
+def draw_asymptote(axes: Axes, weight: Weight = "centreline") -> None:
+    """Draw the thickness that the lines above T tend to as friction grows: eta = 1."""
+    level = CROWN_ETA[weight]
+    axes.axhline(level, color=INK, lw=0.8, ls=(0, (6, 4)), gid="asymptote", zorder=1.8)
+    axes.annotate(rf"$\eta={level:.4g}$", (0, level), xytext=(3, 2), fontsize=8,
+                  textcoords="offset points", xycoords=("axes fraction", "data"))  # fmt: skip
+
+
+def draw_unbounded(
+    axes: Axes, weight: Weight = "centreline", friction: FrictionAxis = COEFFICIENT
+) -> None:
+    """Draw the far end of the map, unbounded friction: a strip beyond a gap, or at 90 deg."""
+    level = CROWN_ETA[weight]
+    if friction.angle:
+        axes.plot((90, 90), (level, 2.0), color=MODES[Mode.R].colour, lw=4, clip_on=False,
+                  solid_capstyle="butt", gid="region r", zorder=3)  # fmt: skip
+        axes.annotate(Mode.R.value, (90, 1.5), xytext=(8, 0), textcoords="offset points",
+                      color=MODES[Mode.R].colour, fontweight="bold", fontsize=13,
+                      annotation_clip=False)  # fmt: skip
+        # Beyond the last line that is computed the regions are as they are there.
+        for mode, low, high in ((Mode.RRR, 0.0, level), (Mode.RS, level, 2.0)):
+            axes.fill_between((LARGEST_PHI, 90), low, high, color=MODES[mode].tint, lw=0)
+        axes.set_xticks(range(0, 91, 10))
+        return
+    for mode, (low, high) in ((Mode.RRR, (0.0, level)), (Mode.R, (level, 2.0))):
+        axes.fill_between(STRIP, low, high, color=MODES[mode].tint, lw=0,
+                          gid=f"strip {mode}")  # fmt: skip
+    axes.plot(STRIP, (level, level), color=INK, lw=1.1)
     middle = sum(STRIP) / 2
     axes.text(middle, 1.5, Mode.R.value, color=MODES[Mode.R].colour, fontweight="bold",
               fontsize=13, ha="center", va="center")  # fmt: skip
@@ -127,26 +189,35 @@ def draw_unbounded(axes: Axes) -> None:
     axes.add_patch(Rectangle(*gap, fc="white", ec="none", clip_on=False, zorder=3))
 
 
-def _name_regions(axes: Axes, section: Section) -> None:
+def _name_regions(
+    axes: Axes, section: Section, shapes: MapShapes, friction: FrictionAxis
+) -> None:
     """Write each mode into its region; the thin one gets a line to its name."""
-    for mode, (x, y) in section.names.items():
+    for mode, (mu, eta) in section.names.items():
         size = 10 if mode in {Mode.SRR, Mode.RSR} else 13
         style: dict[str, Any] = {
             "color": MODES[mode].colour,
             "fontweight": "bold",
             "fontsize": size,
         }
-        axes.text(x, y, mode.value, ha="center", va="center", **style)
+        place = float(friction.place(mu))
+        axes.text(place, eta, mode.value, ha="center", va="center", **style)
     if section.thin is None:
         return
-    target, words = section.thin
+    mu, beside, above = section.thin
     axes.annotate(
         Mode.RSR.value,
-        target,
-        xytext=words,
+        (float(friction.place(mu)), _within_thin(mu, shapes)),
+        xytext=(float(friction.place(beside)), above),
         ha="center",
         color=MODES[Mode.RSR].colour,
         fontweight="bold",
         fontsize=11,
         arrowprops={"arrowstyle": "-", "color": MODES[Mode.RSR].colour, "lw": 1.2},
     )
+
+
+def _within_thin(mu: float, shapes: MapShapes) -> float:
+    """Thickness in the middle of the thin region rsr at a friction beyond J."""
+    ends = [np.interp(mu, curve.mu, curve.eta) for curve in (shapes.equal, shapes.crown)]
+    return float(sum(ends) / 2)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from blocksim.arch import theory
@@ -19,6 +20,8 @@ from blocksim.arch.theory.map import divide_friction, iso_half_angle, special_an
 from blocksim.blocks.assembly import Array
 
 SMALLEST_MU, LARGEST_MU = 0.002, 4.0
+LARGEST_PHI = 89.9
+"""Friction angle up to which lines are computed, on an axis that goes on to 90 [deg]."""
 POINTS = 160
 """Points on each line."""
 ISO_DEGREES = (60, 90, 110, 125, 135, 142.504, 145, 149.156, 155, 158.949)
@@ -27,6 +30,51 @@ ROUND_DEGREES = (60, 90, 110, 125, 135, 145, 155)
 ISO_POINTS = 1200
 LEVEL = 1e-9
 """Thickness ratios closer than this to that of unbounded friction are the same."""
+
+
+@dataclass(frozen=True)
+class FrictionAxis:
+    """How friction is laid off.
+
+    Parameters
+    ----------
+    angle : bool
+        As phi = arctan mu in degrees, up to unbounded friction at 90; else as mu up to
+        `LARGEST_MU`.
+    """
+
+    angle: bool = False
+
+    @property
+    def largest(self) -> float:
+        """Largest coefficient at which lines are computed."""
+        return math.tan(math.radians(LARGEST_PHI)) if self.angle else LARGEST_MU
+
+    @property
+    def end(self) -> float:
+        """Where the axis ends."""
+        return 90.0 if self.angle else LARGEST_MU
+
+    @property
+    def label(self) -> str:
+        """What is written below it."""
+        return (
+            r"friction angle $\varphi$ [deg]" if self.angle else r"friction coefficient $\mu$"
+        )
+
+    def place(self, mu: ArrayLike) -> Array:
+        """Where coefficients are on it."""
+        values = np.asarray(mu, dtype=float)
+        return np.degrees(np.arctan(values)) if self.angle else values
+
+    def frictions(self, start: float, count: int) -> Array:
+        """Coefficients evenly along it, from `start` to the largest."""
+        if not self.angle:
+            return np.linspace(start, LARGEST_MU, count)
+        return np.tan(np.radians(np.linspace(self.place(start), LARGEST_PHI, count)))
+
+
+COEFFICIENT, ANGLE = FrictionAxis(), FrictionAxis(angle=True)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,7 +95,7 @@ class Region:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MapShapes:
-    """The map up to `LARGEST_MU` and eta = 2.
+    """The map up to the end of its friction axis and eta = 2.
 
     Parameters
     ----------
@@ -66,20 +114,22 @@ class MapShapes:
     landmarks: dict[str, Landmark]
 
 
-@cache
-def map_shapes(weight: Weight = "centreline") -> MapShapes:
+def map_shapes(weight: Weight = "centreline", axis: FrictionAxis = COEFFICIENT) -> MapShapes:
     """Sample the map's regions and lines from their equations, once."""
+    return _map_shapes(weight, axis)
+
+
+@cache
+def _map_shapes(weight: Weight, axis: FrictionAxis) -> MapShapes:
     marks = theory.landmarks(weight)
     corners = [marks[name].mu for name in "TSJ"]
-    mu = np.sort([*np.linspace(SMALLEST_MU, LARGEST_MU, 4 * POINTS), *corners])
+    mu = np.sort([*axis.frictions(SMALLEST_MU, 4 * POINTS), *corners])
     before_border = np.linspace(SMALLEST_MU, marks["B"].mu, POINTS)
     divide = regions.divide(np.sort([*before_border, *corners]), weight)
     # Denser towards the wide arches, where friction runs off to infinity.
-    angles = _last_angle(weight) * (1 - np.linspace(0.95, 0.0, POINTS) ** 2)
+    angles = _last_angle(weight, axis) * (1 - np.linspace(0.95, 0.0, POINTS) ** 2)
     first = regions.first_sliding(np.sort([*angles, marks["T"].half_angle]), weight)
-    right_of = {
-        name: np.linspace(marks[name].mu + 1e-6, LARGEST_MU, POINTS // 2) for name in "SJ"
-    }
+    right_of = {name: axis.frictions(marks[name].mu + 1e-6, POINTS // 2) for name in "SJ"}
     equal = regions.equal_angles(right_of["S"], weight)
     crown = regions.crown_hinge(right_of["J"], weight)
 
@@ -130,8 +180,9 @@ def iso_angles(weight: Weight = "centreline") -> tuple[float, ...]:
     return tuple(sorted(found))
 
 
-@cache
-def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
+def iso_line(
+    half_angle: float, weight: Weight = "centreline", axis: FrictionAxis = COEFFICIENT
+) -> Curve:
     """Line of equal half-angle, with its upright part on the divide.
 
     Parameters
@@ -139,13 +190,19 @@ def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
     half_angle : float
         From 0.01 to 3 [rad].
     weight : {"centreline", "sector"}
+    axis : FrictionAxis
 
     Returns
     -------
     Curve
         Empty where the half-angle stands at no friction on the map.
     """
-    line = iso_half_angle(half_angle, np.linspace(0.02, LARGEST_MU, ISO_POINTS), weight)
+    return _iso_line(half_angle, weight, axis)
+
+
+@cache
+def _iso_line(half_angle: float, weight: Weight, axis: FrictionAxis) -> Curve:
+    line = iso_half_angle(half_angle, axis.frictions(0.02, ISO_POINTS), weight)
     if not line.mu.size:
         return line
     divide = divide_friction(half_angle)
@@ -159,8 +216,9 @@ def iso_line(half_angle: float, weight: Weight = "centreline") -> Curve:
     )
 
 
-@cache
-def iso_continued(half_angle: float, weight: Weight = "centreline") -> Curve:
+def iso_continued(
+    half_angle: float, weight: Weight = "centreline", axis: FrictionAxis = COEFFICIENT
+) -> Curve:
     """Continue a line of equal half-angle to where its equations rule no more.
 
     Without sliding the least thickness would be that of unbounded friction, and without
@@ -171,32 +229,38 @@ def iso_continued(half_angle: float, weight: Weight = "centreline") -> Curve:
     half_angle : float
         From 0.01 to alpha_L [rad].
     weight : {"centreline", "sector"}
+    axis : FrictionAxis
 
     Returns
     -------
     Curve
         From the foot of the upright part down, and to the right to the first sliding.
     """
+    return _iso_continued(half_angle, weight, axis)
+
+
+@cache
+def _iso_continued(half_angle: float, weight: Weight, axis: FrictionAxis) -> Curve:
     level = theory.least_thickness(half_angle, math.inf, weight).eta
     if level is None:
         return Curve(mu=np.empty(0), eta=np.empty(0))
     divide = divide_friction(half_angle)
     foot, _ = regions.at_inner_sliding(divide, half_angle, weight)
-    line = iso_half_angle(half_angle, np.linspace(divide, LARGEST_MU, ISO_POINTS), weight)
+    line = iso_half_angle(half_angle, axis.frictions(divide, ISO_POINTS), weight)
     slides = line.mu[line.eta > level + LEVEL]
     if line.mu.size and not slides.size:
         return Curve(mu=np.empty(0), eta=np.empty(0))  # at T the corner is on the line
-    last = float(slides[-1]) if slides.size else LARGEST_MU
+    last = float(slides[-1]) if slides.size else axis.largest
     return Curve(
         mu=np.array([divide, divide, last]), eta=np.array([min(foot, ETA_MAX), level, level])
     )
 
 
-def _last_angle(weight: Weight) -> float:
+def _last_angle(weight: Weight, axis: FrictionAxis) -> float:
     """Half-angle at which the line of first sliding leaves the map on the right [rad]."""
 
     def beyond(half_angle: float) -> float:
-        return float(inner_friction(rotational_thrust(half_angle, weight))) - LARGEST_MU
+        return float(inner_friction(rotational_thrust(half_angle, weight))) - axis.largest
 
     widest = special_angles(weight).zero_thrust
-    return float(brentq(beyond, widest - 0.2, widest - 1e-4))
+    return float(brentq(beyond, widest - 0.2, widest - 1e-9))

@@ -26,12 +26,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from analysis.paper_figures import TABLE_1
 from blocksim.arch import theory
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import equations
 from blocksim.arch.theory.critical import Critical
 from blocksim.arch.theory.regions import crown_hinge, divide, equal_angles, first_sliding
+from blocksim.studies.paper import TABLE_1, numbers
 
 PAPER = tomllib.loads(Path(__file__).with_name("cocchetti_rizzi_2024.toml").read_text("utf-8"))
 CONSTANTS = PAPER["constants"]
@@ -111,11 +111,13 @@ def test_misprint_of_figure_22() -> None:
     assert round(phi, 1) != caption["phi_deg_as_printed"]
 
 
-def test_paper_figures_compares_with_what_is_printed() -> None:
+def test_the_command_paper_compares_with_what_is_printed() -> None:
     for name, values in TABLE_1.items():
         printed = TABLE[name]
         symbols = ("eta", "mu", "alpha", "h", "beta_r", "beta_s")
         assert values == tuple(printed[symbol] for symbol in symbols), name
+    assert len(numbers()) == 45
+    assert max(each.difference for each in numbers()) <= PRINTED
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,9 @@ EXTRADOS, INTRADOS, OUT, IN = range(4)
 COMPATIBLE = 1e-6
 """Misfit of rates that add up to one beyond which a mode is not possible."""
 
+SAME = 1e-9
+"""Angle within which hinge and sliding joint are one joint [rad]."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Collapse:
@@ -93,6 +96,8 @@ def _active(
 ) -> list[tuple[float, int]]:
     """Joints of one half and what they do."""
     hinge, slide = beta_r or 0.0, beta_s or 0.0
+    if abs(hinge - slide) < SAME:
+        slide = hinge  # one joint does both, not a sliver between two
     joints = {
         Mode.RRR: [(0.0, EXTRADOS), (hinge, INTRADOS), (half_angle, EXTRADOS)],
         Mode.R: [(0.0, EXTRADOS), (0.0, INTRADOS), (half_angle, EXTRADOS)],

@@ -127,7 +127,7 @@ def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
     angles = arch.joint_angles
     half = angles >= 0 if symmetric else np.full(angles.size, True)
     program = conditions(angles[half], arch.eta, mu, arch.centroid_factor, symmetric=symmetric)
-    state, extra, rates = _solve(program)
+    state, extra, rates = solve(program)
     if extra < -AT_LIMIT:
         rates = np.zeros_like(rates)
     strength = (program.matrix @ state + program.offset - extra).reshape(-1, 4)
@@ -192,8 +192,8 @@ def conditions(
     )
 
 
-def _solve(program: Conditions) -> tuple[Array, float, Array]:
-    """Solve the program: unknowns x, value s, rates."""
+def solve(program: Conditions) -> tuple[Array, float, Array]:
+    """Solve the program: unknowns x, value s (zero at the least thickness), rates."""
     # HiGHS works to 1e-7, which is a thin arch's whole strength: once more, from near.
     state, rates = _optimum(program, np.append(0.0 * program.matrix[0], 0.0), 1.0)
     if state[-1] > -SPARE / 2:

@@ -1,0 +1,128 @@
+"""The curves of the paper's Figs 3-5, each in the parameter in which it is explicit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from blocksim.arch.theory.equations import shape
+from blocksim.arch.theory.map import special_angles
+from blocksim.arch.theory.regions import divide_half_angle
+from blocksim.arch.theory.roots import root
+from blocksim.blocks.assembly import Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RotationalBranch:
+    """A branch of the purely rotational mode, eq. (7).
+
+    Parameters
+    ----------
+    half_angle, beta_r, eta, thrust : (k,) float
+        alpha and beta_r [rad], eta, h.
+    """
+
+    half_angle: Array
+    beta_r: Array
+    eta: Array
+    thrust: Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SlidingCurve:
+    """Sliding of an inner joint (9), and where the shoulder slides with it, (8).
+
+    Parameters
+    ----------
+    mu : (k,) float
+        Friction coefficient, from 0 to inf.
+    half_angle : (k,) float
+        alpha at which both joints slide, from 0 to pi [rad].
+    beta_s, thrust : (k,) float
+        Angle of the inner joint [rad]; h.
+    """
+
+    mu: Array
+    half_angle: Array
+    beta_s: Array
+    thrust: Array
+
+
+def rotational_branches(points: int = 200) -> tuple[RotationalBranch, RotationalBranch]:
+    """Give the two branches of eq. (7), with its upper and with its lower signs.
+
+    Parameters
+    ----------
+    points : int
+        Points on each branch.
+
+    Returns
+    -------
+    upper : RotationalBranch
+        From alpha = 0 to alpha_s-beta, where the inner hinge is farthest from the crown.
+    lower : RotationalBranch
+        From there to alpha_l, where the hinge is back at the crown.
+    """
+    special = special_angles()
+    # Denser towards the end that both share, where alpha goes as a root.
+    rising = special.hinge * (1 - np.linspace(1.0, 0.0, points) ** 2)
+    upper = _branch(rising[1:], 1.0)
+    lower = _branch(rising[1:][::-1], -1.0)
+    start = (0.0, 0.0, 0.0, 1.0)
+    end = (special.zero_thrust, 0.0, 1.0, 0.0)
+    return _joined(start, upper, None), _joined(None, lower, end)
+
+
+def _branch(beta: Array, sign: float) -> Array:
+    """Rows alpha, beta, eta, h of eq. (7), hinges above 0."""
+    sine = np.sin(beta)
+    f, g = sine + beta * np.cos(beta), beta + sine * np.cos(beta)
+    gap = np.sqrt(np.maximum(f * f - 2 * g * sine + sine * sine, 0.0))
+    level = g * (f + sign * gap) / (sine * (2 * g - sine))
+    eta = 2 * (g - sine - sign * gap) / (f + g)
+    thrust = (f - sine + sign * gap) / (2 * sine)
+    alpha = [_half_angle(each) for each in level.tolist()]
+    return np.array([alpha, beta, eta, thrust])
+
+
+def _half_angle(level: float) -> float:
+    """Solve A(alpha) = alpha cot(alpha/2) for alpha, (3)."""
+    return root(lambda angle: float(shape(angle)) - level, 1e-9, 3.1)
+
+
+def _joined(
+    start: tuple[float, ...] | None, rows: Array, end: tuple[float, ...] | None
+) -> RotationalBranch:
+    """Put the ends, at which (7) is 0/0, to a branch."""
+    ends = [None if each is None else np.array(each)[:, None] for each in (start, end)]
+    parts = [part for part in (ends[0], rows, ends[1]) if part is not None]
+    alpha, beta, eta, thrust = np.concatenate(parts, axis=1)
+    return RotationalBranch(half_angle=alpha, beta_r=beta, eta=eta, thrust=thrust)
+
+
+def sliding_curve(points: int = 400) -> SlidingCurve:
+    """Give thrust and angle of inner sliding, from no friction to unbounded friction.
+
+    With h = cos^2(E/2) eq. (9) is mu = tan((E - sin E)/2), for E from 0 to pi.
+
+    Parameters
+    ----------
+    points : int
+
+    Returns
+    -------
+    SlidingCurve
+    """
+    # Denser towards pi, where half of the range of alpha is.
+    anomaly = math.pi * (1 - np.linspace(1.0, 0.0, points)[1:-1] ** 2)
+    thrust, beta_s = np.cos(anomaly / 2) ** 2, np.sin(anomaly) / 2
+    mu = np.tan((anomaly - np.sin(anomaly)) / 2)
+    alpha = [divide_half_angle(each) for each in mu.tolist()]
+    return SlidingCurve(
+        mu=np.concatenate([[0.0], mu, [math.inf]]),
+        half_angle=np.concatenate([[0.0], alpha, [math.pi]]),
+        beta_s=np.concatenate([[0.0], beta_s, [0.0]]),
+        thrust=np.concatenate([[1.0], thrust, [0.0]]),
+    )
