@@ -152,7 +152,8 @@ def test_dragging_looks_at_one_arch_after_another(page: playwright.Page) -> None
     assert page.input_value("#alpha-number") in seen
 
 
-def test_the_mechanism_moves_until_paused(page: playwright.Page) -> None:
+def test_the_mechanism_moves_until_paused(open_page: Open) -> None:
+    page = open_page(reduced_motion="no-preference")
     poses = """() => [...document.querySelectorAll("#arch .stone")].map(
       (stone) => stone.parentNode.getAttribute("transform")).join()"""
     first = page.evaluate(poses)
@@ -319,7 +320,7 @@ def test_a_simulated_point_is_judged_as_built(page: playwright.Page) -> None:
 
 
 def test_a_result_of_the_table_comes_into_view(open_page: Open) -> None:
-    page = open_page(1280, 500, reduced_motion="reduce")
+    page = open_page(1280, 500)
     page.select_option("#view", "thin")
     page.get_by_role("button", name="sector").click()
     settle(page)
@@ -335,7 +336,7 @@ BOXES = """(selector) => [...document.querySelectorAll(selector)].map((element) 
 
 @pytest.mark.parametrize("size", [(1440, 900), (390, 844), (844, 390)])
 def test_words_on_the_map_are_whole_and_apart(open_page: Open, size: tuple[int, int]) -> None:
-    page = open_page(*size, reduced_motion="reduce")
+    page = open_page(*size)
     _, *whole = page.evaluate(BOXES, "#map")[0]
     words = page.evaluate(BOXES, "#map text")
     assert "149.156°" in [text for text, *_ in words]
@@ -354,7 +355,7 @@ def test_words_on_the_map_are_whole_and_apart(open_page: Open, size: tuple[int, 
 
 @pytest.mark.parametrize(("width", "told"), [(390, True), (1280, False)])
 def test_a_table_wider_than_the_window_says_so(open_page: Open, width: int, told: bool) -> None:
-    page = open_page(width, 800, reduced_motion="reduce")
+    page = open_page(width, 800)
     wide = page.locator(".scroll").evaluate("e => e.scrollWidth > e.clientWidth")
     assert wide is told
     playwright.expect(page.locator("#sideways")).to_be_visible(visible=told)
@@ -426,7 +427,7 @@ def test_a_point_off_the_zoom_is_marked_as_off(
 @pytest.mark.parametrize("picture", ["map", "arch"])
 def test_pictures_are_saved_as_files(open_page: Open, tmp_path: Path, picture: str) -> None:
     """Light from a dark page; what is drawn on the page is in the file, without its style."""
-    page = open_page(color_scheme="dark", reduced_motion="reduce")
+    page = open_page(color_scheme="dark")
     set_arch(page, alpha=125, mu=0.9, eta=0.45)  # it stands: lines are not faded
     page.check("#built")
     settle(page)
