@@ -12,7 +12,7 @@ import pytest
 from hypothesis import settings
 from sweeps import SIMULATED, Rows, design_of, rows_of
 
-from blocksim.many import sweep
+from blocksim.many import run, sweep
 
 # The same examples in every run, time not asserted; tests of numbers that cost little ask
 # for more.
@@ -32,6 +32,12 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
     assert len(rows) == 80
     assert all(row["error"] is None for row in rows.values())
     return rows
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweep without other processes: they take seconds to start, and have their own tests."""
+    monkeypatch.setattr(run, "processes", lambda _: ThreadPoolExecutor(1))
 
 
 @pytest.fixture(scope="module")
