@@ -218,8 +218,9 @@ def caught(mutation: Mutation, copy: Path) -> bool:
     file.write_text(right.replace(mutation.line, mutation.wrong), encoding="utf-8")
     tests = [f"tests/{each}" for each in mutation.tests.split()]
     run = [sys.executable, "-m", "pytest", "-n", "0", "-x", *tests]
-    # Those of the copy, not of an installed blocksim.
-    where = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+    # Those of the copy, not of an installed blocksim; what is compiled is kept beside it.
+    where = {**os.environ, "PYTHONPATH": str(copy)}
+    where.pop("PYTHONDONTWRITEBYTECODE", None)
     done = subprocess.run(run, cwd=copy, env=where, capture_output=True, check=False)
     file.write_text(right, encoding="utf-8")
     if done.returncode not in {0, 1}:

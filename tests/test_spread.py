@@ -40,7 +40,13 @@ def apart(name: str) -> dict[str, Any]:
     return {**scene, "move": moves}
 
 
-@pytest.mark.parametrize(("name", "share"), list(zip(SPREAD, OF_SPAN, strict=True)))
+@pytest.mark.parametrize(
+    ("name", "share"),
+    [
+        pytest.param(name, share, marks=[] if name == SPREAD[0] else pytest.mark.long)
+        for name, share in zip(SPREAD, OF_SPAN, strict=True)
+    ],
+)
 def test_span_at_collapse_by_continuation(name: str, share: float) -> None:
     """As published with the cases: value, of the span, hinges that do not move."""
     path = follow(structure_of(apart(name)), 0.5)
