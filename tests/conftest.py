@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 from collections.abc import Iterator
@@ -20,6 +21,16 @@ settings.register_profile(
     "blocksim", deadline=None, derandomize=True, database=None, max_examples=30
 )
 settings.load_profile("blocksim")
+
+
+# What is loaded when all tests are collected stays to the end: the collector of garbage need
+# not go through it, neither while it grows nor later.
+gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")
