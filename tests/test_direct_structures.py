@@ -179,6 +179,7 @@ def test_a_smooth_ladder_leaves_its_wall_at_two_thirds_of_its_height(other_way: 
     assert np.abs(face[:, 1]).max() < 2e-3
 
 
+@pytest.mark.long
 def test_a_block_on_its_corner_falls_back_and_loses_what_housner_says() -> None:
     """Corpus, `rocking_1x4_9`: time to the impact, speed there, and the share kept."""
     angle, alpha = 0.22048079681417773, math.atan(1 / 4)

@@ -50,7 +50,14 @@ def test_least_thickness_of_rings_is_exact(half: float, mu: float, voussoirs: in
 
 @pytest.mark.parametrize(
     "name",
-    ["semicircle_40_mu315", "rampant_100_60", "pointed_e0_5", "ellipse_b0_5", "parabola_f0_5"],
+    [
+        "semicircle_40_mu315",
+        "pointed_e0_5",
+        *(
+            pytest.param(name, marks=pytest.mark.long)
+            for name in ("rampant_100_60", "ellipse_b0_5", "parabola_f0_5")
+        ),
+    ],
 )
 def test_published_least_thickness(name: str) -> None:
     arch = structure_of({**LEAST[name], "friction": MU.get(name, "inf")})
