@@ -113,9 +113,16 @@ def test_sliders_tell_at_once_whether_it_stands_and_why(page: playwright.Page) -
 
 @pytest.mark.parametrize(
     ("mu", "eta", "mode"),
-    [(2.0, 0.3, "rrr"), (0.6, 0.3, "srr"), (2.5, 0.85, "rrs"), (3.0, 1.4, "rs"),
-     (1.0, 1.5, "ss"), (math.inf, 1.4, "r"), (1.79, 0.963, "rsr")],
-)  # fmt: skip
+    [
+        (2.0, 0.3, "rrr"),
+        (math.inf, 1.4, "r"),
+        (1.79, 0.963, "rsr"),
+        pytest.param(0.6, 0.3, "srr", marks=pytest.mark.long),
+        pytest.param(2.5, 0.85, "rrs", marks=pytest.mark.long),
+        pytest.param(3.0, 1.4, "rs", marks=pytest.mark.long),
+        pytest.param(1.0, 1.5, "ss", marks=pytest.mark.long),
+    ],
+)
 def test_hovering_and_clicking_the_map(
     page: playwright.Page, mu: float, eta: float, mode: str
 ) -> None:
@@ -336,7 +343,9 @@ BOXES = """(selector) => [...document.querySelectorAll(selector)].map((element) 
   return [element.textContent, box.left, box.top, box.right, box.bottom]; })"""
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (390, 844), (844, 390)])
+@pytest.mark.parametrize(
+    "size", [(1440, 900), (390, 844), pytest.param((844, 390), marks=pytest.mark.long)]
+)
 def test_words_on_the_map_are_whole_and_apart(open_page: Open, size: tuple[int, int]) -> None:
     page = open_page(*size)
     _, *whole = page.evaluate(BOXES, "#map")[0]
@@ -405,9 +414,13 @@ def test_friction_comes_back_after_infinity(page: playwright.Page) -> None:
 
 @pytest.mark.parametrize(
     ("view", "mu", "eta", "turned"),
-    [("thin", 0.5, 0.6, -90), ("thin", 3, 0.1, 0), ("middle", 0.6, 0.7, 180),
-     ("whole", 7, 0.3, 0)],
-)  # fmt: skip
+    [
+        ("thin", 0.5, 0.6, -90),
+        ("whole", 7, 0.3, 0),
+        pytest.param("thin", 3, 0.1, 0, marks=pytest.mark.long),
+        pytest.param("middle", 0.6, 0.7, 180, marks=pytest.mark.long),
+    ],
+)
 def test_a_point_off_the_zoom_is_marked_as_off(
     page: playwright.Page, view: str, mu: float, eta: float, turned: float
 ) -> None:
@@ -556,7 +569,9 @@ def test_controls_and_pictures_have_names(page: playwright.Page) -> None:
     assert "turns about its intrados" in page.get_attribute("#arch", "aria-label")
 
 
-@pytest.mark.parametrize("width", [320, 375, 768, 1280])
+@pytest.mark.parametrize(
+    "width", [320, *(pytest.param(each, marks=pytest.mark.long) for each in (375, 768)), 1280]
+)
 def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None:
     page = open_page(width, 812, has_touch=width < 800)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
