@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ import pytest
 from hypothesis import settings
 from sweeps import SIMULATED, Rows, design_of, rows_of
 
-from blocksim.many import sweep
+from blocksim.many import run, sweep
 
 # The same examples in every run, time not asserted; tests of numbers that cost little ask
 # for more.
@@ -20,6 +21,16 @@ settings.register_profile(
     "blocksim", deadline=None, derandomize=True, database=None, max_examples=30
 )
 settings.load_profile("blocksim")
+
+
+# What is loaded when all tests are collected stays to the end: the collector of garbage need
+# not go through it, neither while it grows nor later.
+gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")
@@ -32,6 +43,12 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Rows:
     assert len(rows) == 80
     assert all(row["error"] is None for row in rows.values())
     return rows
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweep without other processes: they take seconds to start, and have their own tests."""
+    monkeypatch.setattr(run, "processes", lambda _: ThreadPoolExecutor(1))
 
 
 @pytest.fixture(scope="module")

@@ -224,6 +224,7 @@ def test_arches_with_an_equilibrium_do_not_move(tmp_path: Path) -> None:
     assert (tmp_path / "direct_coulomb.png").stat().st_size > 0
 
 
+@pytest.mark.long
 def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:
     result = study("direct_arches").main(tmp_path, quick=True)
     assert result.arches == result.confirmed == 3
@@ -253,6 +254,7 @@ def test_the_map_by_simulation_goes_on_where_it_was(tmp_path: Path) -> None:
     assert (tmp_path / "mode_sweep_direct.png").stat().st_size > 0
 
 
+@pytest.mark.long
 def test_modes_at_the_onset_are_those_of_limit_analysis(tmp_path: Path) -> None:
     result = study("onset_modes").main(tmp_path, quick=True)
     assert result.arches == result.as_limit == 14
@@ -282,6 +284,7 @@ def test_arches_of_the_map_are_drawn_the_same_again_and_near_critical() -> None:
             assert not limit.stands(arch, each.mu * 0.999)
 
 
+@pytest.mark.long
 def test_few_blocks_answer_as_all_voussoirs_do(tmp_path: Path) -> None:
     result = study("reduction").main(tmp_path, quick=True)
     assert result.arches == result.compared == result.same == result.confirmed == 4

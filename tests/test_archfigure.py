@@ -48,7 +48,7 @@ def test_mode_that_is_not_possible() -> None:
         collapse_of_mode(Mode.SRR, 0.3, 0.01, 0.9, beta_r=0.2)
 
 
-@pytest.mark.parametrize("kind", ["png", "svg"])
+@pytest.mark.parametrize("kind", [pytest.param("png", marks=pytest.mark.long), "svg"])
 def test_figure_is_reproducible(kind: str) -> None:
     files = []
     for _ in range(2):

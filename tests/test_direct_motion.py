@@ -25,7 +25,7 @@ def world_of(assembly, mu, step):
 
 
 FALLS = [
-    (90, 0.9, 20, 0.9),
+    pytest.param(90, 0.9, 20, 0.9, marks=pytest.mark.long),
     pytest.param(125, 0.9, 15, 0.9, marks=pytest.mark.long),
     pytest.param(150, 2.0, 15, 0.97, marks=pytest.mark.long),
     (65, 0.35, 12, 0.7),

@@ -179,6 +179,7 @@ def test_a_smooth_ladder_leaves_its_wall_at_two_thirds_of_its_height(other_way: 
     assert np.abs(face[:, 1]).max() < 2e-3
 
 
+@pytest.mark.long
 def test_a_block_on_its_corner_falls_back_and_loses_what_housner_says() -> None:
     """Corpus, `rocking_1x4_9`: time to the impact, speed there, and the share kept."""
     angle, alpha = 0.22048079681417773, math.atan(1 / 4)
@@ -209,11 +210,11 @@ def test_a_block_on_its_corner_falls_back_and_loses_what_housner_says() -> None:
 
 
 def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
-    """The joint as built is 0.5 m long, the face of the support 10 m."""
+    """The joint as built is 0.5 m long, the face of the support 4 m."""
     slope, mu, width = math.radians(30), 0.2, 0.5
     along, up = np.array([1.0, 0.0]), np.array([0.0, 1.0])
     block = [0 * up, width * along, width * along + 0.2 * up, 0.2 * up]
-    track = {"id": 0, "vertices": [[-0.5, -1], [10, -1], [10, 0], [-0.5, 0]], "fixed": True}
+    track = {"id": 0, "vertices": [[-0.5, -1], [4, -1], [4, 0], [-0.5, 0]], "fixed": True}
     problem = structure_of(
         {
             "friction": mu,
@@ -223,7 +224,7 @@ def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
     size, start = problem.assembly.size, problem.assembly.centres[0] / problem.assembly.size
     world = world_of(problem, 0.01)
     time, speeding = 0.0, math.sin(slope) - mu * math.cos(slope)
-    while world.poses()[0, 0] * size < 9.7:
+    while world.poses()[0, 0] * size < 3.7:
         world.advance(1)
         time += 0.01
         x, y, turned = world.poses()[0]
@@ -231,8 +232,8 @@ def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
         assert x - start[0] == pytest.approx(way, rel=1e-6)
         assert abs(turned) < 1e-9
         assert y == pytest.approx(start[1], abs=1e-9)
-    # Its centre passes the end at 10 m: it turns over the edge, clockwise.
-    while world.poses()[0, 0] * size < 10.2:
+    # Its centre passes the end at 4 m: it turns over the edge, clockwise.
+    while world.poses()[0, 0] * size < 4.2:
         world.advance(1)
     assert world.poses()[0, 2] < -1e-3
 
@@ -246,7 +247,7 @@ def test_a_force_at_a_point_goes_with_its_block() -> None:
     problem = structure_of({**table, "live": live}).with_load(1.0)
     pivot = np.array([1.0, 0.0])
     inertia = problem.assembly.blocks[0].inertia + 1.25
-    world, size = world_of(problem, 1e-3), problem.assembly.size
+    world, size = world_of(problem, 2e-3), problem.assembly.size
     world.hold(1)
     energy = world.energy
     angles = []

@@ -8,7 +8,6 @@ import runpy
 import subprocess
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -21,7 +20,6 @@ from running import inside
 from blocksim.ask.methods import METHODS
 from blocksim.common.references import references
 from blocksim.common.version import __version__
-from blocksim.many import run as many
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -123,10 +121,7 @@ def run(page: Path, *, long: bool) -> int:
     return count
 
 
-@pytest.fixture(autouse=True)
-def _one_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweep in this process: others take seconds to start, and have tests of their own."""
-    monkeypatch.setattr(many, "processes", lambda _: ThreadPoolExecutor(1))
+pytestmark = pytest.mark.usefixtures("in_this_process")
 
 
 @pytest.mark.parametrize("page", ASKING, ids=name_of)

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -44,26 +45,34 @@ def interrupted(
     until(lambda: not any(alive(pid) for pid in workers))
 
 
-@pytest.mark.parametrize("sent", CODES)
-@pytest.mark.parametrize("delay", [0.0, 0.05, 0.2, 0.6])
+@pytest.mark.parametrize(
+    ("delay", "sent"),
+    [
+        pytest.param(delay, sent, marks=[] if sent is usual else pytest.mark.long)
+        for delay, usual in (
+            (0.0, signal.SIGTERM),
+            (0.05, signal.SIGINT),
+            (0.2, signal.SIGTERM),
+            (0.6, signal.SIGINT),
+        )
+        for sent in CODES
+    ],
+)
 def test_while_it_starts(delay: float, sent: signal.Signals) -> None:
     interrupted(imports, delay, sent, "bracket", *ARCH, "--tol", "1e-4")
 
 
-MOMENTS = [(0.0, signal.SIGTERM), (0.5, signal.SIGINT)]
-OTHERS = [
-    (0.0, signal.SIGINT),
-    (0.1, signal.SIGINT),
-    (0.1, signal.SIGTERM),
-    (0.5, signal.SIGTERM),
-]
+MOMENT = ("sweep", 0.5, signal.SIGINT)
+"""test_processes has one of `validate`, with workers that are at work."""
 
 
 @pytest.mark.parametrize(
-    ("delay", "sent"),
-    [*MOMENTS, *(pytest.param(*other, marks=pytest.mark.long) for other in OTHERS)],
+    ("command", "delay", "sent"),
+    [
+        pytest.param(*each, marks=[] if each == MOMENT else pytest.mark.long)
+        for each in product(("validate", "sweep"), (0.0, 0.1, 0.5), CODES)
+    ],
 )
-@pytest.mark.parametrize("command", ["validate", "sweep"])
 def test_while_workers_start(
     command: str, delay: float, sent: signal.Signals, tmp_path: Path
 ) -> None:

@@ -83,7 +83,10 @@ def test_what_was_given_is_told() -> None:
     assert alone.forces is None
 
 
-@pytest.mark.parametrize("case", TWO_ANSWERS[1:3] + TWO_ANSWERS[4:])
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(TWO_ANSWERS[1], marks=pytest.mark.long), TWO_ANSWERS[2], *TWO_ANSWERS[4:]],
+)
 def test_bullet_keeps_forces_it_is_given(case: Case) -> None:
     """It keeps no impulses: joints press by themselves, and friction has to be found."""
     pytest.importorskip("pybullet", exc_type=ImportError)

@@ -58,18 +58,30 @@ def words_of_pdf(content: bytes) -> str:
     return b"\n".join(b"".join(re.findall(letters, text)) for text in texts).decode("latin-1")
 
 
-@pytest.mark.parametrize("name", INPUTS)
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        pytest.param(name, kind, marks=[] if name in drawn else pytest.mark.long)
+        # Each input by one of them but what leans, of which test_video has the svg; by both
+        # what draws a still and a frame.
+        for kind, drawn in (
+            ("svg", ["arch", "continuous", "structure", "recording", "lines"]),
+            ("pdf", ["arch", "recording", "map"]),
+        )
+        for name in INPUTS
+    ],
+)
 def test_every_input_is_drawn_as_svg_and_pdf(
-    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, kind: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked, words = INPUTS[name]
-    run(folder, monkeypatch, *asked, "--out", f"{name}.pdf")
-    if name != "leaning":  # a simulation, and test_video asks for its svg
-        run(folder, monkeypatch, *asked, "--out", f"{name}.svg")
-        assert words in (folder / f"{name}.svg").read_text(encoding="utf-8")
-    content = (folder / f"{name}.pdf").read_bytes()
-    assert content.startswith(b"%PDF")
-    assert words in words_of_pdf(content)
+    run(folder, monkeypatch, *asked, "--out", f"{name}.{kind}")
+    content = (folder / f"{name}.{kind}").read_bytes()
+    if kind == "pdf":
+        assert content.startswith(b"%PDF")
+        assert words in words_of_pdf(content)
+    else:
+        assert words in content.decode()
 
 
 @pytest.mark.parametrize("name", ["arch", "structure", "recording"])

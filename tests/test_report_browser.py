@@ -94,8 +94,17 @@ def test_it_plays_to_the_end_and_can_be_stopped(page, complaints: list[str]) -> 
     assert complaints == []
 
 
-@pytest.mark.parametrize("width", [375, 768, 1280])
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(
+    ("width", "scheme"),
+    [
+        (375, "light"),
+        (1280, "dark"),
+        *(
+            pytest.param(*each, marks=pytest.mark.long)
+            for each in ((375, "dark"), (768, "light"), (768, "dark"), (1280, "light"))
+        ),
+    ],
+)
 def test_it_fits_the_window(page, width: int, scheme: str) -> None:
     page.set_viewport_size({"width": width, "height": 800})
     page.emulate_media(color_scheme=scheme)

@@ -167,8 +167,15 @@ def test_a_lintel_on_two_columns_overturns_with_them(name: str) -> None:
     assert shake(shaken(name, 1.01), "direct").verdict is Verdict.COLLAPSES
 
 
-@pytest.mark.parametrize("shape", ["half-sine", "full-sine"])
-@pytest.mark.parametrize("engine", ["direct", "pymunk"])
+@pytest.mark.parametrize(
+    ("shape", "engine"),
+    [
+        ("half-sine", "direct"),
+        ("full-sine", "pymunk"),
+        pytest.param("full-sine", "direct", marks=pytest.mark.long),
+        pytest.param("half-sine", "pymunk", marks=pytest.mark.long),
+    ],
+)
 def test_blocks_turn_as_far_as_housner_says(shape: str, engine: str) -> None:
     """Through impacts, of which each keeps what contact alone leaves."""
     shaking = Shaking(shape=shape, amplitude=0.45, duration=0.5)
@@ -367,6 +374,7 @@ def test_an_amplitude_is_bracketed() -> None:
         family_of(still, "amplitude")
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_sweep_maps_amplitude_against_duration(tmp_path: Path) -> None:
     (tmp_path / "map.toml").write_text(
         'kind = "column"\ndrums = 1\ndrum_height = 4.0\nwidth = 1.0\nmu = 2.0\n'

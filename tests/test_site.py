@@ -53,8 +53,15 @@ def test_links_are_of_the_site_and_formulas_are_drawn(site: Path) -> None:
     assert "Half-angle of embrace alpha" in api
 
 
-@pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(
+    ("width", "scheme"),
+    [
+        (1280, "light"),
+        (390, "dark"),
+        pytest.param(1280, "dark", marks=pytest.mark.long),
+        pytest.param(390, "light", marks=pytest.mark.long),
+    ],
+)
 def test_pages_fit_the_screen_and_ask_nothing_of_the_network(
     site: Path, browser: Any, width: int, scheme: str
 ) -> None:

@@ -40,7 +40,13 @@ def apart(name: str) -> dict[str, Any]:
     return {**scene, "move": moves}
 
 
-@pytest.mark.parametrize(("name", "share"), list(zip(SPREAD, OF_SPAN, strict=True)))
+@pytest.mark.parametrize(
+    ("name", "share"),
+    [
+        pytest.param(name, share, marks=[] if name == SPREAD[0] else pytest.mark.long)
+        for name, share in zip(SPREAD, OF_SPAN, strict=True)
+    ],
+)
 def test_span_at_collapse_by_continuation(name: str, share: float) -> None:
     """As published with the cases: value, of the span, hinges that do not move."""
     path = follow(structure_of(apart(name)), 0.5)
@@ -193,11 +199,21 @@ def test_moves_are_written_back() -> None:
     assert again.moves[0].about == pytest.approx([1, 0])
 
 
-def test_supports_that_move_are_recorded_until_all_has_fallen(tmp_path: Path) -> None:
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """An arch as a structure file."""
+    table = {"kind": "circular-arch", "voussoirs": 8, "friction": 0.8, "thickness": 0.13}
+    path = tmp_path / "arch.json"
+    path.write_text(json.dumps(table))
+    return path
+
+
+@pytest.mark.long
+def test_supports_that_move_are_recorded_until_all_has_fallen(
+    file: Path, tmp_path: Path
+) -> None:
     """The supports go on apart, evenly; the arch falls near the way known for it."""
-    out, table = tmp_path / "run.npz", {"kind": "circular-arch", "voussoirs": 8}
-    file = tmp_path / "arch.json"
-    file.write_text(json.dumps({**table, "friction": 0.8, "thickness": 0.13}))
+    out = tmp_path / "run.npz"
     done = blocksim("simulate", str(file), "--over", "spread", "--out", str(out))
     assert done.returncode == 0, done.stderr
     recording = read_recording(out)
@@ -214,6 +230,10 @@ def test_supports_that_move_are_recorded_until_all_has_fallen(tmp_path: Path) ->
     assert known is not None
     # It takes a while to fall, in which the supports go on.
     assert known < falls < known + 0.01 * 3
+
+
+def test_supports_that_move_are_recorded_by_direct_alone(file: Path, tmp_path: Path) -> None:
+    out = tmp_path / "run.npz"
     for options, said in (
         (["--over", "tilt"], "--over = 'tilt': must be spread"),
         (["--over", "spread", "--method", "pymunk"], "--method = 'pymunk': must be direct"),

@@ -256,7 +256,13 @@ def test_words_of_loading() -> None:
     assert [force_words(each) for each in (12.0, 1.2e3, 3.4e6)] == ["12 N", "1.2 kN", "3.4 MN"]
 
 
-@pytest.mark.parametrize("name", names()[::6])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.long if at % 3 else [])
+        for at, name in enumerate(names()[::6])
+    ],
+)
 def test_structures_of_the_corpus_are_framed(name: str) -> None:
     """Every block, force and moved block is inside the axes; a bar tells lengths."""
     problem = structure_of(scenes(name)[0])

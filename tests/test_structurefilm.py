@@ -153,13 +153,12 @@ def test_joints_are_on_parts_of_faces() -> None:
 
 def test_a_block_alone_and_a_corner_on_a_wall() -> None:
     """One block has no neighbour to measure by; a corner has no length."""
-    for name in ("block_slides", "plank_on_wall"):
+    for name, view in (("block_slides", "2d"), ("plank_on_wall", "3d")):
         problem = structure_of(scenes(name)[0])
         stage = Stage(recording(problem, np.zeros((2, 1, 3))))
         assert stage.grain == pytest.approx(problem.assembly.reach[0] / problem.assembly.size)
-        for view in ("2d", "3d"):
-            film = Film([stage.recording], view=view, height=240)
-            assert np.unique(film.frame(0).reshape(-1, 4), axis=0).shape[0] > 20
+        film = Film([stage.recording], view=view, height=240)
+        assert np.unique(film.frame(0).reshape(-1, 4), axis=0).shape[0] > 20
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
@@ -333,7 +332,7 @@ def test_film_of_a_stack_that_falls_by_direct(tmp_path: Path) -> None:
     ]
     problem = structure_of({"title": "Three blocks", "friction": 0.6, "blocks": blocks})
     run = simulate(problem, method="direct", duration=2.0)
-    film = render([run], tmp_path / "film.mp4", height=360, slow=2)
+    film = render([run], tmp_path / "film.mp4", height=360, slow=1)
     with av.open(str(tmp_path / "film.mp4")) as container:
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
     assert len(frames) == film.count

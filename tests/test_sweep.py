@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -396,6 +395,7 @@ def test_a_table_of_one_question_about_a_kind(tmp_path: Path) -> None:
     assert held == {key: value for key, value in row.items() if key != "parameters"}
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_csv_of_arches_is_their_rows(tmp_path: Path) -> None:
     done = inside(*written(tmp_path, GRID), "--workers", "1", "--csv")
     assert done.returncode == 0, done.stderr
@@ -413,15 +413,14 @@ def test_csv_of_arches_is_their_rows(tmp_path: Path) -> None:
                 assert said[name] == ("" if value is None else str(value))
 
 
-def test_a_table_is_written_where_it_can_be(tmp_path: Path) -> None:
-    without = "import sys; sys.modules['pyarrow'] = None; from blocksim.cli import main; main()"
+@pytest.mark.usefixtures("in_this_process")
+def test_a_table_is_written_where_it_can_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked = written(tmp_path, GRID)
-    done = subprocess.run(
-        [sys.executable, "-c", without, *asked, "--parquet"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "pyarrow", None)
+        done = blocksim(*asked, "--parquet")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.endswith("not available here: pip install 'blocksim[parquet]'\n")
     assert not (tmp_path / "out").exists()

@@ -43,7 +43,7 @@ def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
     part = out / ".rows-x.jsonl.part"
     part.write_text("what the other is writing")
     with locked(out):
-        done = blocksim(*asked, "--workers", "1")
+        done = inside(*asked, "--workers", "1")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     assert f"--out = '{out}': must be a folder no other sweep is at work in" in done.stderr
@@ -68,6 +68,7 @@ def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
         assert (tmp_path / LOCK).exists()
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
     tmp_path: Path, uninterrupted: Rows
 ) -> None:
@@ -82,16 +83,18 @@ def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
     assert "must be writable" in done.stderr
     assert not list(out.glob(".rows-*"))
     assert len(rows_of(out)) < 80
-    assert blocksim(*asked, "--workers", "1").returncode == 0
+    assert inside(*asked, "--workers", "1").returncode == 0
     assert rows_of(out) == uninterrupted
 
 
+@pytest.mark.usefixtures("in_this_process")
+@pytest.mark.parametrize("times", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_killed_drivers_leave_no_process_and_lose_no_row(
-    tmp_path: Path, uninterrupted: Rows
+    tmp_path: Path, uninterrupted: Rows, times: int
 ) -> None:
     asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
     there = 0
-    for _ in range(2):
+    for _ in range(times):
         with started(*asked, "--workers", "1") as driver:
             until(lambda seen=there: len(list(out.glob("rows-*"))) > seen, driver)
             workers = children(driver.pid)
@@ -101,7 +104,7 @@ def test_killed_drivers_leave_no_process_and_lose_no_row(
         until(lambda gone=workers: not any(alive(pid) for pid in gone))
     rows = rows_of(out)
     assert 0 < len(rows) < 80
-    assert blocksim(*asked, "--workers", "1").returncode == 0
+    assert inside(*asked, "--workers", "1").returncode == 0
     assert rows_of(out) == uninterrupted
 
 
@@ -134,7 +137,7 @@ def test_a_dask_cluster_gives_the_same_rows(tmp_path: Path, uninterrupted: Rows)
     distributed = pytest.importorskip("distributed")
     asked = written(tmp_path, SIMULATED)
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None
     ) as cluster:
         address = cluster.scheduler_address
         done = inside(*asked, "--scheduler", address, "--json")

@@ -312,13 +312,13 @@ def test_mp4_can_be_read_back(tmp_path: Path) -> None:
     out = tmp_path / "film.mp4"
     told: list[float] = []
     film = render(
-        [falling()], out, slow=2, height=240, progress=lambda share, _: told.append(share)
+        [falling()], out, slow=1, height=180, progress=lambda share, _: told.append(share)
     )
     assert told == sorted(told)
     assert told[-1] == 1.0
     with av.open(str(out)) as container:
         stream = container.streams.video[0]
-        assert (stream.width, stream.height) == (film.width, film.height) == (426, 240)
+        assert (stream.width, stream.height) == (film.width, film.height) == (320, 180)
         assert stream.average_rate == 30
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(stream)]
     assert len(frames) == film.count
@@ -326,13 +326,13 @@ def test_mp4_can_be_read_back(tmp_path: Path) -> None:
         drawn = film.frame(number)[..., :3].astype(int)
         assert np.abs(frames[number] - drawn).mean() < 4
     again = tmp_path / "again.mp4"
-    render([falling()], again, slow=2, height=240)
+    render([falling()], again, slow=1, height=180)
     assert out.read_bytes() == again.read_bytes()
 
 
 def test_gif_can_be_read_back(tmp_path: Path) -> None:
     out = tmp_path / "film.gif"
-    film = render([falling()], out, slow=2, height=180)
+    film = render([falling()], out, slow=1, height=180)
     with Image.open(out) as picture:
         assert picture.size == (film.width, film.height)
         # Frames that are equal are one that stands longer.
@@ -365,7 +365,7 @@ def test_an_interrupted_film_leaves_nothing(tmp_path: Path) -> None:
 
     for name in ("film.mp4", "new.mp4", "new.gif"):
         with pytest.raises(KeyboardInterrupt):
-            render([falling()], tmp_path / name, height=240, progress=interrupt)
+            render([falling()], tmp_path / name, slow=1, height=180, progress=interrupt)
     assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
     assert out.read_bytes() == b"kept"
     with pytest.raises(InputError, match="writable"):
@@ -388,8 +388,9 @@ def test_command_films_recordings(tmp_path: Path) -> None:
 def test_command_films_a_scenario(tmp_path: Path) -> None:
     """1 % below the least thickness it falls onto the ground, and the film ends at rest."""
     out = tmp_path / "film.mp4"
-    asked = ("semicircle", "--method", "pymunk", "--height", "180", "--slow", "1")
-    done = inside("render", *asked, "--out", str(out))
+    asked = ("semicircle", "--voussoirs", "9", "--method", "pymunk")
+    small = ("--height", "180", "--slow", "1")
+    done = inside("render", *asked, *small, "--out", str(out))
     assert (done.returncode, done.stderr) == (0, "")
     assert "until a block reaches the ground" not in done.stdout
     with av.open(str(out)) as container:
@@ -433,7 +434,7 @@ def test_gif_keeps_the_colours_that_say_something(tmp_path: Path) -> None:
 
     In perspective: there hundreds of shades of stone and ground want a place, too.
     """
-    render([hinged()], tmp_path / "film.gif", view="3d", slow=2, height=360)
+    render([hinged()], tmp_path / "film.gif", view="3d", slow=1, height=360)
     told = {
         "extrados": JOINTS[JointState.HINGE_EXTRADOS],
         "intrados": JOINTS[JointState.HINGE_INTRADOS],
@@ -555,10 +556,19 @@ def test_command_draws_a_leaning_arch_as_check_answers(tmp_path: Path) -> None:
 
 def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -> None:
     """As README has it: recordings that go on show the fall; those until a verdict say so."""
-    for name, eta in (("below", "0.1055"), ("above", "0.108")):
+    for name, eta in (("below", "0.1005"), ("above", "0.1035")):
         for way, more in (("short", ()), ("long", ("--seconds", "0.9"))):
             out = f"{tmp_path}/{way}_{name}.npz"
-            asked = ("semicircle", "--eta", eta, "--method", "direct", *more)
+            asked = (
+                "semicircle",
+                "--voussoirs",
+                "9",
+                "--eta",
+                eta,
+                "--method",
+                "direct",
+                *more,
+            )
             assert inside("simulate", *asked, "--out", out).returncode == 0
     said = {}
     for way in ("short", "long"):
@@ -567,7 +577,7 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         said[way] = inside("render", *pair, *small).stdout
     assert "simulate --seconds 2 records how it falls" in said["short"]
     assert "simulate --seconds" not in said["long"]
-    assert "(eta 0.108, direct): it is at rest" in said["long"]
+    assert "(eta 0.1035, direct): it is at rest" in said["long"]
     with Image.open(tmp_path / "long.gif") as picture:
         first = np.asarray(picture.convert("RGB")).astype(int)
         picture.seek(picture.n_frames - 1)

@@ -35,12 +35,15 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 Open = Callable[..., Any]
 
 
-@pytest.fixture
-def open_page(browser: Any, address: str) -> Iterator[Open]:
-    """Open the page in a window of its own; whatever it complains about fails the test."""
+def opened(browser: Any, address: str) -> Iterator[Open]:
+    """Open the page in windows of their own; whatever it complains about fails the test.
+
+    Still, if nothing else is asked for: else the browser draws all the time.
+    """
     contexts, complaints = [], []
 
     def open_it(width: int = 1280, height: int = 800, **options: object) -> Any:
+        options = {"reduced_motion": "reduce", **options}
         context = browser.new_context(viewport={"width": width, "height": height}, **options)
         contexts.append(context)
         page = context.new_page()
@@ -54,6 +57,18 @@ def open_page(browser: Any, address: str) -> Iterator[Open]:
     for context in contexts:
         context.close()
     assert [line for line in complaints if line not in {address, "data:,"}] == []
+
+
+@pytest.fixture
+def open_page(browser: Any, address: str) -> Iterator[Open]:
+    yield from opened(browser, address)
+
+
+@pytest.fixture(scope="module")
+def one_page(browser: Any, address: str) -> Iterator[Any]:
+    """One for all tests of a file, which only ask what its functions return."""
+    for open_it in opened(browser, address):
+        yield open_it()
 
 
 @pytest.fixture

@@ -113,9 +113,16 @@ def test_sliders_tell_at_once_whether_it_stands_and_why(page: playwright.Page) -
 
 @pytest.mark.parametrize(
     ("mu", "eta", "mode"),
-    [(2.0, 0.3, "rrr"), (0.6, 0.3, "srr"), (2.5, 0.85, "rrs"), (3.0, 1.4, "rs"),
-     (1.0, 1.5, "ss"), (math.inf, 1.4, "r"), (1.79, 0.963, "rsr")],
-)  # fmt: skip
+    [
+        (2.0, 0.3, "rrr"),
+        (math.inf, 1.4, "r"),
+        (1.79, 0.963, "rsr"),
+        pytest.param(0.6, 0.3, "srr", marks=pytest.mark.long),
+        pytest.param(2.5, 0.85, "rrs", marks=pytest.mark.long),
+        pytest.param(3.0, 1.4, "rs", marks=pytest.mark.long),
+        pytest.param(1.0, 1.5, "ss", marks=pytest.mark.long),
+    ],
+)
 def test_hovering_and_clicking_the_map(
     page: playwright.Page, mu: float, eta: float, mode: str
 ) -> None:
@@ -152,7 +159,8 @@ def test_dragging_looks_at_one_arch_after_another(page: playwright.Page) -> None
     assert page.input_value("#alpha-number") in seen
 
 
-def test_the_mechanism_moves_until_paused(page: playwright.Page) -> None:
+def test_the_mechanism_moves_until_paused(open_page: Open) -> None:
+    page = open_page(reduced_motion="no-preference")
     poses = """() => [...document.querySelectorAll("#arch .stone")].map(
       (stone) => stone.parentNode.getAttribute("transform")).join()"""
     first = page.evaluate(poses)
@@ -188,20 +196,22 @@ def test_the_map_by_keyboard(page: playwright.Page) -> None:
     assert page.is_checked("#unbounded")
 
 
-def test_never_says_nonsense(page: playwright.Page) -> None:
+@pytest.mark.parametrize("half", [12, pytest.param(40, marks=pytest.mark.long)])
+def test_never_says_nonsense(page: playwright.Page, half: int) -> None:
     """Anywhere in the ranges, both weights: no error, no NaN, and the verdict of theory."""
     random = np.random.default_rng(7)
     weight, mu = "centreline", 1.2
-    for index in range(80):
-        if index == 40:
+    finite = half * 7 // 8
+    for index in range(2 * half):
+        if index == half:
             weight = "sector"
             page.select_option("#weight", weight)
-        if index % 40 == 35:
+        if index % half == finite:
             page.check("#unbounded")
             mu = math.inf
-        elif index == 40:
+        elif index == half:
             page.uncheck("#unbounded")
-        if index % 40 < 35:
+        if index % half < finite:
             mu = float(f"{10 ** random.uniform(-3, 3):.4g}")
             page.fill("#mu-number", str(mu))
         alpha = float(f"{random.uniform(1, 178):.4g}")
@@ -319,7 +329,7 @@ def test_a_simulated_point_is_judged_as_built(page: playwright.Page) -> None:
 
 
 def test_a_result_of_the_table_comes_into_view(open_page: Open) -> None:
-    page = open_page(1280, 500, reduced_motion="reduce")
+    page = open_page(1280, 500)
     page.select_option("#view", "thin")
     page.get_by_role("button", name="sector").click()
     settle(page)
@@ -333,9 +343,11 @@ BOXES = """(selector) => [...document.querySelectorAll(selector)].map((element) 
   return [element.textContent, box.left, box.top, box.right, box.bottom]; })"""
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (390, 844), (844, 390)])
+@pytest.mark.parametrize(
+    "size", [(1440, 900), (390, 844), pytest.param((844, 390), marks=pytest.mark.long)]
+)
 def test_words_on_the_map_are_whole_and_apart(open_page: Open, size: tuple[int, int]) -> None:
-    page = open_page(*size, reduced_motion="reduce")
+    page = open_page(*size)
     _, *whole = page.evaluate(BOXES, "#map")[0]
     words = page.evaluate(BOXES, "#map text")
     assert "149.156°" in [text for text, *_ in words]
@@ -354,7 +366,7 @@ def test_words_on_the_map_are_whole_and_apart(open_page: Open, size: tuple[int, 
 
 @pytest.mark.parametrize(("width", "told"), [(390, True), (1280, False)])
 def test_a_table_wider_than_the_window_says_so(open_page: Open, width: int, told: bool) -> None:
-    page = open_page(width, 800, reduced_motion="reduce")
+    page = open_page(width, 800)
     wide = page.locator(".scroll").evaluate("e => e.scrollWidth > e.clientWidth")
     assert wide is told
     playwright.expect(page.locator("#sideways")).to_be_visible(visible=told)
@@ -402,9 +414,13 @@ def test_friction_comes_back_after_infinity(page: playwright.Page) -> None:
 
 @pytest.mark.parametrize(
     ("view", "mu", "eta", "turned"),
-    [("thin", 0.5, 0.6, -90), ("thin", 3, 0.1, 0), ("middle", 0.6, 0.7, 180),
-     ("whole", 7, 0.3, 0)],
-)  # fmt: skip
+    [
+        ("thin", 0.5, 0.6, -90),
+        ("whole", 7, 0.3, 0),
+        pytest.param("thin", 3, 0.1, 0, marks=pytest.mark.long),
+        pytest.param("middle", 0.6, 0.7, 180, marks=pytest.mark.long),
+    ],
+)
 def test_a_point_off_the_zoom_is_marked_as_off(
     page: playwright.Page, view: str, mu: float, eta: float, turned: float
 ) -> None:
@@ -426,7 +442,7 @@ def test_a_point_off_the_zoom_is_marked_as_off(
 @pytest.mark.parametrize("picture", ["map", "arch"])
 def test_pictures_are_saved_as_files(open_page: Open, tmp_path: Path, picture: str) -> None:
     """Light from a dark page; what is drawn on the page is in the file, without its style."""
-    page = open_page(color_scheme="dark", reduced_motion="reduce")
+    page = open_page(color_scheme="dark")
     set_arch(page, alpha=125, mu=0.9, eta=0.45)  # it stands: lines are not faded
     page.check("#built")
     settle(page)
@@ -553,7 +569,9 @@ def test_controls_and_pictures_have_names(page: playwright.Page) -> None:
     assert "turns about its intrados" in page.get_attribute("#arch", "aria-label")
 
 
-@pytest.mark.parametrize("width", [320, 375, 768, 1280])
+@pytest.mark.parametrize(
+    "width", [320, *(pytest.param(each, marks=pytest.mark.long) for each in (375, 768)), 1280]
+)
 def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None:
     page = open_page(width, 812, has_touch=width < 800)
     assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -17,6 +17,12 @@ from blocksim.arch.theory.map import at_points, divide_friction
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
+
+@pytest.fixture(scope="module")
+def page(one_page: playwright.Page) -> playwright.Page:
+    return one_page
+
+
 WEIGHTS = ("centreline", "sector")
 COUNT = 1000
 TOLERANCE = 1e-9

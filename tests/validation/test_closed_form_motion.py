@@ -77,7 +77,7 @@ def test_a_sliding_block_stops_where_friction_has_used_its_energy():
         world = world_of(assembly, mu, step)
         start = world.poses()
         world.push(np.array([[speed, 0.0, 0.0]]))
-        world.advance(round(2.0 / step))
+        world.advance(round(1.0 / step))
         assert np.abs(world.velocities).max() < 1e-12
         errors.append(abs((world.poses() - start)[0, :2] @ along - way))
     assert order(errors) == pytest.approx(1.0, abs=0.3)
@@ -110,21 +110,20 @@ def test_a_rocking_block_loses_energy_at_the_impact_only_as_housner_says():
     width, height, spin = 0.2, 1.0, -0.1
     lean = math.atan2(width, height)
     assembly, _ = standing_block(width, height)
-    ratios = []
-    for step in (0.002, 0.0005):
-        world = world_of(assembly, 5.0, step)
-        world.push(np.array([[-spin * height / 2, -spin * width / 2, spin]]))
-        rates = []
-        while not rates or abs(world.poses()[0, 2]) < 0.2:
-            world.advance(1)
-            rates.append(world.velocities[0, 2])
-            if world.poses()[0, 2] > 1e-3 or len(rates) * step > 5:
-                break
-        rates = np.array(rates)
-        at = int(np.argmax(np.abs(np.diff(rates))))
-        # An impact within a step takes two: one up to the touch, one that stops there.
-        ratios.append(rates[at + 2] / rates[at - 1])
-    assert ratios[-1] == pytest.approx(1 - 1.5 * math.sin(lean) ** 2, abs=0.01)
+    step = 0.001
+    world = world_of(assembly, 5.0, step)
+    world.push(np.array([[-spin * height / 2, -spin * width / 2, spin]]))
+    rates = []
+    while not rates or abs(world.poses()[0, 2]) < 0.2:
+        world.advance(1)
+        rates.append(world.velocities[0, 2])
+        if world.poses()[0, 2] > 1e-3 or len(rates) * step > 5:
+            break
+    rates = np.array(rates)
+    at = int(np.argmax(np.abs(np.diff(rates))))
+    # An impact within a step takes two: one up to the touch, one that stops there.
+    ratio = rates[at + 2] / rates[at - 1]
+    assert ratio == pytest.approx(1 - 1.5 * math.sin(lean) ** 2, abs=0.01)
 
 
 def test_two_bars_collapse_as_their_feet_slide_apart():
