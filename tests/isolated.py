@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -215,6 +216,9 @@ def _become(asked: dict[str, Any], place: Path, temporary: Path) -> None:
         os.dup2(opened, number)
         os.close(opened)
     sys.argv = ["blocksim", *asked["arguments"]]
+    # Warnings of numpy, which the program keeps from its users, are errors here.
+    sys.warnoptions.append("error::RuntimeWarning")
+    warnings.filterwarnings("error", category=RuntimeWarning)
     from blocksim.cli import main
 
     code = 1
