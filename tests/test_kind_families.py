@@ -246,7 +246,7 @@ def test_kinds_are_listed() -> None:
     rows = blocksim("kinds", "portal").stdout.splitlines()
     width = next(row for row in rows if row.startswith("pier_width"))
     assert "0.6" in width
-    assert "above 0 and at most 1e+06 m" in width
+    assert "1e-06 or more and at most 1e+06 m" in width
     assert width.count("pier_width") == 2, "it may be bracketed over"
     courses = next(row for row in rows if row.startswith("pier_courses"))
     assert courses.count("pier_courses") == 1

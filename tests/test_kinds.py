@@ -491,7 +491,7 @@ SAID = [
     (of("portal", arch=3), "arch = 3: must be a table with a kind of arch"),
     (
         of("portal", arch={"kind": "circular-arch", "radius": -1}),
-        "arch.radius = -1: must be above 0 and at most 1e+06 m",
+        "arch.radius = -1: must be 1e-06 or more and at most 1e+06 m",
     ),
     (of("portal", pier_width=0.1), "pier_width = 0.1: must be above 0.2"),
     (
