@@ -20,6 +20,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
 from isolated import Ended, Nursery
 from strangers import ATTACKS, Attack
 
@@ -81,7 +82,7 @@ def test_for_long(nursery: Nursery, tmp_path: Path) -> None:
     end, number = time.monotonic() + 60 * MINUTES, int(time.time())
     first = number
 
-    def one(attack: Attack) -> None:
+    def one(kind: str, attack: Attack) -> None:
         if time.monotonic() > end:
             return
         found, ended = faults(nursery, attack, tmp_path / "run")
@@ -99,7 +100,7 @@ def test_for_long(nursery: Nursery, tmp_path: Path) -> None:
                 phases=[Phase.generate],
                 suppress_health_check=list(HealthCheck),
                 derandomize=False,
-            )(given(attacks())(one))
+            )(given(st.just(kind), attacks())(one))
             seed(number)(run)()
     total = sum(tried[kind] for kind in ATTACKS)
     names = ("traceback", "hang", "memory", "abort", "killed", "left", "no line", "code")

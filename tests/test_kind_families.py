@@ -194,7 +194,7 @@ def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
     done = blocksim("check", str(path))
     assert done.returncode == 2
     assert done.stderr.startswith(
-        f"blocksim: {path}: thickness = 9: must be above 0 and at most "
+        f"blocksim: {path}: thickness = 9: must be 1e-06 or more and at most "
     )
     assert done.stderr.count("\n") == 1
 
@@ -222,7 +222,7 @@ def test_a_kind_by_its_name() -> None:
         (["pointed-arch", "--mu", "1", "--with", "radius"], "--with = 'radius': must be name="),
         (
             ["pointed-arch", "--mu", "1", "--with", "thickness=9"],
-            "--with = 'thickness=9': must be above 0 and at most 0.589409 m",
+            "--with = 'thickness=9': must be 1e-06 or more and at most 0.589409 m",
         ),
         (
             ["column", "--mu", "1", "--with", "heigth=9"],

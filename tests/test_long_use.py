@@ -13,6 +13,7 @@ from running import PROGRAM
 
 QUESTION = ("check", "--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.12")
 FALLS = ("check", "--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.08")
+LONG = pytest.mark.long
 CHECKS = int(os.environ.get("BLOCKSIM_LONG_CHECKS", "2000"))
 
 GROWS = """
@@ -78,7 +79,10 @@ def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int,
     return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode()
 
 
-@pytest.mark.parametrize("words", [QUESTION, ("render", "semicircle", "--out", "x.svg")])
+@pytest.mark.parametrize(
+    "words",
+    [pytest.param(QUESTION, marks=LONG), ("render", "semicircle", "--out", "x.svg")],
+)
 @pytest.mark.parametrize(
     "where",
     [
@@ -97,7 +101,10 @@ def test_surroundings_that_lack_something(
     assert out.startswith("STANDS" if words == QUESTION else "wrote x.svg")
 
 
-@pytest.mark.parametrize("words", [("--help",), ("doctor",), ("kinds",), QUESTION])
+@pytest.mark.parametrize(
+    "words",
+    [QUESTION, *(pytest.param(each, marks=LONG) for each in (("--help",), ("doctor",)))],
+)
 def test_a_terminal_of_twenty_columns_in_the_c_locale(words: tuple[str, ...]) -> None:
     where = {"COLUMNS": "20", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     code, out, error = run(*words, **where)
@@ -105,7 +112,13 @@ def test_a_terminal_of_twenty_columns_in_the_c_locale(words: tuple[str, ...]) ->
     assert out
 
 
-@pytest.mark.parametrize("words", [QUESTION, FALLS, ("doctor",), ("kinds",), ("--help",)])
+@pytest.mark.parametrize(
+    "words",
+    [
+        FALLS,
+        *(pytest.param(each, marks=LONG) for each in (QUESTION, ("doctor",), ("--help",))),
+    ],
+)
 @pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&-", ">/dev/full"])
 def test_streams_that_are_closed_or_full(words: tuple[str, ...], closed: str) -> None:
     program = " ".join(PROGRAM)

@@ -16,6 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, BinaryIO, cast
 
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 
 AnyPath = str | os.PathLike[str]
@@ -136,7 +137,9 @@ def read_file(path: AnyPath, field: str, allowed: str, largest: int) -> bytes:
     """Read a file of a stranger as a whole; see `opened`."""
     with opened(path, field, allowed, largest) as file:
         # What says that it is empty may have no end, as in /proc.
-        text = file.read(largest + 1)
+        text = cast("bytes | None", file.read(largest + 1))
+    if text is None:  # it has to be waited for
+        raise InputError(field, os.fspath(path), allowed)
     if len(text) > largest:
         raise InputError(field, os.fspath(path), f"at most {largest} bytes")
     return text
@@ -144,8 +147,9 @@ def read_file(path: AnyPath, field: str, allowed: str, largest: int) -> bytes:
 
 def require_file(path: AnyPath, field: str, allowed: str, largest: int) -> None:
     """Check that a file is there to be read, by what opens it itself; see `opened`."""
-    with opened(path, field, allowed, largest):
-        pass
+    with opened(path, field, allowed, largest) as file:
+        # What says so in /proc may have no end, or wait for one.
+        require(os.fstat(file.fileno()).st_size > 0, field, os.fspath(path), "not empty")
 
 
 DEEPEST_KEY = 32
