@@ -551,7 +551,7 @@ def options(draw: st.DrawFn) -> Attack:
             new = [f"{draw(WORDS)}={draw(NUMBERS | WORDS)}"]
         else:
             new = [draw(NUMBERS | NUMBERS | WORDS) for _ in range(many)]
-        if what in words:
+        if what in words[:-1]:
             words[words.index(what) + 1] = new[0]
         else:
             words += [what, *new] if what else new

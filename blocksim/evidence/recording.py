@@ -38,7 +38,9 @@ CHUNK = 1 << 20
 FARTHEST, LATEST = 1e9, 1e9
 """Largest way of a block [size], and largest time [sqrt(size/g)]."""
 _UNREADABLE = (
-    KeyError,
+    LookupError,
+    ArithmeticError,
+    AttributeError,
     TypeError,
     ValueError,
     OSError,
@@ -103,7 +105,7 @@ class Recording(Shown):
     def state_hash(self) -> str:
         """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
         little = np.ascontiguousarray(self.poses, dtype="<f8")
-        return hashlib.sha256(little.reshape(-1).view(np.uint8)).hexdigest()[:16]
+        return hashlib.sha256(little.reshape(-1).data).hexdigest()[:16]
 
     @property
     def displacement(self) -> Array:
