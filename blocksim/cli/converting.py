@@ -59,9 +59,14 @@ def _held(table: dict[str, Any], fixed: str | None) -> dict[str, Any]:
     if fixed is None:
         return table
     wanted = {each.strip() for each in fixed.split(",")}
+    given = table.get("blocks", [])
+    named = isinstance(given, list) and all(
+        isinstance(block, dict) and "id" in block for block in cast("list[object]", given)
+    )
+    if not named:
+        return table  # what is wrong with them is said where all of it is checked
     blocks = [
-        {**block, "fixed": True} if str(block["id"]) in wanted else block
-        for block in table.get("blocks", [])
+        {**block, "fixed": True} if str(block["id"]) in wanted else block for block in given
     ]
     known = {str(block["id"]) for block in blocks}
     for name in wanted - known:

@@ -33,6 +33,8 @@ LARGEST_HEADER = 1 << 26
 """Bytes of what is said beside the arrays."""
 LARGEST_CONTENTS = 1 << 16
 """Bytes of the list of what an archive has."""
+BEFORE_END, END = 20, 22
+"""Bytes at the end of that list, and of its long form before them."""
 CHUNK = 1 << 20
 """Bytes that are unpacked at once, and numbers looked at."""
 FARTHEST, LATEST = 1e9, 1e9
@@ -261,12 +263,12 @@ def _parts(file: BinaryIO) -> tuple[dict[str, Any], Array, Array]:
 
 def _require_contents(file: BinaryIO) -> None:
     """Refuse an archive with a long list of contents, all of which would be read."""
-    end = zipfile.sizeEndCentDir + zipfile.sizeEndCentDir64Locator  # pyright: ignore
-    file.seek(max(0, file.seek(0, os.SEEK_END) - end))
+    file.seek(max(0, file.seek(0, os.SEEK_END) - BEFORE_END - END))
     last = file.read()
     # As numpy writes it: without a comment, and with the short form of the list's end.
-    *_, size, _, comment = struct.unpack("<4s4H2LH", last[-22:])
-    short = last[-22:-18] == b"PK\5\6" and b"PK\6\7" not in last[:-22] and comment == 0
+    *_, size, _, comment = struct.unpack("<4s4H2LH", last[-END:])
+    short = last[-END:].startswith(b"PK\5\6") and comment == 0
+    short = short and b"PK\6\7" not in last[:-END]
     if not short or size > LARGEST_CONTENTS:
         raise zipfile.BadZipFile
 

@@ -185,7 +185,10 @@ def weighed(data: object, density: float) -> object:
     if not isinstance(data, dict):
         return data
     table = cast("dict[str, Any]", data)
-    for at, block in enumerate(table.get("blocks") or ()):
+    blocks = table.get("blocks")
+    for at, block in enumerate(
+        cast("list[object]", blocks) if isinstance(blocks, list) else ()
+    ):
         own = block.get("weight") if isinstance(block, dict) else None  # pyright: ignore
         allowed = "left out where a unit weight is given: it is of this block alone"
         require(own is None, f"blocks[{at}].weight", own, allowed)
