@@ -26,8 +26,10 @@ from typing import Any
 
 SLOW = 10.0
 """Processor time from which on a command hangs [s]."""
-LONGEST = 30.0
-"""Time by the clock after which it is ended [s]: other work on the machine counts, too."""
+WAITS, LONGEST = 30.0, 300.0
+"""Time by the clock after which it is ended, if it does nothing and in any case [s]."""
+BUSY = 1.0
+"""Processor time from which on it does something, and may wait for others [s]."""
 LARGEST = 1 << 30
 """Most memory of a command [bytes]."""
 ROOM = 8 << 30
@@ -169,7 +171,7 @@ def _watched(asked: dict[str, Any]) -> dict[str, Any] | None:
         pid, status, usage = os.wait4(child, os.WNOHANG)
         if pid:
             ended = os.waitstatus_to_exitcode(status)
-        elif time.monotonic() - started > LONGEST or _spent(child) > SLOW + 1:
+        elif _hangs(time.monotonic() - started, _spent(child)):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(child, signal.SIGKILL)
             _, status, usage = os.wait4(child, 0)
@@ -185,10 +187,16 @@ def _watched(asked: dict[str, Any]) -> dict[str, Any] | None:
     shutil.rmtree(temporary, ignore_errors=True)
     return {
         "code": ended,
-        "seconds": clock if clock > LONGEST else spent,
+        "seconds": clock if clock > WAITS and _hangs(clock, spent) else spent,
         "memory": usage.ru_maxrss * 1024,
         "left": left,
     }
+
+
+def _hangs(clock: float, spent: float) -> bool:
+    """Tell whether a command has taken too long."""
+    waits = clock > WAITS and spent < BUSY
+    return waits or clock > LONGEST or spent > SLOW + 1
 
 
 def _spent(pid: int) -> float:
