@@ -237,7 +237,7 @@ def test_a_failing_case_becomes_a_row_that_says_so(
     assert done.tally.failed == 7
     assert errors[0.7, 1.0, "limit"] is None
     assert errors[0.7, 1.0, "direct"] == "RuntimeError: out of luck with 27"
-    assert "must be 1e-15 to 2" in str(errors[0.7, 60.0, "limit"])
+    assert "must be above 0 and at most 2" in str(errors[0.7, 60.0, "limit"])
     assert "no thickness up to eta = 2 stands" in str(errors[0.1, 1.0, "limit"])
 
 

@@ -185,11 +185,11 @@ def weighed(data: object, density: float) -> object:
     if not isinstance(data, dict):
         return data
     table = cast("dict[str, Any]", data)
-    blocks = table.get("blocks")
-    for at, block in enumerate(
-        cast("list[object]", blocks) if isinstance(blocks, list) else ()
-    ):
-        own = block.get("weight") if isinstance(block, dict) else None  # pyright: ignore
+    blocks: Any = table.get("blocks")
+    for at, block in enumerate(cast("list[Any]", blocks) if isinstance(blocks, list) else ()):
+        own: Any = (
+            cast("dict[str, Any]", block).get("weight") if isinstance(block, dict) else None
+        )
         allowed = "left out where a unit weight is given: it is of this block alone"
         require(own is None, f"blocks[{at}].weight", own, allowed)
     return {**table, "density": density}
