@@ -7,7 +7,6 @@ import math
 import os
 import re
 import stat
-import tomllib
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, suppress
 from errno import EISDIR, ENOENT, ENOTDIR
@@ -170,6 +169,9 @@ def toml_of(text: bytes) -> dict[str, Any]:
         In one line, if it is no TOML, no UTF-8, nested too deeply, or says a number beyond
         all bounds.
     """
+    # Commands that read no file need not wait for it.
+    import tomllib
+
     said = text.decode()
     # The parser takes time and memory as the square of a key's depth, and more.
     if _DEEP_KEY.search(said):
