@@ -121,7 +121,8 @@ def _mesh(name: str, block: Table, fixed: bool) -> _Mesh:
     near = bool((np.abs(points) <= COORDINATE.high).all())
     require(near, field, points.tolist(), f"corners within {COORDINATE.high:g} m")
     found = tuple(
-        np.array([index[str(key)] for key in _listed(row)]) for row in _listed(block["face"])
+        np.array([index[str(key)] for key in _listed(row)], dtype=np.int64)
+        for row in _listed(block["face"])
     )
     total = sum(len(face) for face in found)
     ok = len(points) <= MOST_CORNERS and 0 < total <= 10 * MOST_CORNERS
