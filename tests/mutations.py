@@ -215,6 +215,21 @@ MUTATIONS = (
         "rows that are there are asked again", "many/run.py",
         "if identity in self._done:", "if False:", "test_sweep.py",
     ),
+    Mutation(
+        "sizes have no low end", "common/checks.py",
+        "return self.low <= size <= self.high or other", "return size <= self.high or other",
+        "test_strange_input.py",
+    ),
+    Mutation(
+        "arrays are taken at their word", "evidence/recording.py",
+        "honest = min(shape, default=0) >= 0 and", "honest = True or",
+        "test_strange_input.py",
+    ),
+    Mutation(
+        "a slash at the end is passed over", "cli/arguments.py",
+        'if not self._folder and str(value).endswith("/"):', "if False:",
+        "test_strange_input.py",
+    ),
 )  # fmt: skip
 
 

@@ -195,14 +195,21 @@ def test_crown_joint(voussoirs: int) -> None:
 
 
 WRONG: list[tuple[str, Any, str]] = [
-    *(("half_angle", value, "below pi") for value in (0, -1.0, math.pi, 4.0, math.nan, "1")),
-    *(("eta", value, "at most 2") for value in (0, -0.1, 2.0000001, math.nan, math.inf, None)),
+    *(
+        ("half_angle", value, "0.001 to 3.14159 rad")
+        for value in (0, -1.0, math.pi, 4.0, math.nan, "1")
+    ),
+    *(("eta", value, "1e-15 to 2") for value in (0, -0.1, 2.0000001, math.nan, math.inf, None)),
     *(("voussoirs", value, "3 to 1000") for value in (2, 0, -3, 1001, 3.5, math.nan, True)),
     *(("weight", value, "centreline, sector") for value in ("", "Sector", "mean", None, 1)),
     *(
-        (field, value, "finite")
-        for field in ("radius", "depth", "specific_weight")
-        for value in (0, -1.0, math.inf, math.nan, "1", False)
+        (field, value, unit)
+        for field, unit in (
+            ("radius", "1e-06 to 1e+06 m"),
+            ("depth", "1e-06 to 1e+06 m"),
+            ("specific_weight", "1e-06 to 1e+09 N/m3"),
+        )
+        for value in (0, -1.0, math.inf, math.nan, "1", False, 1e308, 1e-320, 10**19)
     ),
 ]
 
@@ -223,9 +230,9 @@ def test_wrong_values_are_named_in_one_line(field: str, value: object, allowed: 
     ("field", "value"),
     [
         ("half_angle", math.nextafter(math.pi, 0)),
-        ("half_angle", 1e-9),
+        ("half_angle", 1e-3),
         ("eta", 2),
-        ("eta", 1e-9),
+        ("eta", 1e-15),
         ("voussoirs", 3),
         ("voussoirs", 1000),
     ],

@@ -455,17 +455,17 @@ SAID = [
     ),
     ({"kind": 3, "friction": 1}, "kind = 3: must be one of circular-arch"),
     (pointed(thicknes=0.2), "thicknes = 0.2: must be left out: a pointed-arch has thickness, "),
-    (pointed(thickness=0.7), "thickness = 0.7: must be above 0 and at most 0.589409 m"),
-    (pointed(thickness="0.2"), "thickness = '0.2': must be above 0"),
-    (pointed(thickness=True), "thickness = True: must be above 0"),
-    (pointed(thickness=math.nan), "thickness = nan: must be above 0"),
+    (pointed(thickness=0.7), "thickness = 0.7: must be 1e-06 or more and at most 0.589409 m"),
+    (pointed(thickness="0.2"), "thickness = '0.2': must be 1e-06 or more"),
+    (pointed(thickness=True), "thickness = True: must be 1e-06 or more"),
+    (pointed(thickness=math.nan), "thickness = nan: must be 1e-06 or more"),
     (pointed(voussoirs=7), "voussoirs = 7: must be an even number"),
     (pointed(voussoirs=3.5), "voussoirs = 3.5: must be a whole number from 2 to 1000"),
     (pointed(joints="oblique"), "joints = 'oblique': must be one of normal, radial, vertical"),
     (pointed(radius=0.9), "radius = 0.9: must be above 1 and at most 1e+06 m"),
     (pointed(fill=-1), "fill = -1: must be 0 or more and at most 1e+06 m"),
     (pointed(blocks=[]), "kind = 'pointed-arch': must be left out beside blocks"),
-    (pointed(friction=-1), "friction = -1: must be 0 or more"),
+    (pointed(friction=-1), 'friction = -1: must be 0 to 1e+06, or "inf"'),
     ({"kind": "pointed-arch"}, "friction is missing: must be given"),
     (pointed(live=[{"block": 99, "force": [0, -1]}]), "live[0].block = 99: must be the id of"),
     (
@@ -491,7 +491,7 @@ SAID = [
     (of("portal", arch=3), "arch = 3: must be a table with a kind of arch"),
     (
         of("portal", arch={"kind": "circular-arch", "radius": -1}),
-        "arch.radius = -1: must be above 0 and at most 1e+06 m",
+        "arch.radius = -1: must be 1e-06 or more and at most 1e+06 m",
     ),
     (of("portal", pier_width=0.1), "pier_width = 0.1: must be above 0.2"),
     (
@@ -512,7 +512,7 @@ SAID = [
     ),
     (of("wall", openings=[{"rigt": 1}]), "openings[0].rigt = 1: must be left"),
     (of("wall", openings=3), "openings = 3: must be a list of tables"),
-    (of("stack", overhang=2.4), "overhang = 2.4: must be above 0 and at most"),
+    (of("stack", overhang=2.4), "overhang = 2.4: must be 1e-06 or more and at most"),
 ]
 
 

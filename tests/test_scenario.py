@@ -136,12 +136,23 @@ def test_a_file_becomes_an_arch(tmp_path: Path) -> None:
         ("voussoirs = 27", "voussoirs = 1001", "arch.voussoirs", "1001", "1000"),
         ("voussoirs = 27", "voussoirs = 9.0", "arch.voussoirs", "9.0", "integer"),
         ("eta = 0.12", "eta = 2.5", "arch.eta", "2.5", "2"),
-        ("eta = 0.12", "eta = 0", "arch.eta", "0", "0"),
+        ("eta = 0.12", "eta = 0", "arch.eta", "0", "1e-15 to 2"),
         ("eta = 0.12", 'weight = "mean"', "arch.weight", "'mean'", "'sector'"),
         ("eta = 0.12", "radius = inf", "arch.radius", "inf", "finite"),
-        ("eta = 0.12", "depth = -1", "arch.depth", "-1", "0"),
+        ("eta = 0.12", "radius = 1e308", "arch.radius", "1e+308", "1e-06 to 1e+06 m"),
+        ("eta = 0.12", "depth = -1", "arch.depth", "-1", "1e-06 to 1e+06 m"),
+        ("eta = 0.12", "depth = 1e-320", "arch.depth", "1e-320", "1e-06 to 1e+06 m"),
+        (
+            "eta = 0.12",
+            "specific_weight = 1e308",
+            "arch.specific_weight",
+            "1e+308",
+            "1e-06 to 1e+09 N/m3",
+        ),
+        ("mu = 0.7", "mu = 1e-320", "contact.mu", "1e-320", "1e-06 to 1e+06 (or inf)"),
+        ("mu = 0.7", "mu = 1e308", "contact.mu", "1e+308", "1e-06 to 1e+06 (or inf)"),
         ("eta = 0.12", "thickness = 1", "arch.thickness", "1", "no such key"),
-        ("mu = 0.7", "mu = 0", "contact.mu", "0", "greater"),
+        ("mu = 0.7", "mu = 0", "contact.mu", "0", "1e-06 to 1e+06 (or inf)"),
         ("mu = 0.7", "mu = true", "contact.mu", "True", "number"),
         ("mu = 0.7", "friction = 0.7", "contact.friction", "0.7", "no such key"),
         ('["rrr"]', "[]", "expect.modes", "[]", "at least 1"),
@@ -199,9 +210,33 @@ def test_of_a_long_value_the_beginning_is_shown(tmp_path: Path, value: str) -> N
     assert len(str(caught.value)) < 1000
 
 
-def test_a_value_may_be_nested_deeply(tmp_path: Path) -> None:
+@pytest.mark.parametrize("depth", [33, 30_000])
+@pytest.mark.parametrize("form", ["[{}]", "{} = 1", "a = {{ {} = 1 }}"])
+def test_a_key_of_many_parts_is_not_read(tmp_path: Path, depth: int, form: str) -> None:
+    key = form.format(" . ".join(["a"] * min(depth, LARGEST_FILE // 5)))
+    with pytest.raises(InputError, match="file = 'a key of more than 32 parts'"):
+        load_scenario(written(tmp_path, f"{GOOD}\n{key}\n"))
+
+
+def test_a_value_may_be_nested(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^.*: a = .*: must be left out"):
-        load_scenario(written(tmp_path, f"{GOOD}\n[{'.'.join('a' * 10_000)}]\n"))
+        load_scenario(written(tmp_path, f"{GOOD}\n[{'.'.join('a' * 32)}]\n"))
+
+
+def test_a_key_with_lines_is_said_in_one(tmp_path: Path) -> None:
+    key = '"a\\nb\\u001b[31m' + "x" * 1000 + '"'
+    with pytest.raises(InputError) as caught:
+        load_scenario(written(tmp_path, f"{key} = 1\n{GOOD}"))
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 600
+
+
+@pytest.mark.parametrize("digits", ["0x" + "f" * 5_000, "0b" + "1" * 60_000, "9" * 300])
+@pytest.mark.parametrize("old", ["voussoirs = 27", "eta = 0.12", "mu = 0.7"])
+def test_a_whole_number_has_an_end(tmp_path: Path, old: str, digits: str) -> None:
+    changed = GOOD.replace(old, f"{old.partition('=')[0]}= {digits}", 1)
+    with pytest.raises(InputError, match=r"file = 'a whole number of \d+ bits'"):
+        load_scenario(written(tmp_path, changed))
 
 
 def test_a_name_too_long_for_a_file(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from blocksim.arch.reduction import Reduction
 from blocksim.ask.bracket import by_engine
 from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.search import ETA_MAX, THINNEST
-from blocksim.common.checks import is_number, require, require_friction
+from blocksim.common.checks import FRICTION, is_number, require
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
 from blocksim.evidence.observation import Held, hold, reduced_words
@@ -170,7 +170,7 @@ def bracket(
         If the engine's library is not installed.
     """
     started = time.perf_counter()
-    require_friction(mu)
+    FRICTION.require("mu", mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight, depth=depth)
     leaning = arch.problem(mu, lean) if lean else None

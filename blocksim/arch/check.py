@@ -17,7 +17,7 @@ from blocksim.ask.check import Check
 from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.rest import require_rest, rest_of
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
-from blocksim.common.checks import require_friction
+from blocksim.common.checks import FRICTION
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
@@ -127,7 +127,7 @@ def check(
         If the engine's library is not installed.
     """
     started = time.perf_counter()
-    require_friction(mu)
+    FRICTION.require("mu", mu)
     # Static methods need no blocks, which take longer to make than an answer.
     leaning = arch.problem(mu, lean) if lean else None
     rung = choose(method, problem=leaning, settings=settings, reduce=reduce)

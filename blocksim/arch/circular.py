@@ -11,7 +11,15 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY as GRAVITY
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import is_number, require, require_friction
+from blocksim.common.checks import (
+    ETA,
+    FRICTION,
+    HALF_ANGLE,
+    LENGTH,
+    PER_VOLUME,
+    is_number,
+    require,
+)
 from blocksim.common.shown import Shown
 
 Weight = Literal["centreline", "sector"]
@@ -30,20 +38,20 @@ class Arch(Shown):
     Parameters
     ----------
     half_angle : float
-        Half-angle of embrace alpha, crown to springing, in (0, pi) [rad].
+        Half-angle of embrace alpha, crown to springing, 0.001 to below pi [rad].
     eta : float
-        Thickness-to-radius ratio t/r, in (0, 2].
+        Thickness-to-radius ratio t/r, 1e-15 to 2.
     voussoirs : int
         Number of equal voussoirs n, 3 to 1000.
     weight : {"centreline", "sector"}
         Where the weight of a voussoir acts: at the centroid of its arc of the mean
         circle (the paper's model), or at the centroid of the annular sector.
     radius : float
-        Mean radius r [m].
+        Mean radius r, 1e-6 to 1e6 [m].
     depth : float
-        Depth d out of the plane [m].
+        Depth d out of the plane, 1e-6 to 1e6 [m].
     specific_weight : float
-        gamma [N/m^3].
+        gamma, 1e-6 to 1e9 [N/m^3].
 
     Raises
     ------
@@ -61,16 +69,14 @@ class Arch(Shown):
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        angle = is_number(self.half_angle, 0, math.nextafter(math.pi, 0))
-        require(angle, "half_angle", self.half_angle, "above 0 and below pi")
-        require(is_number(self.eta, 0, 2), "eta", self.eta, "above 0 and at most 2")
+        HALF_ANGLE.require("half_angle", self.half_angle)
+        ETA.require("eta", self.eta)
         whole = is_number(self.voussoirs, 2, 1000) and self.voussoirs == int(self.voussoirs)
         require(whole, "voussoirs", self.voussoirs, "a whole number from 3 to 1000")
         require(self.weight in WEIGHTS, "weight", self.weight, f"one of {', '.join(WEIGHTS)}")
-        for field in ("radius", "depth", "specific_weight"):
-            value: object = getattr(self, field)
-            finite = is_number(value, 0, math.inf) and value != math.inf
-            require(finite, field, value, "above 0 and finite")
+        LENGTH.require("radius", self.radius)
+        LENGTH.require("depth", self.depth)
+        PER_VOLUME.require("specific_weight", self.specific_weight)
 
     @property
     def thickness(self) -> float:
@@ -155,11 +161,11 @@ class Arch(Shown):
         Parameters
         ----------
         mu : float
-            Friction coefficient of every joint, above 0, inf allowed.
+            Friction coefficient of every joint, 1e-6 to 1e6 or inf.
         lean : float
             Angle by which gravity leans out of the plane [rad].
         """
-        require_friction(mu)
+        FRICTION.require("mu", mu)
         upright = Problem(
             assembly=self.assembly(), mu=mu, origin={"kind": KIND, **asdict(self)}
         )

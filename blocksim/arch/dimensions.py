@@ -14,7 +14,7 @@ from typing import Literal, get_args
 
 from blocksim.arch.circular import Arch
 from blocksim.blocks.problem import STANDARD_GRAVITY
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import HALF_ANGLE, LENGTH, PER_VOLUME, Range, is_number, require
 
 At = Literal["intrados", "centreline", "extrados"]
 LINES: tuple[str, ...] = get_args(At)
@@ -22,6 +22,8 @@ OFFSET: dict[str, float] = {"intrados": -0.5, "centreline": 0.0, "extrados": 0.5
 """How far each line is outside the centreline, over the thickness."""
 ALMOST = 1 + 1e-12
 """Round-off allowed of arches that are as thick as can be."""
+MEASURE = Range(low=1e-30, high=1e12, unit="m")
+"""Of an arch in its range, however flat or thin."""
 LONGEST = 1000.0
 """Longest span that is believed to be in metres."""
 HEAVIEST, NEWTONS = 200.0, 8000.0
@@ -53,7 +55,7 @@ class Line:
     def __post_init__(self) -> None:
         """Check the ranges."""
         for field in ("span", "rise"):
-            require_length(field, getattr(self, field))
+            MEASURE.require(field, getattr(self, field))
         require(self.at in LINES, "at", self.at, f"one of {', '.join(LINES)}")
 
     @property
@@ -101,7 +103,7 @@ class Dimensions:
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        require_length("thickness", self.thickness)
+        MEASURE.require("thickness", self.thickness)
         radius, inside = self.line.radius, OFFSET[self.at] + 0.5
         allowed = f"at most {radius / (inside or 1.0):.6g} m, which is eta = 2"
         fits = inside * self.thickness <= radius * ALMOST
@@ -156,12 +158,6 @@ def friction_angle(mu: float) -> float:
     return math.degrees(math.atan(mu))
 
 
-def require_length(field: str, value: object) -> None:
-    """Raise `InputError` unless a value is a length."""
-    finite = is_number(value, 0, math.inf) and value != math.inf
-    require(finite, field, value, "above 0 and finite, in m")
-
-
 def require_measured(line: Line, thickness: float | None) -> None:
     """Raise `InputError` for dimensions that nobody has measured, as of a wrong unit.
 
@@ -172,12 +168,18 @@ def require_measured(line: Line, thickness: float | None) -> None:
         [m]
     """
     span, rise = line.span, line.rise
+    for field, value in (("span", span), ("rise", rise), ("thickness", thickness)):
+        if value is not None:
+            LENGTH.require(field, value)
     millimetres = f"at most {LONGEST:g} m (in mm it would be {span / 1000:g} m)"
     require(span <= LONGEST, "span", span, millimetres)
     closed = (
         f"at most the span, {span:g} m (a horseshoe beyond that: by its half-angle and eta)"
     )
     require(rise <= span, "rise", rise, closed)
+    flattest = span / 2 * math.tan(HALF_ANGLE.low / 2)
+    flat = f"at least {flattest:.6g} m for this span: what is flatter is no arch"
+    require(rise >= flattest, "rise", rise, flat)
     if thickness is None:
         return
     radius = Dimensions(span=span, rise=rise, thickness=thickness, at=line.at).radius
@@ -194,8 +196,9 @@ def require_friction_angle(field: str, angle: object) -> None:
 
 def require_unit_weight(field: str, value: float) -> None:
     """Raise `InputError` unless a value is a unit weight in kN/m^3."""
-    allowed = f"above 0 and at most {HEAVIEST:g} kN/m3"
+    lightest = PER_VOLUME.low / 1000
+    allowed = f"{lightest:g} to {HEAVIEST:g} kN/m3"
     if is_number(value, HEAVIEST, math.inf):
         unit, share = ("N/m3", 1e-3) if value >= NEWTONS else ("kg/m3", STANDARD_GRAVITY / 1000)
         allowed += f" ({value:g} {unit} would be {value * share:.4g})"
-    require(is_number(value, 0, HEAVIEST), field, value, allowed)
+    require(is_number(value, 0, HEAVIEST) and value >= lightest, field, value, allowed)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import os
 from typing import Any
 
-from blocksim.arch.circular import Arch
+from blocksim.arch.circular import Arch, arch_of
 from blocksim.ask.simulate import simulate as simulate_problem
 from blocksim.blocks.record import to_record
+from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.recording import FORMAT, Recording, read_recording
+from blocksim.evidence.recording import FORMAT, WRITTEN, Recording, read_recording
 from blocksim.evidence.simulation import BY_RULE, Overrides
 
 
@@ -69,7 +71,12 @@ def load_recording(path: AnyPath) -> Recording:
     InputError
         If the file is missing, too large, or no recording.
     """
-    return read_recording(path, _renewed)
+    found = read_recording(path, _renewed)
+    try:
+        arch_of(found.problem)
+    except (TypeError, InputError):
+        raise InputError("recording", os.fspath(path), WRITTEN) from None
+    return found
 
 
 def _renewed(header: dict[str, Any]) -> dict[str, Any]:

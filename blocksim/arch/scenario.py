@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, TypeVar
@@ -19,9 +18,10 @@ from blocksim.arch.dimensions import (
     require_unit_weight,
 )
 from blocksim.arch.modes import Mode
-from blocksim.common.checks import require
+from blocksim.blocks.entries import Density, Length, allowed_words
+from blocksim.common.checks import ETA, FRICTION, require
 from blocksim.common.errors import MISSING, InputError
-from blocksim.common.files import AnyPath, require_file, shipped_files
+from blocksim.common.files import AnyPath, read_file, shipped_files, toml_of
 from blocksim.evidence.verdict import Verdict
 
 LARGEST_FILE = 64 * 1024
@@ -37,7 +37,8 @@ def infinite(written: object) -> object:
     return math.inf if written == "inf" else written
 
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+Angle = Annotated[float, Field(ge=0.06, lt=180, allow_inf_nan=False, strict=True)]
+Ratio = Annotated[float, Field(ge=ETA.low, le=ETA.high, strict=True)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,17 +79,17 @@ class ArchTable:
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     voussoirs: Annotated[int, Field(ge=3, le=1000, strict=True)]
-    half_angle_deg: Annotated[float, Field(gt=0, lt=180, strict=True)] | None = None
-    eta: Annotated[float, Field(gt=0, le=2, strict=True)] | None = None
-    radius: Positive | None = None
-    span_m: Positive | None = None
-    rise_m: Positive | None = None
-    thickness_m: Positive | None = None
+    half_angle_deg: Angle | None = None
+    eta: Ratio | None = None
+    radius: Length | None = None
+    span_m: Length | None = None
+    rise_m: Length | None = None
+    thickness_m: Length | None = None
     at: Literal["intrados", "centreline", "extrados"] | None = None
     weight: Literal["centreline", "sector"] | None = None
-    depth: Positive = 1.0
-    specific_weight: Positive | None = None
-    unit_weight_kN_per_m3: Positive | None = None  # noqa: N815 - as the unit is written
+    depth: Length = 1.0
+    specific_weight: Density | None = None
+    unit_weight_kN_per_m3: Annotated[float, Field(gt=0, strict=True)] | None = None  # noqa: N815 - as the unit is written
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +106,9 @@ class ContactTable:
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    mu: Annotated[float, Field(gt=0, strict=True), BeforeValidator(infinite)] | None = None
+    mu: (
+        Annotated[float, Field(ge=FRICTION.low, strict=True), BeforeValidator(infinite)] | None
+    ) = None
     friction_angle_deg: Annotated[float, Field(gt=0, le=90, strict=True)] | None = None
 
 
@@ -196,7 +199,9 @@ def load_scenario(name: AnyPath) -> Scenario:
     if path.suffix != ".toml" and str(name) in known:
         path = known[str(name)]
     allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
-    written = read_table(path, ScenarioFile, "scenario", allowed)
+    # As it was given: a name that ends in a slash is no file.
+    given = name if path == Path(name) else path
+    written = read_table(given, ScenarioFile, "scenario", allowed)
     return _scenario(path.stem, written, str(path))
 
 
@@ -216,12 +221,10 @@ def read_table(path: AnyPath, schema: type[Table], what: str, allowed: str) -> T
     InputError
         In one line, with file, field, value and what is allowed.
     """
-    path = Path(path)
-    require_file(path, what, allowed, LARGEST_FILE)
+    text = read_file(path, what, allowed, LARGEST_FILE)
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as error:
-        # No TOML or no UTF-8, numbers beyond all bounds, or nested too deeply.
+        table = toml_of(text)
+    except ValueError as error:
         raise InputError("file", str(error), "valid TOML", where=str(path)) from None
     try:
         return TypeAdapter(schema).validate_python(table)
@@ -242,9 +245,8 @@ def _first_of(error: ValidationError, where: str) -> InputError:
         return InputError(field, first["input"], "left out: there is no such key", where=where)
     if first["type"] in {"missing", "missing_argument"}:
         return InputError(field, MISSING, "given", where=where)
-    return InputError(
-        field, first["input"], first["msg"].removeprefix("Input should be "), where=where
-    )
+    said = allowed_words(str(first["loc"][-1]), first["type"], first["msg"])
+    return InputError(field, first["input"], said, where=where)
 
 
 def _scenario(name: str, written: ScenarioFile, where: str) -> Scenario:
@@ -252,6 +254,8 @@ def _scenario(name: str, written: ScenarioFile, where: str) -> Scenario:
     try:
         line, half_angle, eta, radius = _shape(arch)
         _require_one("contact", written.contact, "mu", "friction_angle_deg")
+        if written.contact.mu is not None:
+            FRICTION.require("contact.mu", written.contact.mu)
         if arch.unit_weight_kN_per_m3 is not None:
             _require_one("arch", arch, "unit_weight_kN_per_m3", "specific_weight")
             require_unit_weight("arch.unit_weight_kN_per_m3", arch.unit_weight_kN_per_m3)

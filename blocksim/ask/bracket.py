@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 SURE = 1e-8
 """How far to both sides of its value limit analysis is asked again, relative."""
+LEAST = 1e-12
+"""Least upper end of where to search."""
 FARTHEST = 1e3
 """How far from its first value a search goes, as a ratio."""
 FINEST_SPREAD = 1e-4
@@ -156,7 +158,7 @@ def bracket(
     started = time.perf_counter()
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     low, high = within or (family.low, family.high)
-    ranged = family.low <= low < high <= family.high
+    ranged = family.low <= low < high <= family.high and high >= LEAST
     allowed = f"two values, the lower first, from {family.low:g} to {family.high:g}"
     require(ranged, "within", f"{low:g} {high:g}", allowed)
     probe = family.at(low + GUESS * (high - low))

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from blocksim.common.checks import COORDINATE, INERTIA, LENGTH, MASS, require
 from blocksim.common.errors import InputError
 
 Array = NDArray[np.float64]
@@ -71,12 +72,12 @@ class Block:
 
     def __post_init__(self) -> None:
         """Check the numbers, make the arrays read-only and corners counter-clockwise."""
-        for field in ("mass", "inertia", "depth"):
-            value: float = getattr(self, field)
-            if not 0 < value < math.inf:
-                raise InputError(self._called(field), value, "above 0 and finite")
+        for field, known in (("mass", MASS), ("inertia", INERTIA), ("depth", LENGTH)):
+            known.require(self._called(field), getattr(self, field))
         vertices = frozen(self.vertices, (-1, 2))
         corners = vertices.tolist()
+        near = all(COORDINATE.has(x) and COORDINATE.has(y) for x, y in corners)
+        require(near, self._called("vertices"), corners, COORDINATE.words)
         area, folds = _outline(corners)
         if area == 0 or folds:
             allowed = "three corners or more around a convex area"
@@ -275,6 +276,7 @@ class Assembly:
 
     def __post_init__(self) -> None:
         """Turn joints round whose ends are exchanged: normals lead from `before` to `after`."""
+        LENGTH.require("size", self.size)
         middles = [_mean(block.vertices.tolist()) for block in self.blocks]
         joints = list(self.joints)
         for index, joint in enumerate(self.joints):

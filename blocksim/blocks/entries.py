@@ -10,21 +10,57 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
 from blocksim.blocks.shaking import MOST_ROWS
+from blocksim.common.checks import (
+    COORDINATE,
+    ETA,
+    FACTOR,
+    FORCE,
+    FRICTION,
+    INERTIA,
+    LENGTH,
+    PER_VOLUME,
+    TURN,
+    WEIGHT,
+)
 from blocksim.common.errors import MISSING, InputError
 
 FARTHEST = 1e15
-"""Largest number in a file, of any unit."""
+"""Largest number in a file that has no unit of its own."""
 
 Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST, allow_inf_nan=False, strict=True)]
-Positive = Annotated[float, Field(gt=0, le=FARTHEST, allow_inf_nan=False, strict=True)]
-Point = tuple[Number, Number]
+Coordinate = Annotated[
+    float,
+    Field(ge=-COORDINATE.high, le=COORDINATE.high, allow_inf_nan=False, strict=True),
+]
+Newtons = Annotated[
+    float, Field(ge=-FORCE.high, le=FORCE.high, allow_inf_nan=False, strict=True)
+]
+Times = Annotated[
+    float, Field(ge=-FACTOR.high, le=FACTOR.high, allow_inf_nan=False, strict=True)
+]
+Degrees = Annotated[float, Field(ge=-TURN.high, le=TURN.high, allow_inf_nan=False, strict=True)]
+Length = Annotated[
+    float, Field(ge=LENGTH.low, le=LENGTH.high, allow_inf_nan=False, strict=True)
+]
+Weight = Annotated[
+    float, Field(ge=WEIGHT.low, le=WEIGHT.high, allow_inf_nan=False, strict=True)
+]
+Inertia = Annotated[
+    float, Field(ge=INERTIA.low, le=INERTIA.high, allow_inf_nan=False, strict=True)
+]
+Density = Annotated[
+    float, Field(ge=PER_VOLUME.low, le=PER_VOLUME.high, allow_inf_nan=False, strict=True)
+]
+Point = tuple[Coordinate, Coordinate]
+Force = tuple[Newtons, Newtons]
+Way = tuple[Times, Times]
 Corners = Annotated[list[Point], Field(min_length=3, max_length=MOST_CORNERS)]
 Name = Annotated[str, Field(min_length=1, max_length=100, strict=True)]
 Id = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
 Note = Annotated[str, Field(max_length=2000, strict=True)]
 MOST_NOTES = 20
 Friction = (
-    Annotated[float, Field(ge=0, le=FARTHEST, allow_inf_nan=False, strict=True)]
+    Annotated[float, Field(ge=0, le=FRICTION.high, allow_inf_nan=False, strict=True)]
     | Literal["inf"]
 )
 _FORBID: dict[str, str] = {"extra": "forbid"}
@@ -62,10 +98,10 @@ class BlockEntry:
         None
     )
     fixed: Annotated[bool, Field(strict=True)] = False
-    weight: Positive | None = None
+    weight: Weight | None = None
     centre: Point | None = None
-    inertia: Positive | None = None
-    depth: Positive = 1.0
+    inertia: Inertia | None = None
+    depth: Length = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +127,7 @@ class JointEntry:
     a: Id
     b: Id
     ends: Annotated[list[Point], Field(min_length=1, max_length=2)]
-    normal: Point | None = None
+    normal: Way | None = None
     friction: Friction | None = None
     faces: tuple[tuple[Point, Point], tuple[Point, Point]] | None = None
 
@@ -118,11 +154,11 @@ class LoadEntry:
 
     __pydantic_config__: ClassVar = _FORBID
 
-    body: Annotated[list[Number], Field(min_length=2, max_length=3)] | None = None
+    body: Annotated[list[Times], Field(min_length=2, max_length=3)] | None = None
     blocks: Annotated[list[Id], Field(min_length=1, max_length=MOST_BLOCKS)] | None = None
     block: Id | None = None
     point: Point | None = None
-    force: Point | None = None
+    force: Force | None = None
     patch: Point | None = None
 
 
@@ -145,8 +181,8 @@ class MoveEntry:
     __pydantic_config__: ClassVar = _FORBID
 
     block: Id
-    direction: Point | None = None
-    turn_deg: Number = 0.0
+    direction: Way | None = None
+    turn_deg: Degrees = 0.0
     about: Point | None = None
 
 
@@ -246,13 +282,13 @@ class Around:
     friction: Friction
     title: Annotated[str, Field(max_length=200, strict=True)] = ""
     source: Annotated[str, Field(max_length=500, strict=True)] = ""
-    density: Positive | None = None
+    density: Density | None = None
     dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
     live: Annotated[tuple[LoadEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     shake: ShakeEntry | None = None
-    load: Number = 0.0
-    size: Positive | None = None
+    load: Times = 0.0
+    size: Length | None = None
     notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
     expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     quick: Annotated[bool, Field(strict=True)] = False
@@ -296,13 +332,37 @@ _TABLES = (
 )
 _KEYS = {field.name for table in _TABLES for field in fields(table)}
 _ALLOWED = {
-    "friction": '0 or more, or "inf"',
+    "friction": '0 to 1e+06, or "inf"',
     "a": "the id of a block",
     "b": "the id of a block",
     "block": "the id of a block",
     "id": "a whole number or a name of up to 100 characters",
 }
 """What is said of keys that may have several types."""
+_OF_POINTS = (
+    "vertices",
+    "polygons",
+    "centre",
+    "ends",
+    "faces",
+    "point",
+    "patch",
+    "about",
+)
+_RANGES = {
+    **dict.fromkeys(_OF_POINTS, COORDINATE),
+    **dict.fromkeys(("normal", "body", "direction", "load"), FACTOR),
+    **dict.fromkeys(("depth", "size", "radius"), LENGTH),
+    **dict.fromkeys(("span_m", "rise_m", "thickness_m"), LENGTH),
+    **dict.fromkeys(("density", "specific_weight"), PER_VOLUME),
+    "force": FORCE,
+    "weight": WEIGHT,
+    "inertia": INERTIA,
+    "turn_deg": TURN,
+    "eta": ETA,
+    "mu": FRICTION,
+}
+"""What is said of numbers out of range."""
 
 
 def entries_of(table: dict[str, Any]) -> StructureFile:
@@ -365,6 +425,20 @@ def _first_of(error: ValidationError) -> InputError:
         return InputError(field, first["input"], "left out: there is no such key")
     if first["type"] in {"missing", "missing_argument"}:
         return InputError(field, MISSING, "given")
-    said = first["msg"].removeprefix("Input should be ")
-    last = field.rpartition(".")[2]
+    last = field.rpartition(".")[2].partition("[")[0]
+    said = allowed_words(last, first["type"], first["msg"])
     return InputError(field, first["input"], _ALLOWED.get(last, said))
+
+
+def allowed_words(key: str, kind: str, message: str) -> str:
+    """Say what would be accepted of a key: both ends of its range where a number is beyond it.
+
+    Parameters
+    ----------
+    key : str
+    kind, message : str
+        Of pydantic's complaint.
+    """
+    if key in _RANGES and kind in {"greater_than_equal", "less_than_equal"}:
+        return _RANGES[key].words
+    return message.removeprefix("Input should be ")

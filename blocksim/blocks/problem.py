@@ -11,7 +11,16 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
 from blocksim.blocks.shaking import Shaking
-from blocksim.common.checks import is_number, require, require_lean
+from blocksim.common.checks import (
+    COORDINATE,
+    FACTOR,
+    FORCE,
+    SMOOTH_OR_ROUGH,
+    is_number,
+    require,
+    require_all,
+    require_lean,
+)
 from blocksim.common.shown import Shown, short
 
 STANDARD_GRAVITY = 9.81
@@ -42,10 +51,12 @@ class Load:
     per_weight: bool = False
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only."""
+        """Check the ranges, and make the arrays read-only."""
         object.__setattr__(self, "force", frozen(self.force, (2,)))
+        require_all(FACTOR if self.per_weight else FORCE, "force", self.force)
         if self.point is not None:
             object.__setattr__(self, "point", frozen(self.point, (2,)))
+            require_all(COORDINATE, "point", self.point)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -69,9 +80,12 @@ class Move:
     about: Array = field(default_factory=lambda: np.zeros(2))
 
     def __post_init__(self) -> None:
-        """Make the arrays read-only."""
+        """Check the ranges, and make the arrays read-only."""
         object.__setattr__(self, "direction", frozen(self.direction, (2,)))
         object.__setattr__(self, "about", frozen(self.about, (2,)))
+        FACTOR.require("turn", self.turn)
+        require_all(FACTOR, "direction", self.direction)
+        require_all(COORDINATE, "about", self.about)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -127,10 +141,10 @@ class Problem(Shown):
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        require(self.mu == 0 or is_number(self.mu, 0, math.inf), "mu", self.mu, "0 or more")
-        finite = is_number(self.load, -math.inf, math.inf) and math.isfinite(self.load)
-        require(finite, "load", self.load, "a finite number")
+        SMOOTH_OR_ROUGH.require("mu", self.mu)
+        FACTOR.require("load", self.load)
         object.__setattr__(self, "gravity", frozen(self.gravity, (3,)))
+        require_all(FACTOR, "gravity", self.gravity)
 
     def __repr__(self) -> str:
         assembly = self.assembly

@@ -16,6 +16,7 @@ import numpy as np
 from blocksim.blocks.assembly import Assembly, Block, Joint, Support
 from blocksim.blocks.problem import Load, Move, Problem
 from blocksim.blocks.shaking import Shaking, table_of
+from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH
 
 
 def to_record(value: object) -> Any:
@@ -49,17 +50,26 @@ def from_record(record: Mapping[str, Any]) -> Problem:
     built = dict(given.pop("assembly"))
     assembly = Assembly(
         blocks=tuple(_block(each) for each in built["blocks"]),
-        joints=tuple(Joint(**each) for each in built["joints"]),
+        joints=tuple(_joint(each) for each in built["joints"]),
         size=float(built["size"]),
         supports=tuple(Support(**each) for each in built["supports"]),
     )
     _require_sound(assembly)
+    dead, live = (tuple(_load(each) for each in given.pop(name)) for name in ("dead", "live"))
+    moves = tuple(Move(**each) for each in given.pop("moves"))
+    on = [each for load in (*dead, *live) for each in load.blocks]
+    known = all(each in range(len(assembly.blocks)) for each in on)
+    known &= all(move.support in range(len(assembly.supports)) for move in moves)
+    words = all(isinstance(given.get(name, ""), str) for name in ("title", "source"))
+    if not known or not words:
+        message = "no problem"
+        raise ValueError(message)
     return Problem(
         assembly=assembly,
         mu=float(given.pop("mu")),
-        dead=tuple(_load(each) for each in given.pop("dead")),
-        live=tuple(_load(each) for each in given.pop("live")),
-        moves=tuple(Move(**each) for each in given.pop("moves")),
+        dead=dead,
+        live=live,
+        moves=moves,
         shaking=_shaking(given.pop("shaking", None)),
         origin=_numbers(given.pop("origin")),
         notes=tuple(str(each) for each in given.pop("notes")),
@@ -70,6 +80,11 @@ def from_record(record: Mapping[str, Any]) -> Problem:
 def _block(record: dict[str, Any]) -> Block:
     given: dict[str, Any] = {**record, "parts": tuple(record["parts"])}
     return Block(**given)
+
+
+def _joint(record: dict[str, Any]) -> Joint:
+    given: dict[str, Any] = _numbers(record)
+    return Joint(**given)
 
 
 def _load(record: dict[str, Any]) -> Load:
@@ -103,7 +118,11 @@ def _require_sound(assembly: Assembly) -> None:
     for joint in assembly.joints:
         sides = (joint.before, joint.after)
         sound = sound and all(side in range(-1, count) for side in sides)
-        sound = sound and (joint.support is None or 0 <= joint.support < supports)
+        sound = sound and (joint.support is None or joint.support in range(supports))
+        own = joint.friction
+        sound = sound and (own is None or SMOOTH_OR_ROUGH.has(own))
+        ends = np.concatenate([joint.inner, joint.outer])
+        sound = sound and all(map(COORDINATE.has, ends.tolist()))
     if not sound:
         message = "no assembly of blocks"
         raise ValueError(message)

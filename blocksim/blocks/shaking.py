@@ -7,12 +7,13 @@ that a pulse may begin and end within one.
 
 from __future__ import annotations
 
+import io
 import math
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array, frozen
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import MISSING, InputError
-from blocksim.common.files import AnyPath, require_file
+from blocksim.common.files import AnyPath, read_file
 
 SHAPES: dict[str, Callable[[float], float]] = {
     "constant": lambda share: share,
@@ -34,8 +35,10 @@ STRONGEST = 100.0
 """Largest amplitude [g]."""
 SHORTEST, LONGEST = 1e-6, 600.0
 """Least and largest duration [s]."""
-MOST_ROWS, LARGEST_FILE = 1_000_000, 50_000_000
-"""Rows of a table, and bytes of its file."""
+MOST_ROWS, LARGEST_FILE, LONGEST_LINE = 1_000_000, 50_000_000, 200
+"""Rows of a table, bytes of its file, and letters of a line."""
+LATEST = 1e9
+"""Largest number in a table, of either column."""
 COLUMNS = ("time_s", "acceleration_g")
 
 
@@ -140,6 +143,8 @@ def table_of(times: Array, accelerations: Array) -> Shaking:
     require(alike, "accelerations_g", rows, f"as many as times_s, {len(times)}")
     known = np.isfinite(times).all() and np.isfinite(accelerations).all()
     require(bool(known), "times_s", "not all are numbers", "finite numbers in every row")
+    largest = float(max(np.abs(times).max(), np.abs(accelerations).max()))
+    require(largest <= LATEST, "times_s", largest, f"numbers up to {LATEST:g}")
     grows = np.diff(times) > 0
     at = int(np.argmin(grows)) + 1
     later = "each later than the one before"
@@ -220,15 +225,17 @@ def read_table(path: AnyPath) -> Shaking:
     InputError
         In one line, if it is no such file.
     """
-    require_file(path, "shake", "an existing .csv file", LARGEST_FILE)
-    where = str(path)
+    read = read_file(path, "shake", "an existing .csv file", LARGEST_FILE)
+    where = os.fspath(path)
     try:
         # A spreadsheet may begin its files with a mark of their encoding.
-        with Path(path).open(encoding="utf-8-sig") as file:
-            named = [name.strip() for name in next(file, "")[:200].split(",")]
-            right = named == list(COLUMNS)
-            require(right, "first line", ",".join(named), ",".join(COLUMNS))
-            lines = list(islice(file, MOST_ROWS + 1))
+        text = io.StringIO(read.decode("utf-8-sig"), newline=None)
+        named = [name.strip() for name in next(text, "")[:200].split(",")]
+        right = named == list(COLUMNS)
+        require(right, "first line", ",".join(named), ",".join(COLUMNS))
+        lines = list(islice(text, MOST_ROWS + 1))
+        long = next((each for each in lines if len(each) > LONGEST_LINE), None)
+        require(long is None, "line", (long or "")[:40], f"at most {LONGEST_LINE} letters")
         rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, 2))
         require(rows.shape[1] == len(COLUMNS), "columns", rows.shape[1], str(len(COLUMNS)))
         return table_of(*rows.T)

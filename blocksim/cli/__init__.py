@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import traceback
+import warnings
 from contextlib import suppress
 
 import click
@@ -12,11 +14,13 @@ import click
 from blocksim.cli.app import app as app
 from blocksim.cli.app import run
 from blocksim.common import interrupts
-from blocksim.common.errors import BlocksimError
+from blocksim.common.errors import BlocksimError, in_line
 
 WRONG_INPUT = 2
 CRASHED = 70
 """After what should not happen: Python's own 1 would say that the arch collapses."""
+LONGEST = 1000
+"""Letters of what is said of wrong input."""
 CLOSED = 141
 """As a shell says it of the signal for a closed pipe."""
 
@@ -24,6 +28,7 @@ CLOSED = 141
 def main() -> None:
     """Run the command line; wrong input is one line and exit code 2."""
     interrupts.install()
+    _prepare()
     code = CRASHED
     with suppress(KeyboardInterrupt), interrupts.Told():
         code = _code()
@@ -32,6 +37,22 @@ def main() -> None:
         interrupts.say()
         code = interrupts.code()
     sys.exit(code)
+
+
+def _prepare() -> None:
+    """See that what is said can be written, and that no library says anything by itself."""
+    for number in (0, 1, 2):
+        # What is closed would be the number of the next file, and hear what is said.
+        with suppress(OSError):
+            os.fstat(number)
+            continue
+        os.open(os.devnull, os.O_RDWR)
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+    for stream in (sys.stdout, sys.stderr):
+        # Either is None where it was closed.
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _code() -> int:
@@ -58,5 +79,5 @@ def _code() -> int:
 def _complain(message: str) -> int:
     if not interrupts.code():
         with suppress(OSError):
-            click.echo(f"blocksim: {message}", err=True)
+            click.echo(f"blocksim: {in_line(message, LONGEST)}", err=True)
     return WRONG_INPUT

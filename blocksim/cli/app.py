@@ -14,6 +14,7 @@ from click.shell_completion import shell_complete
 from blocksim.cli.arguments import command_of
 from blocksim.cli.output import say
 from blocksim.common import interrupts
+from blocksim.common.errors import InputError
 from blocksim.common.later import Later
 from blocksim.common.version import __version__
 
@@ -133,6 +134,11 @@ def run() -> int:
     """
     if COMPLETES in os.environ:
         return shell_complete(app, {}, "blocksim", COMPLETES, os.environ[COMPLETES])
+    for word in sys.argv[1:]:
+        try:
+            word.encode()
+        except UnicodeEncodeError:
+            raise InputError("argument", word, "text in UTF-8, names of files, too") from None
     try:
         with app.make_context("blocksim", sys.argv[1:]) as context:
             app.invoke(context)

@@ -11,11 +11,33 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import click
 
+
+class _File(click.Path):
+    """The path of a file, or of a folder."""
+
+    def __init__(self, *, folder: bool = False) -> None:
+        super().__init__(path_type=Path)
+        self._folder = folder
+
+    def convert(
+        self,
+        value: Any,
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> Any:
+        """Refuse names that the system takes, but that name no file."""
+        if value == "":
+            self.fail("a name that is empty", param, ctx)
+        if not self._folder and str(value).endswith("/"):
+            self.fail(f"{value!r} is a folder, by the slash at its end", param, ctx)
+        return super().convert(value, param, ctx)
+
+
 KINDS: dict[object, click.ParamType[Any]] = {
     str: click.STRING,
     int: click.INT,
     float: click.FLOAT,
-    Path: click.Path(path_type=Path),
+    Path: _File(),
 }
 
 
@@ -31,6 +53,8 @@ class Option:
     metavar : str, optional
     low, high : int, optional
         Range of a whole number, ends included.
+    folder : bool
+        Whether a path is that of a folder.
     """
 
     help: str
@@ -38,6 +62,7 @@ class Option:
     metavar: str | None = None
     low: int | None = None
     high: int | None = None
+    folder: bool = False
 
 
 @dataclass(frozen=True)
@@ -182,4 +207,4 @@ def _type(kind: Any, said: Option | None) -> Any:
         return click.Tuple([KINDS[each] for each in get_args(kind)])
     if said is not None and said.high is not None:
         return click.IntRange(said.low, said.high)
-    return KINDS[kind]
+    return _File(folder=True) if said is not None and said.folder else KINDS[kind]

@@ -59,9 +59,12 @@ def _held(table: dict[str, Any], fixed: str | None) -> dict[str, Any]:
     if fixed is None:
         return table
     wanted = {each.strip() for each in fixed.split(",")}
+    given: Any = table.get("blocks", [])
+    listed = cast("list[Any]", given) if isinstance(given, list) else [given]
+    if not all(isinstance(block, dict) and "id" in block for block in listed):
+        return table  # what is wrong with them is said where all of it is checked
     blocks = [
-        {**block, "fixed": True} if str(block["id"]) in wanted else block
-        for block in table.get("blocks", [])
+        {**block, "fixed": True} if str(block["id"]) in wanted else block for block in listed
     ]
     known = {str(block["id"]) for block in blocks}
     for name in wanted - known:

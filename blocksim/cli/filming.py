@@ -38,6 +38,8 @@ STILL = 1e-3
 SHOWN = 0.2
 """Largest motion in the picture of an arch that overturns [r]."""
 
+MOST_NUMBERS = 5_000_000
+"""Of the poses of a recording that is written as a model or a table."""
 MODELS, TABLES = ("glb", "gltf"), ("csv", "json")
 """Endings of recordings as glTF, and as numbers."""
 
@@ -145,6 +147,9 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
 
 def export(out: Path, kind: str, recording: Recording) -> None:
     """Write a recording as glTF or as a table, in metres and seconds, and say so."""
+    numbers = recording.poses.size
+    allowed = f"at most {MOST_NUMBERS} as .{kind}: of a shorter recording"
+    require(numbers <= MOST_NUMBERS, "numbers", numbers, allowed)
     if kind in MODELS:
         # What it draws with takes a second to import, which other commands need not wait for.
         from blocksim.view.gltf import write_gltf

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from blocksim.blocks.shaking import COLUMNS, SHAPES
 from blocksim.cli.arguments import Argument, Option
 from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
+from blocksim.common.files import json_of
 from blocksim.evidence.simulation import SETTINGS
 from blocksim.evidence.verdict import Verdict
 
@@ -280,7 +280,7 @@ def parameters_of(given: list[str] | None) -> dict[str, object]:
         ok = bool(name and equals and value) and name != "kind"
         require(ok, "--with", each, "name=value, with a parameter of the kind")
         try:
-            found[name] = json.loads(value)
+            found[name] = json_of(value.encode())
         except ValueError:
             found[name] = value
     return found

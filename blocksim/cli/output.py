@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 def progress() -> AbstractContextManager[Progress]:
     """Show a bar on standard error while something goes on, where that is a terminal."""
-    if not sys.stderr.isatty():
+    # None where it was closed.
+    if not (sys.stderr and sys.stderr.isatty()):
         return nullcontext(silent)
     from blocksim.cli.terminal import bar
 

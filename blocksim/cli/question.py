@@ -18,7 +18,7 @@ from blocksim.arch.dimensions import (
 from blocksim.arch.limit import least_thickness
 from blocksim.ask.search import ETA_MAX
 from blocksim.cli.options import Given, named_options, option_of, require_given
-from blocksim.common.checks import is_number, require, require_friction
+from blocksim.common.checks import FRICTION, is_number, require
 from blocksim.common.errors import MISSING, InputError
 
 NO_SCENARIO = Scenario(
@@ -170,7 +170,7 @@ def arch_of(asked: Scenario, ratio: float | None) -> Arch:
             return asked.arch(asked.eta)
         if ratio is not None:
             require(is_number(ratio, 0, 100), "--ratio", ratio, "above 0 and at most 100")
-        require_friction(asked.mu)
+        FRICTION.require("mu", asked.mu)
         # Checked by the arch before anything is made of them.
         asked.arch(1.0)
         arch = asked.half_angle, asked.mu, asked.voussoirs, asked.weight

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -37,6 +36,7 @@ from blocksim.cli.question import arch_of, joint_of, question
 from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
+from blocksim.common.files import read_file, toml_of
 from blocksim.evidence.recording import Recording
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import (
@@ -70,12 +70,9 @@ def is_structure(scene: str | None) -> bool:
         return True
     if not scene.endswith(".toml"):
         return False
-    path = Path(scene)
     try:
-        if not path.is_file() or path.stat().st_size > LARGEST_PEEK:
-            return False
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        table = toml_of(read_file(scene, "structure", "a file", LARGEST_PEEK))
+    except ValueError:
         return False  # the reader of scenarios says what is wrong with it
     return "blocks" in table or "kind" in table
 

@@ -34,7 +34,9 @@ def validate(
     quick: Annotated[
         bool, Option(name="--quick/--full", help="Scenarios marked quick, or all of them.")
     ] = False,
-    out: Annotated[Path, Option(help="Folder for the results.")] = Path("out/validate"),
+    out: Annotated[Path, Option(help="Folder for the results.", folder=True)] = Path(
+        "out/validate"
+    ),
     methods: Annotated[
         str | None,
         Option(
@@ -75,7 +77,9 @@ def chart(
     quick: Annotated[
         bool, Option(name="--quick/--full", help="Two small arches, or five.")
     ] = False,
-    out: Annotated[Path, Option(help="Folder for the results.")] = Path("out/chart"),
+    out: Annotated[Path, Option(help="Folder for the results.", folder=True)] = Path(
+        "out/chart"
+    ),
     beside: Annotated[
         Path | None, Option(help="Points of another program: JSON like chart.json.")
     ] = None,

@@ -23,7 +23,9 @@ def sweep(
     ] = None,
     out: Annotated[
         Path | None,
-        Option(help="Folder for the rows; one that has some is resumed; required."),
+        Option(
+            help="Folder for the rows; one that has some is resumed; required.", folder=True
+        ),
     ] = None,
     workers: Annotated[int, Option(low=1, high=256, help="Processes.")] = 2,
     scheduler: Annotated[

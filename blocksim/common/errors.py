@@ -7,9 +7,35 @@ from __future__ import annotations
 
 from reprlib import Repr
 
-_SHORT = Repr()
-_SHORT.maxstring = _SHORT.maxother = 200
-"""Characters shown of a value."""
+LONGEST = 200
+"""Characters shown of a value, a name or a file."""
+LONGEST_WORDS = 600
+"""The same of what would be accepted, which may list names."""
+
+
+class _Short(Repr):
+    """Values cut at a length; whole numbers may be too long to be written at all."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxstring = self.maxother = LONGEST
+
+    def repr_int(self, x: int, level: int) -> str:  # noqa: ARG002 - as called
+        """Return a whole number, or how long one is."""
+        if abs(x) >= 10**20:
+            return f"a whole number of about {round(x.bit_length() * 0.30103)} digits"
+        return str(x)
+
+
+_SHORT = _Short()
+
+
+def in_line(text: str, most: int = LONGEST) -> str:
+    """Return text of a stranger as one line that a terminal can be given, cut at a length."""
+    half = most // 2
+    cut = text if len(text) <= most else f"{text[:half]}...{text[3 - half :]}"
+    return "".join(each if each.isprintable() else "?" for each in cut)
+
 
 MISSING = object()
 """Stands for a value that was not given."""
@@ -43,10 +69,11 @@ class InputError(BlocksimError, ValueError):
         self.value = value
         self.allowed = allowed
         self.where = where
-        place = f"{where}: " if where else ""
+        place = f"{in_line(where)}: " if where else ""
         said = {id(MISSING): "is missing", id(ALL_MISSING): "are missing"}
         is_so = said.get(id(value), f"= {_SHORT.repr(value)}")
-        super().__init__(f"{place}{field} {is_so}: must be {allowed}")
+        must = in_line(allowed, LONGEST_WORDS)
+        super().__init__(f"{place}{in_line(field)} {is_so}: must be {must}")
 
 
 class MissingPart(BlocksimError):

@@ -5,14 +5,17 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Callable
-from contextlib import suppress
-from errno import EISDIR
+import re
+import stat
+from collections.abc import Callable, Generator
+from contextlib import contextmanager, suppress
+from errno import EISDIR, ENOENT, ENOTDIR
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import BinaryIO, cast
+from typing import Any, BinaryIO, cast
 
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 
 AnyPath = str | os.PathLike[str]
@@ -85,12 +88,14 @@ def write_whole(path: AnyPath, write: Callable[[BinaryIO], object]) -> None:
             aside.unlink()
 
 
-def require_file(path: AnyPath, field: str, allowed: str, largest: int) -> None:
-    """Check that a file is there to be read.
+@contextmanager
+def opened(path: AnyPath, field: str, allowed: str, largest: int) -> Generator[BinaryIO]:
+    """Open a file of a stranger: a regular one, of a bounded size, without waiting for it.
 
     Parameters
     ----------
-    path : Path
+    path : str or path
+        A text that ends in a slash is no file.
     field : str
         What the file is, for what is said of it.
     allowed : str
@@ -101,18 +106,123 @@ def require_file(path: AnyPath, field: str, allowed: str, largest: int) -> None:
     Raises
     ------
     InputError
-        If it is no file, cannot be read, or is too large.
+        If it is no regular file, cannot be opened or read, or is too large.
     """
-    path = Path(path)
+    said = os.fspath(path)
     try:
-        if not path.is_file():
-            raise InputError(field, str(path), allowed)
-        with path.open("rb") as file:
+        # What is no file is not even opened: a pipe waits, a device may do anything.
+        if not stat.S_ISREG(os.stat(said).st_mode):  # noqa: PTH116 - Path drops the slash
+            raise InputError(field, said, allowed)
+        with open(said, "rb", opener=_at_once) as file:
             size = os.fstat(file.fileno()).st_size
+            if size > largest:
+                raise InputError(field, said, f"at most {largest} bytes")
+            yield file
     except OSError as error:
-        raise InputError(field, str(path), f"{allowed} ({error.strerror})") from None
-    if size > largest:
-        raise InputError(field, str(path), f"at most {largest} bytes")
+        absent = error.errno in {ENOENT, ENOTDIR}
+        why = "" if absent else f" ({error.strerror or error})"
+        raise InputError(field, said, f"{allowed}{why}") from None
+    except ValueError as error:
+        if isinstance(error, InputError) or "null" not in str(error):
+            raise
+        raise InputError(field, said, f"{allowed} ({error})") from None
+
+
+def _at_once(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
+
+
+def read_file(path: AnyPath, field: str, allowed: str, largest: int) -> bytes:
+    """Read a file of a stranger as a whole; see `opened`."""
+    with opened(path, field, allowed, largest) as file:
+        # What says that it is empty may have no end, as in /proc.
+        text = cast("bytes | None", file.read(largest + 1))
+    if text is None:  # it has to be waited for
+        raise InputError(field, os.fspath(path), allowed)
+    if len(text) > largest:
+        raise InputError(field, os.fspath(path), f"at most {largest} bytes")
+    return text
+
+
+def require_file(path: AnyPath, field: str, allowed: str, largest: int) -> None:
+    """Check that a file is there to be read, by what opens it itself; see `opened`."""
+    with opened(path, field, allowed, largest) as file:
+        # What says so in /proc may have no end, or wait for one.
+        require(os.fstat(file.fileno()).st_size > 0, field, os.fspath(path), "not empty")
+
+
+DEEPEST_KEY = 32
+"""Keys with dots between them, in TOML."""
+LONGEST_WHOLE = 290
+"""Digits of whole numbers that a float can hold."""
+_DEEP_KEY = re.compile(
+    r"""(?:[ \t]*+\.[ \t]*+(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+'))""" + f"{{{DEEPEST_KEY}}}"
+)
+
+
+def toml_of(text: bytes) -> dict[str, Any]:
+    """Return what a TOML file says.
+
+    Raises
+    ------
+    ValueError
+        In one line, if it is no TOML, no UTF-8, nested too deeply, or says a number beyond
+        all bounds.
+    """
+    # Commands that read no file need not wait for it.
+    import tomllib
+
+    said = text.decode()
+    # The parser takes time and memory as the square of a key's depth, and more.
+    if _DEEP_KEY.search(said):
+        message = f"a key of more than {DEEPEST_KEY} parts"
+        raise ValueError(message)
+    with _in_words():
+        found = tomllib.loads(said)
+        _require_bounded(found)
+        return found
+
+
+def json_of(text: bytes, pairs: Callable[[list[tuple[str, Any]]], Any] | None = None) -> Any:
+    """Return what a JSON file says; `pairs` makes something of a table.
+
+    Raises
+    ------
+    ValueError
+        As `toml_of`.
+    """
+    with _in_words():
+        return json.loads(text.decode("utf-8-sig"), object_pairs_hook=pairs, parse_int=_whole)
+
+
+@contextmanager
+def _in_words() -> Generator[None]:
+    try:
+        yield
+    except RecursionError:
+        message = "nested too deeply"
+        raise ValueError(message) from None
+
+
+def _whole(digits: str) -> int | float:
+    """Return a whole number, infinite where no float can hold it."""
+    return (
+        int(digits) if len(digits) <= LONGEST_WHOLE else math.copysign(math.inf, float(digits))
+    )
+
+
+def _require_bounded(found: object) -> None:
+    """Raise `ValueError` for whole numbers that no float can hold, as hexadecimal ones."""
+    todo = [found]
+    while todo:
+        each = todo.pop()
+        if isinstance(each, dict):
+            todo.extend(cast("dict[str, object]", each).values())
+        elif isinstance(each, list):
+            todo.extend(cast("list[object]", each))
+        elif isinstance(each, int) and abs(each) >= 10**LONGEST_WHOLE:
+            message = f"a whole number of {each.bit_length()} bits"
+            raise ValueError(message)
 
 
 def _sync_folder(path: Path) -> None:

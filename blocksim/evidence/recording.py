@@ -3,37 +3,46 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
+import os
+import struct
 import tokenize
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.lib.format import read_array_header_1_0, read_magic
 
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
-from blocksim.common.checks import require
-from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, json_text, require_file, write_whole
+from blocksim.common.checks import is_number, require
+from blocksim.common.errors import InputError, in_line
+from blocksim.common.files import AnyPath, json_of, json_text, opened, write_whole
 from blocksim.common.shown import Shown
 from blocksim.engines.base import Quality, Settings
 
 FORMAT = 2
 WRITTEN = "written by blocksim simulate"
-LARGEST_FILE = 1 << 30
-"""Bytes; a larger file is not opened."""
-LARGEST_INSIDE = 1 << 32
-"""Bytes of its arrays, which can be packed into a thousandth."""
-FARTHEST = 1e100
-"""Beyond this a square is no number any more [r]."""
+LARGEST_FILE = LARGEST_INSIDE = 1 << 28
+"""Bytes of a file, and of its arrays, which can be packed into a thousandth."""
+LARGEST_HEADER = 1 << 26
+"""Bytes of what is said beside the arrays."""
+LARGEST_CONTENTS = 1 << 16
+"""Bytes of the list of what an archive has."""
+BEFORE_END, END = 20, 22
+"""Bytes at the end of that list, and of its long form before them."""
+CHUNK = 1 << 20
+"""Bytes that are unpacked at once, and numbers looked at."""
+FARTHEST, LATEST = 1e9, 1e9
+"""Largest way of a block [size], and largest time [sqrt(size/g)]."""
 _UNREADABLE = (
-    KeyError,
+    LookupError,
+    ArithmeticError,
+    AttributeError,
     TypeError,
     ValueError,
     OSError,
@@ -42,6 +51,8 @@ _UNREADABLE = (
     RuntimeError,
     zipfile.BadZipFile,
     SyntaxError,
+    struct.error,
+    NotImplementedError,
     tokenize.TokenError,
     zlib.error,
 )
@@ -96,21 +107,30 @@ class Recording(Shown):
     def state_hash(self) -> str:
         """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
         little = np.ascontiguousarray(self.poses, dtype="<f8")
-        return hashlib.sha256(little.tobytes()).hexdigest()[:16]
+        return hashlib.sha256(little.reshape(-1).data).hexdigest()[:16]
 
     @property
     def displacement(self) -> Array:
         """Largest displacement of any corner since the release [r], shape (frames,)."""
-        return displacement(self.poses - self.poses[0], self.assembly)
+        return self._moved(self.poses.shape[-1])
 
     @property
     def beyond_plane(self) -> Array:
         """Largest displacement of any corner by motion out of the plane [r], (frames,)."""
-        moved = self.poses - self.poses[0]
-        if moved.shape[-1] == PLANAR:
+        if self.poses.shape[-1] == PLANAR:
             return np.zeros(len(self.times))
-        moved[..., :PLANAR] = 0.0
-        return displacement(moved, self.assembly)
+        return self._moved(PLANAR, beyond=True)
+
+    def _moved(self, count: int, *, beyond: bool = False) -> Array:
+        """Displacements by the first columns of the poses, or by those beyond them."""
+        at_once = max(1, CHUNK // max(1, self.poses[0].size))
+        found: list[Array] = []
+        for start in range(0, len(self.poses), at_once):
+            moved = self.poses[start : start + at_once] - self.poses[0]
+            if beyond:
+                moved[..., :count] = 0.0
+            found.append(displacement(moved, self.assembly))
+        return np.concatenate(found)
 
     def seconds(self, gravity: float) -> Array:
         """Return times in seconds for a gravity in m/s^2."""
@@ -122,7 +142,7 @@ class Recording(Shown):
         Raises
         ------
         InputError
-            If the file cannot be written.
+            If the file cannot be written, or would be too large to be read.
         """
         header = {
             "format": FORMAT,
@@ -134,6 +154,9 @@ class Recording(Shown):
             "state_hash": self.state_hash,
         }
         text = np.array(json_text(header))
+        inside = self.times.nbytes + self.poses.nbytes + text.nbytes
+        allowed = f"at most {LARGEST_INSIDE} (a shorter time, or fewer blocks)"
+        require(inside <= LARGEST_INSIDE, "bytes of the recording", inside, allowed)
 
         def write(file: BinaryIO) -> None:
             np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
@@ -159,11 +182,10 @@ def read_recording(path: AnyPath, renew: Callable[[Header], Header] = dict) -> R
     InputError
         If the file is missing, too large, or no recording.
     """
-    path = Path(path)
-    where = str(path)
-    require_file(path, "recording", "an existing .npz file", LARGEST_FILE)
+    where = os.fspath(path)
     try:
-        header, times, poses = _parts(path)
+        with opened(path, "recording", "an existing .npz file", LARGEST_FILE) as file:
+            header, times, poses = _parts(file)
         header = renew(header)
         require(header.get("format") == FORMAT, "recording", where, f"of format {FORMAT}")
         recording = Recording(
@@ -173,11 +195,16 @@ def read_recording(path: AnyPath, renew: Callable[[Header], Header] = dict) -> R
             settings=_settings(header["settings"]),
             times=times,
             poses=poses,
-            quality=Quality(**header.get("quality", {})),
+            quality=_quality(header.get("quality", {})),
         )
         _require_header(recording)
     except InputError as error:
-        raise error if error.field == "recording" else _foreign(where) from None
+        if error.field == "recording":
+            raise
+        if error.field != "array":
+            raise _foreign(where) from None
+        allowed = f"{error.allowed} ({error.value})"
+        raise InputError("recording", where, allowed) from None
     except _UNREADABLE:
         raise _foreign(where) from None
     expected = (recording.times.size, len(recording.assembly.blocks))
@@ -208,20 +235,77 @@ def _settings(written: dict[str, Any]) -> Settings:
     return Settings(**named)
 
 
-def _parts(path: Path) -> tuple[dict[str, Any], Array, Array]:
-    """Unpack header, times and poses; what raises here is no recording."""
-    # Opened here: np.load leaves the file open where it is no archive.
-    with path.open("rb") as file:
-        inside = sum(part.file_size for part in zipfile.ZipFile(file).infolist())
-        require(inside <= LARGEST_INSIDE, "size", inside, f"at most {LARGEST_INSIDE} bytes")
-        file.seek(0)
-        with np.load(file, allow_pickle=False) as archive:
-            header = json.loads(str(archive["header"]))
-            times, poses = archive["times"], archive["poses"]
-    kinds = times.dtype.kind + poses.dtype.kind
-    require(kinds == "ff", "arrays", kinds, "of numbers")
-    require(isinstance(header, dict), "header", header, "a table")
-    return header, times.astype(np.float64), poses.astype(np.float64)
+def _quality(written: dict[str, Any]) -> Quality:
+    inf = math.inf
+    named = {name: inf if each == "inf" else each for name, each in dict(written).items()}
+    if not all(each is None or is_number(each, -inf, inf) for each in named.values()):
+        raise TypeError
+    return Quality(**named)
+
+
+def _parts(file: BinaryIO) -> tuple[dict[str, Any], Array, Array]:
+    """Unpack header, times and poses; what raises here is no recording.
+
+    What sizes are said is looked at before anything is unpacked.
+    """
+    _require_contents(file)
+    with zipfile.ZipFile(file) as archive:
+        inside = sum(part.file_size for part in archive.infolist())
+        allowed = f"of at most {LARGEST_INSIDE} bytes unpacked"
+        require(inside <= LARGEST_INSIDE, "array", f"it has {inside}", allowed)
+        said = _array(archive, "header", "U", LARGEST_HEADER)
+        times = _array(archive, "times", "f", LARGEST_INSIDE)
+        poses = _array(archive, "poses", "f", LARGEST_INSIDE)
+    header = json_of(str(said).encode())
+    require(isinstance(header, dict), "header", type(header).__name__, "a table")
+    return header, times.astype(np.float64, copy=False), poses.astype(np.float64, copy=False)
+
+
+def _require_contents(file: BinaryIO) -> None:
+    """Refuse an archive with a long list of contents, all of which would be read."""
+    file.seek(max(0, file.seek(0, os.SEEK_END) - BEFORE_END - END))
+    last = file.read()
+    # As numpy writes it: without a comment, and with the short form of the list's end.
+    *_, size, _, comment = struct.unpack("<4s4H2LH", last[-END:])
+    short = last[-END:].startswith(b"PK\5\6") and comment == 0
+    short = short and b"PK\6\7" not in last[:-END]
+    if not short or size > LARGEST_CONTENTS:
+        raise zipfile.BadZipFile
+
+
+def _array(archive: zipfile.ZipFile, name: str, kind: str, largest: int) -> Array:
+    """Unpack an array whose size is what its header says."""
+    part = archive.getinfo(f"{name}.npy")
+    with archive.open(part) as stream:
+        if read_magic(stream) != (1, 0):
+            raise TypeError
+        shape, fortran, dtype = read_array_header_1_0(stream)
+        size = math.prod(shape) * dtype.itemsize
+        honest = min(shape, default=0) >= 0 and size == part.file_size - stream.tell()
+        said = f"{name}: {_in_words(shape)}"
+        if dtype.kind != kind:
+            raise TypeError
+        require(honest, "array", said, "of arrays as long as they say")
+        require(size <= largest, "array", said, f"of arrays of at most {largest} bytes")
+        held = bytearray(size)
+        view, at = memoryview(held), 0
+        while at < size:
+            read = stream.read(min(CHUNK, size - at))
+            if not read:
+                raise EOFError
+            view[at : at + len(read)] = read
+            at += len(read)
+        # The end is asked for, so that the sum of all is looked at.
+        stream.read(1)
+    return np.ndarray(shape, dtype, held, order="F" if fortran else "C")
+
+
+def _in_words(shape: Sequence[int]) -> str:
+    return in_line(" x ".join(f"{each:.4g}" for each in map(_as_float, shape)) or "one", 60)
+
+
+def _as_float(size: int) -> float:
+    return float(size) if size.bit_length() < 1000 else math.inf
 
 
 def _require_header(recording: Recording) -> None:
@@ -233,5 +317,8 @@ def _require_header(recording: Recording) -> None:
 def _moves(recording: Recording) -> bool:
     """Tell whether there is a first frame, and later ones follow it in time and in space."""
     times, poses = recording.times, recording.poses
-    known = np.isfinite(times).all() and (np.abs(poses) < FARTHEST).all()
-    return bool(times.size and known and (np.diff(times) > 0).all())
+    if not times.size:
+        return False
+    near = poses.max(initial=0.0) < FARTHEST and poses.min(initial=0.0) > -FARTHEST
+    known = times.max() < LATEST and times.min() > -LATEST
+    return bool(known and near and (np.diff(times) > 0).all())

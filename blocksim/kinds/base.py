@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -10,12 +11,12 @@ from typing import Any, ClassVar, Literal, Self, cast
 
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.polygons import Body
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import LENGTH, is_number, require
 from blocksim.common.errors import InputError
 
 Array = Any
 Stands = Literal["low", "high"]
-FARTHEST = 1e6
+FARTHEST = LENGTH.high
 """Largest length [m]."""
 MOST = 1000
 """Largest number of voussoirs, courses or stones."""
@@ -79,7 +80,7 @@ class Parameter:
         elif self.is_number:
             # Just below a low end that counts is_number takes it.
             least = low if above else math.nextafter(low, -math.inf)
-            ok = is_number(value, least, high) and math.isfinite(cast(float, value))
+            ok = is_number(value, least, min(high, sys.float_info.max))
             ok = ok and (not self.whole or value == int(cast(float, value)))
             require(ok, name, value, allowed)
 
@@ -109,8 +110,9 @@ def parameter(default: object, about: str, **known: Any) -> Any:
 
 
 def metres(default: float, about: str, **known: Any) -> Any:
-    """Make a field that is a length above 0 [m]."""
-    return parameter(default, about, unit="m", **{"high": FARTHEST, **known})
+    """Make a field that is a length [m]."""
+    usual = {"low": LENGTH.low, "high": FARTHEST, "above": False}
+    return parameter(default, about, unit="m", **{**usual, **known})
 
 
 def count(default: int, about: str, **known: Any) -> Any:

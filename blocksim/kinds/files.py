@@ -9,10 +9,9 @@ Lengths in m, forces in N, angles in degrees, y upwards. The keys besides blocks
 
 from __future__ import annotations
 
-import json
 import math
+import os
 import re
-import tomllib
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -31,15 +30,15 @@ from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.blocks.road import on_road
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, require_file, shipped_files
+from blocksim.common.files import AnyPath, json_of, read_file, shipped_files, toml_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, kind_of, parameters_of
 from blocksim.reading.compas import is_compas, read_compas
 from blocksim.reading.dxf import read_dxf
 from blocksim.reading.svg import read_svg
 
-LARGEST_FILE = 50_000_000
-"""Bytes; a larger file is not read."""
+LARGEST_FILES = {".json": 20_000_000, ".toml": 1_000_000}
+"""Bytes; a larger file is not read: TOML takes a second for each of these."""
 WRITTEN = {".json": "JSON", ".toml": "TOML"}
 DRAWN = {".dxf": read_dxf, ".svg": read_svg}
 """Endings of drawings, and who reads them."""
@@ -110,37 +109,38 @@ def named_file(path: AnyPath, unit: float | None = None) -> Generator[object]:
     InputError
         In one line, also what is raised while it is used.
     """
-    path = Path(path)
-    ending = path.suffix.lower()
+    # As it was given: a name that ends in a slash is no file.
+    path = os.fspath(path)
+    ending = Path(path).suffix.lower()
     if ending not in WRITTEN and ending not in DRAWN:
-        path = shipped_structures().get(str(path), path)
-        ending = path.suffix
+        path = str(shipped_structures().get(path, path))
+        ending = Path(path).suffix
     endings = ".json, .toml, .dxf or .svg"
     allowed = f"an existing structure file, {endings}, or a shipped structure"
     require(ending in WRITTEN or ending in DRAWN, "structure", str(path), allowed)
-    require_file(path, "structure", allowed, LARGEST_FILE)
+    text = b""
+    if ending in WRITTEN:
+        require(unit is None, "--unit", unit, "left out: it is of drawings")
+        text = read_file(path, "structure", allowed, LARGEST_FILES[ending])
     data: object = None
     try:
-        if ending in DRAWN:
-            data = DRAWN[ending](path, unit)
-        else:
-            require(unit is None, "--unit", unit, "left out: it is of drawings")
-            data = _written(path.read_text(encoding="utf-8"), WRITTEN[ending])
+        drawn = DRAWN.get(ending)
+        data = drawn(path, unit) if drawn else _written(text, WRITTEN[ending])
         yield data
     except InputError as error:
         field = _by_name(error.field, data)
-        raise InputError(field, error.value, error.allowed, where=str(path)) from None
+        raise InputError(field, error.value, error.allowed, where=path) from None
     except (ValueError, RecursionError) as error:
         # Not JSON or TOML, no UTF-8, numbers beyond all bounds, or nested too deeply.
         said = " ".join(str(error).split())
-        raise InputError("file", said, f"valid {WRITTEN[ending]}", where=str(path)) from None
+        raise InputError("file", said, f"valid {WRITTEN[ending]}", where=path) from None
 
 
-def _written(text: str, language: str) -> object:
+def _written(text: bytes, language: str) -> object:
     """Return what a text says, an assembly of compas as a structure file would."""
     if language == "TOML":
-        return tomllib.loads(text)
-    data: object = json.loads(text, object_pairs_hook=_once)
+        return toml_of(text)
+    data: object = json_of(text, _once)
     return read_compas(cast("dict[str, Any]", data)) if is_compas(data) else data
 
 
@@ -185,8 +185,11 @@ def weighed(data: object, density: float) -> object:
     if not isinstance(data, dict):
         return data
     table = cast("dict[str, Any]", data)
-    for at, block in enumerate(table.get("blocks") or ()):
-        own = block.get("weight") if isinstance(block, dict) else None  # pyright: ignore
+    blocks: Any = table.get("blocks")
+    for at, block in enumerate(cast("list[Any]", blocks) if isinstance(blocks, list) else ()):
+        own: Any = (
+            cast("dict[str, Any]", block).get("weight") if isinstance(block, dict) else None
+        )
         allowed = "left out where a unit weight is given: it is of this block alone"
         require(own is None, f"blocks[{at}].weight", own, allowed)
     return {**table, "density": density}

@@ -15,7 +15,7 @@ from blocksim.arch.bracket import ETA_MAX
 from blocksim.arch.circular import WEIGHTS, Weight
 from blocksim.arch.scenario import read_table
 from blocksim.ask.methods import CHOICES, METHODS, STATIC
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import ETA, FRICTION, Range, is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
 from blocksim.evidence.simulation import SETTINGS, require_setting, setting_of
@@ -26,6 +26,8 @@ LARGEST_DESIGN = 20_000_000
 """Cases of one sweep: their identities are held in memory, about 0.1 kB each."""
 AUTO_BAND = 0.001
 """Share of the least thickness within which `auto` simulates."""
+DEGREES = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
+"""Of half-angles."""
 USUAL_VOUSSOIRS = Axis(values=(27.0,))
 
 
@@ -252,19 +254,19 @@ def load_arch_design(path: AnyPath) -> Design:
 def _require_ranges(design: Design) -> None:
     """Raise `InputError` where a case would be out of range."""
     spaced = design.random is None
-    for field, top, allowed in (
-        ("half_angle_deg", math.nextafter(180, 0), "above 0 and below 180"),
-        ("mu", math.inf, "above 0 (inf for unbounded friction)"),
-        ("voussoirs", 1000, "a whole number from 3 to 1000"),
-        ("eta", ETA_MAX, "above 0 and at most 2"),
-        ("ratio", 100, "above 0 and at most 100"),
+    for field, known, allowed in (
+        ("half_angle_deg", DEGREES, "above 0 and below 180"),
+        ("mu", FRICTION, FRICTION.words),
+        ("voussoirs", Range(low=3, high=1000), "a whole number from 3 to 1000"),
+        ("eta", Range(low=ETA.low, high=ETA_MAX), "above 0 and at most 2"),
+        ("ratio", Range(low=1e-6, high=100), "1e-06 to 100"),
     ):
         axis = cast("Axis | None", getattr(design, field))
         if axis is None:
             continue
         require_axis(field, axis, spaced)
         for value in axis.ends:
-            require(is_number(value, 0, top), field, value, allowed)
+            require(known.has(value), field, value, allowed)
         if field == "voussoirs":
             for value in (*axis.ends, *(axis.every() if spaced else ())):
                 require(3 <= value == int(value), field, value, allowed)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import tomllib
-from pathlib import Path
-
-from blocksim.common.files import AnyPath
+from blocksim.common.errors import InputError
+from blocksim.common.files import AnyPath, read_file, toml_of
 from blocksim.many.design import Design, load_arch_design
 from blocksim.many.kinddesign import KindDesign, load_kind_design
 
@@ -27,8 +25,7 @@ def load_design(path: AnyPath) -> Design | KindDesign:
         In one line, with file, field, value and what is allowed.
     """
     try:
-        with Path(path).open("rb") as file:
-            table = tomllib.loads(file.read(LARGEST_PEEK).decode())
-    except (OSError, ValueError, RecursionError):
+        table = toml_of(read_file(path, "design", "an existing .toml file", LARGEST_PEEK))
+    except (InputError, ValueError):
         table = {}  # the reader of designs says what is wrong with it
     return load_kind_design(path, table) if "kind" in table else load_arch_design(path)

@@ -13,12 +13,13 @@ from blocksim.ask.families import family_of
 from blocksim.ask.methods import STATIC
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import LONGEST, SHORTEST, STRONGEST
+from blocksim.common.checks import FACTOR
 from blocksim.common.errors import MissingPart
 from blocksim.kinds.files import structure_of
 from blocksim.many.case import Given, Pace, Row, identity_of
 
 ACTING: dict[str, tuple[float, float]] = {
-    "load": (-1e15, 1e15),
+    "load": (-FACTOR.high, FACTOR.high),
     "tilt_deg": (-180.0, 180.0),
     "amplitude_g": (0.0, STRONGEST),
     "duration_s": (SHORTEST, LONGEST),

@@ -15,10 +15,9 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.entries import FARTHEST
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
-from blocksim.common.checks import require
+from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError
 
 STRAIGHT = 1e-4
@@ -119,10 +118,11 @@ def _mesh(name: str, block: Table, fixed: bool) -> _Mesh:
         [[float(each[axis]) for axis in "xyz"] for each in block["vertex"].values()]
     ).reshape(-1, 3)
     field = f"block {name}"
-    near = bool((np.abs(points) <= FARTHEST).all())
-    require(near, field, points.tolist(), f"corners within {FARTHEST:g} m")
+    near = bool((np.abs(points) <= COORDINATE.high).all())
+    require(near, field, points.tolist(), f"corners within {COORDINATE.high:g} m")
     found = tuple(
-        np.array([index[str(key)] for key in _listed(row)]) for row in _listed(block["face"])
+        np.array([index[str(key)] for key in _listed(row)], dtype=np.int64)
+        for row in _listed(block["face"])
     )
     total = sum(len(face) for face in found)
     ok = len(points) <= MOST_CORNERS and 0 < total <= 10 * MOST_CORNERS

@@ -14,10 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.entries import FARTHEST
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS
-from blocksim.common.checks import require
+from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError
 
 LAYERS = {"blocks": False, "supports": True}
@@ -143,7 +142,7 @@ def _block(shape: Shape, layer: str, unit: Unit) -> dict[str, Any]:
         raise InputError(field, shape.wrong, "an outline of straight sides, in the plane")
     require(len(corners) >= 3, field, f"{len(corners)} corners", "at least three corners")
     far = max(abs(each) * unit.metres for corner in corners for each in corner)
-    require(far <= FARTHEST, field, far, f"within {FARTHEST:g} m")
+    require(far <= COORDINATE.high, field, far, f"within {COORDINATE.high:g} m")
     # Nobody means anything by the direction in which an outline was drawn.
     corners = corners[::-1] if signed_area(np.array(corners)) < 0 else corners
     vertices = [[x * unit.metres, y * unit.metres] for x, y in corners]

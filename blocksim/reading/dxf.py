@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
 
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_file
+from blocksim.common.files import AnyPath, require_file
 from blocksim.reading.drawing import (
     LARGEST_DRAWING,
     NO_UNIT,
@@ -29,12 +30,12 @@ FLAT = 1e-9
 """How far from the plane a polyline may be, in units of its largest coordinate."""
 
 
-def read_dxf(path: Path, unit: float | None = None) -> dict[str, Any]:
+def read_dxf(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
     """Read the closed polylines of the model space.
 
     Parameters
     ----------
-    path : Path
+    path : str or path
     unit : float, optional
         Metres that a unit of the drawing is; by default what $INSUNITS says.
 
@@ -55,13 +56,13 @@ def read_dxf(path: Path, unit: float | None = None) -> dict[str, Any]:
     # What it logs of flaws it mends would be printed where nobody set up logging.
     logging.getLogger("ezdxf").addHandler(QUIET)
     try:
-        document: Any = cast(Any, ezdxf).readfile(path)
+        document: Any = cast(Any, ezdxf).readfile(os.fspath(path))
         shapes = [_shape(entity) for entity in _entities(document)]
         code = int(document.header.get("$INSUNITS", 0))
     except Exception as error:  # a damaged file makes ezdxf raise almost anything
         said = " ".join(str(error).split()) or type(error).__name__
         raise InputError("file", said, "a valid DXF file") from None
-    return structure_from(shapes, path, _unit(code) if unit is None else given_unit(unit))
+    return structure_from(shapes, Path(path), _unit(code) if unit is None else given_unit(unit))
 
 
 def _unit(code: int) -> Unit:

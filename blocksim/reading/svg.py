@@ -13,7 +13,7 @@ from typing import Any
 from xml.parsers import expat
 
 from blocksim.common.errors import InputError
-from blocksim.common.files import require_file
+from blocksim.common.files import AnyPath, read_file
 from blocksim.reading.drawing import (
     LARGEST_DRAWING,
     LAYERS,
@@ -49,7 +49,7 @@ _CALL = re.compile(r"[\s,]*([a-zA-Z]+)\s*\(([^()]*)\)")
 _LENGTH = re.compile(rf"\s*({_NUMBER.pattern})\s*([a-z%]*)\s*")
 
 
-def read_svg(path: Path, unit: float | None = None) -> dict[str, Any]:
+def read_svg(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
     """Read the closed outlines of a drawing.
 
     Layers are groups, or outlines themselves, with `blocks` or `supports` as id, class or
@@ -57,7 +57,7 @@ def read_svg(path: Path, unit: float | None = None) -> dict[str, Any]:
 
     Parameters
     ----------
-    path : Path
+    path : str or path
     unit : float, optional
         Metres that a unit of the viewBox is; by default what width and viewBox say in mm,
         cm or in.
@@ -73,14 +73,14 @@ def read_svg(path: Path, unit: float | None = None) -> dict[str, Any]:
         In one line, if the file is too large, no SVG, declares entities, or has no
         outlines to read.
     """
-    require_file(path, "drawing", "an existing .svg file", LARGEST_DRAWING)
+    text = read_file(path, "drawing", "an existing .svg file", LARGEST_DRAWING)
     reader = _Reader()
     parser = expat.ParserCreate(namespace_separator=" ")
     parser.StartElementHandler = reader.start
     parser.EndElementHandler = reader.end
     parser.EntityDeclHandler = _refuse_entity
     try:
-        parser.Parse(path.read_bytes(), True)
+        parser.Parse(text, True)
     except (expat.ExpatError, ValueError) as error:
         if isinstance(error, InputError):
             raise
@@ -88,7 +88,7 @@ def read_svg(path: Path, unit: float | None = None) -> dict[str, Any]:
     if reader.unit is None:
         raise InputError("file", "no svg element", "a valid SVG file")
     return structure_from(
-        reader.shapes, path, reader.unit if unit is None else given_unit(unit)
+        reader.shapes, Path(path), reader.unit if unit is None else given_unit(unit)
     )
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, make_folder, require_file, write_whole
+from blocksim.common.files import AnyPath, json_of, make_folder, read_file, write_whole
 from blocksim.engines import ENGINES
 from blocksim.report.tables import as_json, machine, pictures, write_contents
 from blocksim.studies.chart import Point, on_front
@@ -84,11 +83,10 @@ def read_points(path: AnyPath) -> list[Point]:
     InputError
         If the file is missing, too large, or holds no points.
     """
-    path = Path(path)
-    require_file(path, "points", WRITTEN, LARGEST_FILE)
+    text = read_file(path, "points", WRITTEN, LARGEST_FILE)
     try:
-        return [_point(record) for record in json.loads(path.read_text("utf-8"))["points"]]
-    except (KeyError, TypeError, ValueError, RecursionError):
+        return [_point(record) for record in json_of(text)["points"]]
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise InputError("points", str(path), WRITTEN) from None
 
 

@@ -45,7 +45,9 @@ def against(recording: Recording) -> list[str]:
     if words or arch is None:
         return words
     least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
-    return ["no thickness stands" if least is None else _share(arch.eta / least)]
+    if least is None:
+        return ["no thickness stands"]
+    return [_share(arch.eta / least) if least else "any thickness stands"]
 
 
 def _share(ratio: float) -> str:

@@ -15,6 +15,7 @@ from av.video.reformatter import Colorspace
 from numpy.typing import NDArray
 from PIL import Image
 
+from blocksim.common.checks import require
 from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.recording import Recording
@@ -29,6 +30,10 @@ QUALITY = "19"
 """Constant rate factor of x264: lines stay crisp."""
 THREADS = 2
 """Fixed, because x264's output depends on it."""
+LONGEST = 600.0
+"""Longest film [s]."""
+MOST_PIXELS = {"mp4": 5e10, "gif": 6e8}
+"""Of all frames together: those of a gif are in memory at once."""
 COLOURS, SAMPLES = 255, 9
 """Of a gif: colours, and frames they are chosen from."""
 DRAWN = (*JOINTS.values(), THRUST, INK, QUIET, PAPER, GROUND)
@@ -99,7 +104,7 @@ def render(
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If the film is too long or too large, or the file cannot be written.
     """
     out = Path(out)
     kind = out.suffix.removeprefix(".")
@@ -117,14 +122,27 @@ def write_film(film: Frames, out: AnyPath, progress: Progress = silent) -> None:
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If the film is too long or too large, or the file cannot be written.
     """
+    _require_bounded(film, Path(out).suffix.removeprefix("."))
     kinds: dict[str, Callable[[Frames, BinaryIO, Progress], None]] = {
         "mp4": _mp4,
         "gif": _gif,
     }
     write = kinds[Path(out).suffix.removeprefix(".")]
     write_whole(out, lambda file: write(film, file, progress))
+
+
+def _require_bounded(film: Frames, kind: str) -> None:
+    """Refuse a film that would take hours or fill the disk, before it is begun."""
+    seconds, frame = film.count / film.rate, film.width * film.height
+    long = f"at most {LONGEST:g} s long: less slow, or of a shorter recording"
+    require(seconds <= LONGEST, "film", f"{seconds:.4g} s", long)
+    most = int(MOST_PIXELS[kind] // frame)
+    allowed = (
+        f"at most {most} frames of {film.width} x {film.height} as .{kind}: lower, less slow"
+    )
+    require(film.count <= most, "film", f"{film.count} frames", allowed)
 
 
 def _mp4(film: Frames, file: BinaryIO, progress: Progress) -> None:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from blocksim.arch.circular import WEIGHTS
 from blocksim.arch.modes import Mode
 from blocksim.common.checks import is_number
 from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, require_file
+from blocksim.common.files import AnyPath, json_of, read_file
 
 LARGEST_FILE = 20_000_000
 """Bytes: some 20,000 rows."""
@@ -75,12 +73,11 @@ def read_results(path: AnyPath) -> list[Result]:
     InputError
         If the file is missing, too large, or no such results.
     """
-    path = Path(path)
-    require_file(path, "--results", f"an existing {WRITTEN}", LARGEST_FILE)
+    text = read_file(path, "--results", f"an existing {WRITTEN}", LARGEST_FILE)
     try:
-        rows = json.loads(path.read_bytes())["rows"]
+        rows = json_of(text)["rows"]
         found = [_result(row) for row in rows]
-    except (KeyError, TypeError, ValueError, AttributeError, RecursionError):
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise InputError("--results", str(path), WRITTEN) from None
     return [result for result in found if result is not None]
 

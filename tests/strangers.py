@@ -1,0 +1,571 @@
+"""Files and options that nobody in his right mind would give: hypothesis strategies.
+
+Each file is a good one of its format in which something was changed. Questions are small, so
+that what takes long hangs.
+"""
+
+from __future__ import annotations
+
+import copy
+import io
+import json
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import ezdxf
+import numpy as np
+from hypothesis import strategies as st
+
+from blocksim.arch.circular import Arch
+from blocksim.blocks.record import to_record
+from blocksim.engines.base import Settings
+from blocksim.evidence.recording import Recording
+from blocksim.view.explorer.results import Result
+
+
+@dataclass(frozen=True)
+class Attack:
+    """Files by name, and the words of a command about them."""
+
+    files: dict[str, bytes]
+    words: tuple[str, ...]
+
+
+EXTREMES = (
+    "0", "-0.0", "1", "-1", "2", "1e-320", "5e-324", "1e-308", "1e-200", "1e-100", "1e-15",
+    "1e-9", "1e-7", "1e-6", "1e-3", "0.5", "1e3", "1e6", "1e7", "1e9", "1e12", "1e15", "1e16",
+    "1e100", "1e154", "1e200", "1.7e308", "-1e308", "1e309", "inf", "-inf", "nan",
+    "9007199254740993", "18446744073709551616", "9" * 300, "9" * 400, "9" * 5000,
+)  # fmt: skip
+NUMBERS = st.sampled_from(EXTREMES) | st.floats().map(repr) | st.integers().map(str)
+WORDS = st.sampled_from(
+    ["", " ", ".", "..", "/", "~", "-", "--", "a\nb", "\x1b[31m", "a\x00b", "x" * 300,
+     "x" * 100_000, "\udcff", "\ud800", "%s%n", "{}", "None", "inf", "b0", "\u202e", "é", "1e5"]
+) | st.text(max_size=20)  # fmt: skip
+
+
+def _number(written: str) -> Any:
+    if re.fullmatch(r"-?\d+", written):
+        return int(written) if len(written) < 4000 else 10**4000
+    return float(written)
+
+
+VALUES = st.recursive(
+    NUMBERS.map(_number) | WORDS | st.none() | st.booleans(),
+    lambda inside: (
+        st.lists(inside, max_size=3)
+        | st.dictionaries(st.sampled_from(["kind", "data", "dtype", "a"]) | WORDS, inside)
+    ),
+    max_leaves=4,
+)
+
+
+def _places(tree: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    found = [at] if at else []
+    if isinstance(tree, dict | list):
+        for key, inside in tree.items() if isinstance(tree, dict) else enumerate(tree):
+            found += _places(inside, (*at, key))
+    return found
+
+
+@st.composite
+def changed(draw: st.DrawFn, tree: Any, values: st.SearchStrategy[Any] = VALUES) -> Any:
+    """Return a tree in which one to three places are replaced, taken away or doubled."""
+    tree = copy.deepcopy(tree)
+    for _ in range(draw(st.integers(1, 3))):
+        places = _places(tree)
+        if not places:
+            break
+        *path, key = draw(st.sampled_from(places))
+        inside = tree
+        for step in path:
+            inside = inside[step]
+        what = draw(st.sampled_from(["number", "number", "value", "away", "double", "new"]))
+        if what == "number":
+            inside[key] = draw(NUMBERS.map(_number))
+        elif what == "value":
+            inside[key] = draw(values)
+        elif what == "away":
+            del inside[key]
+        elif what == "double" and isinstance(inside, list):
+            inside.append(copy.deepcopy(inside[key]))
+        elif isinstance(inside, dict):
+            inside[draw(WORDS)] = draw(values)
+    return tree
+
+
+@st.composite
+def spoilt(draw: st.DrawFn, whole: bytes) -> bytes:
+    """Return a file with numbers replaced, or bytes flipped, doubled, cut or put in."""
+    for _ in range(draw(st.integers(1, 3))):
+        what = draw(st.sampled_from(["number", "number", "flip", "cut", "double", "put"]))
+        at = draw(st.integers(0, max(0, len(whole) - 1)))
+        if what == "number":
+            places = [*re.finditer(rb"-?\d+\.?\d*", whole[:200_000])]
+            if places:
+                place = draw(st.sampled_from(places))
+                new = draw(NUMBERS).encode()
+                whole = whole[: place.start()] + new + whole[place.end() :]
+        elif what == "flip" and whole:
+            flipped = bytes([whole[at] ^ draw(st.integers(1, 255))])
+            whole = whole[:at] + flipped + whole[at + 1 :]
+        elif what == "cut":
+            whole = whole[:at]
+        elif what == "double":
+            end = at + draw(st.integers(1, 200))
+            times = draw(st.sampled_from([2, 3, 1000]))
+            whole = whole[:at] + whole[at:end] * times + whole[end:]
+        else:
+            junk = draw(st.binary(max_size=20) | WORDS.map(_bytes))
+            whole = whole[:at] + junk + whole[at:]
+    return whole
+
+
+def _bytes(text: str) -> bytes:
+    return text.encode("utf-8", "surrogatepass")
+
+
+def _json(tree: Any) -> bytes:
+    return json.dumps(tree).encode()
+
+
+def toml(tree: dict[str, Any]) -> bytes:
+    """Write a table as TOML, numbers that it has not included."""
+    lines: list[str] = []
+
+    def value(of: Any) -> str:
+        if isinstance(of, bool):
+            return str(of).lower()
+        if isinstance(of, float):
+            return repr(of)
+        if isinstance(of, int):
+            return hex(of) if of > 10**60 else str(of)
+        if isinstance(of, list):
+            return f"[{', '.join(map(value, of))}]"
+        if isinstance(of, dict):
+            return "{" + ", ".join(f"{key(k)} = {value(v)}" for k, v in of.items()) + "}"
+        return json.dumps(of) if isinstance(of, str) else '""'
+
+    def key(of: str) -> str:
+        return of if re.fullmatch(r"[\w.-]+", of, re.ASCII) else json.dumps(of)
+
+    plain = {k: v for k, v in tree.items() if not isinstance(v, dict)}
+    lines += [f"{key(k)} = {value(v)}" for k, v in plain.items()]
+    for name, table in tree.items():
+        if isinstance(table, dict):
+            lines += [f"[{key(name)}]", *(f"{key(k)} = {value(v)}" for k, v in table.items())]
+    return ("\n".join(lines) + "\n").encode("utf-8", "surrogatepass")
+
+
+def _box(x: float, y: float, wide: float, high: float) -> list[list[float]]:
+    return [[x, y], [x + wide, y], [x + wide, y + high], [x, y + high]]
+
+
+STRUCTURE = {
+    "title": "two blocks",
+    "friction": 0.6,
+    "density": 20000.0,
+    "blocks": [
+        {"id": "ground", "fixed": True, "vertices": _box(-1, -1, 4, 1)},
+        {"id": 1, "vertices": _box(0, 0, 1, 1), "weight": 100.0, "depth": 1.0},
+        {"id": "b", "polygons": [_box(0, 1, 1, 1)], "centre": [0.5, 1.5], "inertia": 3.0},
+    ],
+    "dead": [{"body": [0.0, -1.0]}],
+    "live": [
+        {"block": "b", "force": [1.0, 0.0], "point": [0.0, 1.5]},
+        {"patch": [0.1, 0.9], "force": [0.0, -5.0]},
+    ],
+    "load": 1.0,
+    "move": [{"block": "ground", "direction": [1.0, 0.0], "turn_deg": 1.0, "about": [0, 0]}],
+    "size": 1.0,
+    "shake": {"shape": "half-sine", "amplitude_g": 0.1, "duration_s": 0.2},
+    "notes": ["by hand"],
+}
+GIVEN = {
+    **{key: STRUCTURE[key] for key in ("friction", "blocks", "live", "load")},
+    "joints": [
+        {"a": "ground", "b": 1, "ends": [[0, 0], [1, 0]], "friction": 0.5},
+        {"a": 1, "b": "b", "ends": [[0, 1]], "normal": [0, 1]},
+        {"a": 1, "b": "b", "ends": [[1, 1]], "normal": [0, 1], "friction": "inf"},
+    ],
+}
+SHAKEN = {
+    **GIVEN,
+    "shake": {"times_s": [0.0, 0.1, 0.2], "accelerations_g": [0.0, 0.2, -0.1]},
+}
+BY_KIND = {
+    "kind": "portal",
+    "friction": 0.7,
+    "density": 20000.0,
+    "pier_width": 1.0,
+    "pier_height": 2.0,
+    "arch": {"kind": "circular", "thickness": 0.4, "voussoirs": 7, "fill": 0.2},
+}
+WALL = {"kind": "wall", "friction": 0.7, "courses": 3, "height": 1.5}
+SCENARIO = {
+    "title": "t",
+    "source": "s",
+    "quick": True,
+    "arch": {
+        "half_angle_deg": 90.0,
+        "eta": 0.12,
+        "voussoirs": 9,
+        "weight": "sector",
+        "radius": 2.0,
+        "depth": 1.0,
+        "specific_weight": 20000.0,
+    },
+    "contact": {"mu": 0.7},
+    "gravity": {"lean_deg": 0.0},
+    "expect": {"modes": ["rrr"], "eta": 0.1, "verdict": "stands"},
+}
+MEASURED = {
+    "title": "t",
+    "source": "s",
+    "arch": {"span_m": 8.0, "rise_m": 3.0, "thickness_m": 0.5, "at": "intrados",
+             "voussoirs": 9, "unit_weight_kN_per_m3": 22.0},
+    "contact": {"friction_angle_deg": 35.0},
+}  # fmt: skip
+DESIGN = {
+    "half_angle_deg": [60.0, 90.0],
+    "mu": {"low": 0.5, "high": 1.0, "steps": 2, "log": True},
+    "voussoirs": [9],
+    "weight": ["centreline"],
+    "ratio": [0.9],
+    "method": ["limit", "theory"],
+}
+DRAWN_DESIGN = {
+    "half_angle_deg": {"low": 60.0, "high": 90.0},
+    "mu": [0.7],
+    "method": "limit",
+    "random": {"count": 3, "seed": 1},
+}
+POINTS = {
+    "points": [
+        {"case": "a", "method": "limit", "knob": "tolerance", "value": 0.1, "error": 0.1,
+         "low": 0.1, "high": 0.2, "undecided": 0, "work": 10, "processor_s": [0.1],
+         "wall_s": [0.1]}
+    ]
+}  # fmt: skip
+RESULTS = {
+    "rows": [
+        {**dict.fromkeys(Result.__dataclass_fields__), "half_angle_deg": 90.0, "mu": 0.7,
+         "voussoirs": 9, "weight": "sector", "eta_low": 0.1, "eta_high": 0.11,
+         "mode_observed": "rrr", "scenario": "s", "engine": "direct", "miss": ""}
+    ]
+}  # fmt: skip
+CUBE = {
+    "vertex": {
+        str(i): {"x": i // 4, "y": i // 2 % 2, "z": i % 2} for i in range(8)
+    },
+    "face": {
+        "0": [0, 1, 3, 2], "1": [4, 6, 7, 5], "2": [0, 4, 5, 1],
+        "3": [2, 3, 7, 6], "4": [0, 2, 6, 4], "5": [1, 5, 7, 3],
+    },
+}  # fmt: skip
+PEER = {
+    "dtype": "compas_assembly.datastructures/Assembly",
+    "data": {
+        "graph": {
+            "node": {
+                "0": {"block": {"dtype": "x", "data": CUBE}, "is_support": True},
+                "1": {"block": {"dtype": "x", "data": {
+                    "vertex": {k: {**v, "z": v["z"] + 1} for k, v in CUBE["vertex"].items()},
+                    "face": CUBE["face"]}}},
+            }
+        }
+    },
+}  # fmt: skip
+SVG = (
+    b'<svg xmlns="http://www.w3.org/2000/svg" width="400mm" height="300mm" '
+    b'viewBox="0 0 4 3"><g id="supports" transform="translate(0, 0) rotate(0) scale(1)">'
+    b'<polygon points="0,2 4,2 4,3 0,3"/></g><g class="blocks"><rect x="1" y="1" width="1" '
+    b'height="1"/><path d="M 1 0 L 2 0 2 1 H 1 Z"/></g><text x="1" y="1">a</text></svg>'
+)
+CSV = b"time_s,acceleration_g\n0,0\n0.05,0.2\n0.1,-0.1\n0.2,0\n"
+
+
+@cache
+def _dxf() -> bytes:
+    drawing = ezdxf.new(units=6)
+    for layer, corners in (("supports", _box(-1, -1, 4, 1)), ("blocks", _box(0, 0, 1, 1))):
+        drawing.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
+    text = io.StringIO()
+    drawing.write(text)
+    return text.getvalue().encode()
+
+
+@cache
+def _plain_dxf() -> bytes:
+    """Entities alone, in which a change is sure to matter."""
+    lines = ["0", "SECTION", "2", "ENTITIES"]
+    for layer, corners in (("supports", _box(-1, -1, 4, 1)), ("blocks", _box(0, 0, 1, 1))):
+        lines += ["0", "LWPOLYLINE", "8", layer, "90", "4", "70", "1"]
+        lines += [word for x, y in corners for word in ("10", str(x), "20", str(y))]
+    return "\n".join([*lines, "0", "ENDSEC", "0", "EOF", ""]).encode()
+
+
+@cache
+def _recording() -> tuple[dict[str, Any], Any, Any]:
+    """Header, times and poses of three voussoirs that fall apart."""
+    arch = Arch(half_angle=1.2, eta=0.2, voussoirs=3)
+    assembly = arch.assembly()
+    rest = np.column_stack([assembly.centres / assembly.size, np.zeros(3)])
+    times = np.linspace(0.0, 0.5, 6)
+    poses = rest + times[:, None, None] ** 2 * np.array([0.3, -0.5, 0.4])
+    settings = Settings(step=0.005, sweeps=250, hold_sweeps=50_000)
+    made = Recording(
+        problem=arch.problem(0.7), engine="pymunk", engine_version="7.3", settings=settings,
+        times=times, poses=poses,
+    )  # fmt: skip
+    header = {
+        "format": 2, "problem": to_record(made.problem), "engine": "pymunk",
+        "engine_version": "7.3", "settings": to_record(settings), "quality": {},
+        "state_hash": made.state_hash,
+    }  # fmt: skip
+    return header, times, poses
+
+
+def packed(header: Any, times: Any, poses: Any) -> bytes:
+    """Return a recording, whose fingerprint is right."""
+    _, *good = _recording()
+    if isinstance(header, dict) and np.size(poses) and poses is not good[1]:
+        made = np.ascontiguousarray(poses, dtype="<f8").reshape(-1).view(np.uint8)
+        import hashlib
+
+        header = {**header, "state_hash": hashlib.sha256(made).hexdigest()[:16]}
+    file = io.BytesIO()
+    np.savez_compressed(file, header=np.array(json.dumps(header)), times=times, poses=poses)
+    return file.getvalue()
+
+
+@st.composite
+def recordings(draw: st.DrawFn) -> bytes:
+    """Recordings with another header, times or poses, or spoilt as files."""
+    header, times, poses = _recording()
+    what = draw(st.sampled_from(["header", "header", "times", "poses", "file"]))
+    if what == "header":
+        return packed(draw(changed(header)), times, poses)
+    if what == "times":
+        # None that would be a film of minutes: those are work.
+        ends = (1e-320, 1e-150, 1e-9, 1e-3, 1.0, 3.0, 1e4, 1e9, 1e12, 1e150, 1e300, math.inf)
+        end, start = draw(st.sampled_from(ends)), draw(st.sampled_from((0.0, 1.0, -1e9, 1e200)))
+        with np.errstate(all="ignore"):
+            return packed(header, start + np.linspace(0, end, len(times)), poses)
+    if what == "poses":
+        far = float(draw(st.sampled_from(EXTREMES)))
+        moved = poses.copy()
+        moved[
+            draw(st.integers(0, len(poses) - 1)) :,
+            draw(st.integers(0, 2)),
+            draw(st.integers(0, 2)),
+        ] = far
+        return packed(header, times, moved)
+    return draw(spoilt(packed(header, times, poses)))
+
+
+METHODS = st.sampled_from(["auto", "limit", "theory", "direct", "pymunk", "pymunk"])
+TABLES = ("sweep", "kinds", "design")
+
+
+def _words(*words: str) -> tuple[str, ...]:
+    return words
+
+
+@st.composite
+def structures(draw: st.DrawFn) -> Attack:
+    """Structure files, in JSON or TOML."""
+    tree = draw(
+        st.sampled_from([STRUCTURE, GIVEN, SHAKEN, BY_KIND, WALL]).flatmap(changed) | VALUES
+    )
+    name = draw(st.sampled_from(["a.json", "a.json", "a.toml"]))
+    flat = name == "a.json" or not isinstance(tree, dict)
+    text = _json(tree) if flat else toml(tree)
+    if draw(st.integers(0, 4)) == 0:
+        text = draw(spoilt(text))
+    return Attack({name: text}, draw(_asked(name)))
+
+
+def _asked(name: str) -> st.SearchStrategy[tuple[str, ...]]:
+    """Questions about a structure or a drawing."""
+    over = st.sampled_from(["load", "tilt", "mu", "spread", "lean", "amplitude", "thickness"])
+    return st.one_of(
+        METHODS.map(lambda method: ("check", name, "--method", method)),
+        METHODS.map(lambda method: ("check", name, "--json", "--method", method)),
+        over.map(lambda each: ("bracket", name, "--over", each, "--tol", "0.05")),
+        st.just(("check", name, "--unit-weight", "20", "--mu", "0.7")),
+        st.sampled_from(["svg", "png", "dxf", "pdf"]).map(
+            lambda kind: ("render", name, "--out", f"o.{kind}")
+        ),
+        st.just(("report", name, "--out", "o.html")),
+        st.just(("convert", name, "--mu", "0.6", "--out", "o.json")),
+        st.just(
+            ("simulate", name, "--seconds", "0.05", "--out", "o.npz", "--method", "direct")
+        ),
+    )
+
+
+@st.composite
+def scenarios(draw: st.DrawFn) -> Attack:
+    """Scenario files."""
+    text = toml(draw(st.sampled_from([SCENARIO, MEASURED]).flatmap(changed)))
+    if draw(st.integers(0, 3)) == 0:
+        text = draw(spoilt(text))
+    words = draw(
+        _asked("a.toml")
+        | METHODS.map(lambda method: ("bracket", "a.toml", "--method", method))
+        | st.just(("check", "a.toml", "--fill", "0.3", "--point-load", "0.2", "3"))
+    )
+    return Attack({"a.toml": text}, words)
+
+
+COUNTS = st.sampled_from(EXTREMES).filter(lambda each: each not in {"1e3", "1e6", "1e7"})
+
+
+@st.composite
+def designs(draw: st.DrawFn) -> Attack:
+    """Design files, none of them of so many arches that it is work."""
+    tree = draw(
+        st.sampled_from([DESIGN, DRAWN_DESIGN]).flatmap(
+            lambda each: changed(each, COUNTS.map(_number) | WORDS)
+        )
+    )
+    text = toml(tree)
+    if draw(st.integers(0, 5)) == 0:
+        text = draw(spoilt(text))
+    return Attack({"a.toml": text}, ("sweep", "a.toml", "--out", "o", "--workers", "1"))
+
+
+@st.composite
+def motions(draw: st.DrawFn) -> Attack:
+    """Recordings, drawn in every way."""
+    kind = draw(st.sampled_from(["png", "svg", "mp4", "gif", "glb", "gltf", "csv", "json"]))
+    words = ["render", "a.npz", "--out", f"o.{kind}"]
+    if kind in {"png", "svg", "mp4", "gif"}:
+        # Small ones, not to wait for pixels.
+        words += ["--height", "180"] if kind != "svg" else []
+        words += draw(st.sampled_from([[], ["--view", "3d"], ["--beside", "b.npz"]]))
+        words += draw(st.sampled_from([[], [], ["--slow", "1"], ["--slow", "1000"]]))
+    files = {"a.npz": draw(recordings()), "b.npz": packed(*_recording())}
+    return Attack(files, tuple(words))
+
+
+@st.composite
+def drawings(draw: st.DrawFn) -> Attack:
+    """DXF, SVG, and JSON of another program."""
+    name, text = draw(
+        st.one_of(
+            st.tuples(st.just("a.svg"), spoilt(SVG)),
+            st.tuples(st.just("a.dxf"), spoilt(_plain_dxf())),
+            st.tuples(st.just("a.dxf"), spoilt(_dxf())),
+            st.tuples(st.just("a.json"), changed(PEER).map(_json)),
+            st.tuples(st.just("a.json"), changed(_peer_of_before()).map(_json)),
+        )
+    )
+    words = draw(_asked(name))
+    mu = () if "--mu" in words else ("--mu", "0.7")
+    unit = ("--unit", draw(NUMBERS)) if words[0] == "convert" and draw(st.booleans()) else ()
+    return Attack({name: text}, (*words, *mu, *unit))
+
+
+def _peer_of_before() -> dict[str, Any]:
+    nodes = PEER["data"]["graph"]["node"]
+    return {
+        "blocks": {name: copy.deepcopy(node["block"]) for name, node in nodes.items()},
+        "assembly": {"vertex": {"0": {"is_support": True}, "1": {}}},
+    }
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> Attack:
+    """Rows of other runs, and tables of ground motion."""
+    arch = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.2")
+    return draw(
+        st.one_of(
+            changed(RESULTS).map(
+                lambda tree: Attack(
+                    {"a.json": _json(tree)},
+                    _words("map", "--out", "o.html", "--results", "a.json"),
+                )
+            ),
+            # Nowhere to be written: the file is read before.
+            changed(POINTS).map(
+                lambda tree: Attack(
+                    {"a.json": _json(tree), "file": b""},
+                    _words("chart", "--quick", "--beside", "a.json", "--out", "file"),
+                )
+            ),
+            st.tuples(spoilt(CSV), METHODS).map(
+                lambda both: Attack(
+                    {"a.csv": both[0]},
+                    ("check", *arch, "--shake", "a.csv", "--method", both[1]),
+                )
+            ),
+        )
+    )
+
+
+OPTIONS = {
+    "check": ("--alpha", "--eta", "--mu", "--friction-angle", "--depth", "--unit-weight",
+              "--lean", "--ratio", "--span", "--rise", "--thickness", "--at", "--weight",
+              "--fill", "--fill-unit-weight", "--load", "--tilt", "--shake", "--amplitude",
+              "--duration", "--joint", "--method", "--with", "--point-load", "--patch-load"),
+    "bracket": ("--alpha", "--mu", "--depth", "--lean", "--tol", "--over", "--within"),
+    "render": ("--alpha", "--eta", "--mu", "--out", "--height", "--view", "--time", "--slow"),
+    "report": ("--alpha", "--eta", "--mu", "--out", "--depth"),
+    "simulate": ("--alpha", "--eta", "--mu", "--out", "--depth", "--over"),
+    "map": ("--zoom", "--out", "--results"),
+    "kinds": (),
+    "cite": ("--method",),
+}  # fmt: skip
+USUAL = {
+    "check": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.12"),
+    "bracket": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9"),
+    "render": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.2", "--out",
+               "o.svg"),
+    "report": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.2", "--out",
+               "o.html"),
+    "simulate": ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.1",
+                 "--seconds", "0.1", "--out", "o.npz"),
+    "map": ("--out", "o.html"),
+    "kinds": (),
+    "cite": (),
+}  # fmt: skip
+
+
+@st.composite
+def options(draw: st.DrawFn) -> Attack:
+    """Options with numbers and words that they were not made for."""
+    command = draw(st.sampled_from(list(OPTIONS)))
+    words = [*USUAL[command]]
+    for _ in range(draw(st.integers(1, 2))):
+        what = draw(st.sampled_from([*OPTIONS[command], "", "--voussoirs"]))
+        many = {"--point-load": 2, "--patch-load": 3, "--within": 2}.get(what, 1)
+        if what == "--voussoirs":
+            # Few or too many: what lies between is work.
+            new = [draw(COUNTS)]
+        elif what == "--with":
+            new = [f"{draw(WORDS)}={draw(NUMBERS | WORDS)}"]
+        else:
+            new = [draw(NUMBERS | NUMBERS | WORDS) for _ in range(many)]
+        if what in words[:-1]:
+            words[words.index(what) + 1] = new[0]
+        else:
+            words += [what, *new] if what else new
+    if command in {"check", "bracket"} and "--method" not in words:
+        words += ["--method", draw(METHODS)]
+    # No program can be given these.
+    words = [word.replace("\x00", "") for word in words]
+    sane = [re.sub("[\ud800-\udc7f\udd00-\udfff]", "", word) for word in words]
+    return Attack({}, (command, *sane))
+
+
+ATTACKS = {
+    each.__name__: each
+    for each in (
+        structures, scenarios, designs, motions, drawings, tables, options,
+    )
+}  # fmt: skip

@@ -1,0 +1,137 @@
+"""Long use and strange surroundings: nothing grows, and nothing needed may be missing."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from running import PROGRAM
+
+QUESTION = ("check", "--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.12")
+FALLS = ("check", "--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.08")
+LONG = pytest.mark.long
+CHECKS = int(os.environ.get("BLOCKSIM_LONG_CHECKS", "2000"))
+
+GROWS = """
+import json, os, sys
+from pathlib import Path
+from blocksim import Arch, check
+method, count = sys.argv[1], int(sys.argv[2])
+
+def used():
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20, len(os.listdir("/proc/self/fd"))
+
+rows = []
+for number in range(count):
+    # No two are the same, so that nothing is known already; some fall.
+    eta = (0.2 if number % 2 else 0.07) * (1 + 1e-6 * number)
+    found = check(Arch(half_angle=1.5, eta=eta, voussoirs=7), mu=0.7, method=method)
+    assert found.verdict.value == ("stands" if number % 2 else "collapses"), found.reason
+    if number % max(1, count // 10) == count // 10 - 1:
+        rows.append(used())
+print(json.dumps(rows))
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "method", ["theory", "limit", "direct", "pymunk", "pybullet", "mujoco"]
+)
+def test_memory_and_files_are_flat(method: str) -> None:
+    """From a fifth of the way on, not a kilobyte a check."""
+    if method in {"pybullet", "mujoco"}:
+        pytest.importorskip(method)
+    words = [sys.executable, "-c", GROWS, method, str(CHECKS)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    rows = json.loads(done.stdout)
+    print(f"\n{method}: {[(round(m, 1), n) for m, n in rows]} MB, files")  # noqa: T201
+    (before, files), (after, files_after) = rows[1], rows[-1]
+    assert files_after == files
+    assert (after - before) * 1024 < CHECKS
+
+
+@pytest.mark.long
+def test_forty_at_once_answer_alike() -> None:
+    running = [
+        subprocess.Popen([*PROGRAM, *QUESTION, "--method", "pymunk", "--json"], stdout=-1)
+        for _ in range(40)
+    ]
+    answers = [json.loads(each.communicate()[0]) for each in running]
+    assert [each.returncode for each in running] == [0] * 40
+    assert {(one["verdict"], one["state_hash"]) for one in answers} == {
+        ("stands", answers[0]["state_hash"])
+    }
+
+
+def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int, str, str]:
+    """Run it in an environment with some names changed, or gone where they are None."""
+    given = {**os.environ, **where}
+    kept = {name: value for name, value in given.items() if value is not None}
+    done = subprocess.run(
+        [*PROGRAM, *words], capture_output=True, env=kept, cwd=cwd, check=False
+    )
+    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [pytest.param(QUESTION, marks=LONG), ("render", "semicircle", "--out", "x.svg")],
+)
+@pytest.mark.parametrize(
+    "where",
+    [
+        {"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
+        {"HOME": "/proc/nobody", "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None},
+        {"TMPDIR": "/nowhere", "HOME": "/proc/nobody"},
+        {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+    ],
+    ids=["no home", "home not writable", "no folder for temporary files", "C locale"],
+)
+def test_surroundings_that_lack_something(
+    words: tuple[str, ...], where: dict[str, str | None], tmp_path: Path
+) -> None:
+    code, out, error = run(*words, cwd=tmp_path, **where)
+    assert (code, error) == (0, "")
+    assert out.startswith("STANDS" if words == QUESTION else "wrote x.svg")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [QUESTION, *(pytest.param(each, marks=LONG) for each in (("--help",), ("doctor",)))],
+)
+def test_a_terminal_of_twenty_columns_in_the_c_locale(words: tuple[str, ...]) -> None:
+    where = {"COLUMNS": "20", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    code, out, error = run(*words, **where)
+    assert (code, error) == (0, "")
+    assert out
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        FALLS,
+        *(pytest.param(each, marks=LONG) for each in (QUESTION, ("doctor",), ("--help",))),
+    ],
+)
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&-", ">/dev/full"])
+def test_streams_that_are_closed_or_full(words: tuple[str, ...], closed: str) -> None:
+    program = " ".join(PROGRAM)
+    done = subprocess.run(
+        ["/bin/sh", "-c", f"{program} {' '.join(words)} {closed}"],
+        capture_output=True,
+        check=False,
+    )
+    if closed == ">/dev/full":
+        # What was to be said is lost, and that is said.
+        assert done.returncode == 2
+        assert done.stderr.count(b"\n") == 1
+        assert b"No space left on device" in done.stderr
+    else:
+        assert done.returncode == (1 if words == FALLS else 0)
+        assert done.stderr == b""

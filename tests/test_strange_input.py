@@ -1,0 +1,403 @@
+"""Input that no one means: what is accepted has bounds, and they are said in one line."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import os
+import re
+import subprocess
+import time
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from running import PROGRAM
+from running import inside as blocksim
+from strangers import packed
+
+from blocksim.arch.circular import Arch
+from blocksim.arch.motion import load_recording
+from blocksim.blocks.assembly import Block
+from blocksim.blocks.problem import Load, Move
+from blocksim.common.checks import FACTOR, FRICTION, LENGTH, Range
+from blocksim.common.errors import InputError
+from blocksim.common.files import json_of, read_file, toml_of
+from blocksim.evidence import recording as recordings
+from blocksim.kinds.files import load_structure
+from blocksim.view import video
+from blocksim.view.video import write_film
+
+ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.2")
+
+
+def one_line(done: subprocess.CompletedProcess[str], longest: int = 1000) -> str:
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(r"blocksim: [^\n]+\n", done.stderr)
+    assert done.stderr[:-1].isprintable()
+    assert len(done.stderr) <= longest + len("blocksim: \n")
+    return done.stderr
+
+
+# Sizes of real things.
+
+
+@pytest.mark.parametrize("value", [1e-6, 1e6, 1, 0.5])
+def test_the_ends_of_a_range_are_in_it(value: float) -> None:
+    assert LENGTH.has(value)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [0, -1, 9.99e-7, 1.01e6, 1e308, 5e-324, math.inf, math.nan, 10**400, "1", True, None],
+)
+def test_what_is_beyond_a_range_or_no_number(value: object) -> None:
+    assert not LENGTH.has(value)
+    with pytest.raises(InputError, match=r"radius = .*: must be 1e-06 to 1e\+06 m$"):
+        LENGTH.require("radius", value)
+
+
+def test_a_range_says_what_else_it_has() -> None:
+    assert FRICTION.words == "1e-06 to 1e+06 (or inf)"
+    assert FRICTION.has(math.inf)
+    assert not FRICTION.has(0)
+    assert (FACTOR.words, FACTOR.has(-1e9), FACTOR.has(0), FACTOR.has(-2e9)) == (
+        "-1e+09 to 1e+09", True, True, False,
+    )  # fmt: skip
+    assert Range(low=1, high=2, zero=True).words == "1 to 2 (or 0)"
+
+
+SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
+BLOCK = {"vertices": SQUARE, "centre": [0.5, 0.5], "mass": 1.0, "inertia": 1.0, "depth": 1.0}
+
+
+@pytest.mark.parametrize("value", [1e308, 5e-324])
+@pytest.mark.parametrize("field", ["mass", "inertia", "depth"])
+def test_blocks_in_python_have_sizes_of_real_things(field: str, value: float) -> None:
+    with pytest.raises(InputError, match=rf"{field} = .*: must be 1e-\d+ to 1e\+\d+ (m|kg)"):
+        Block(**{**BLOCK, field: value})
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (lambda: Block(**{**BLOCK, "vertices": [[0, 0], [1e200, 0], [0, 1]]}), "1e+09 m"),
+        (lambda: Load(force=np.array([1e200, 0]), blocks=(0,)), "force"),
+        (lambda: Load(force=np.array([1, 0]), blocks=(0,), point=np.array([0, 1e99])), "point"),
+        (lambda: Move(support=0, direction=np.array([math.nan, 0])), "direction"),
+        (lambda: Arch(half_angle=1, eta=0.1, voussoirs=9).problem(1e-300), "mu"),
+        (lambda: Arch(half_angle=1, eta=0.1, voussoirs=9).problem(0.7).with_load(1e99), "load"),
+    ],
+)
+def test_so_have_loads_and_motions(made: Any, words: str) -> None:
+    with pytest.raises(InputError, match=re.escape(words)):
+        made()
+
+
+# One reader for all files.
+
+
+@pytest.mark.parametrize("ending", ["toml", "json", "svg", "dxf", "csv", "npz"])
+@pytest.mark.parametrize("what", ["fifo", "zero", "memory", "slash"])
+def test_only_regular_files_are_read_and_nothing_is_waited_for(
+    what: str, ending: str, tmp_path: Path
+) -> None:
+    path = tmp_path / f"a.{ending}"
+    if what == "fifo":
+        os.mkfifo(path)
+    elif what == "slash":
+        path.write_text("{}")
+    else:
+        path.symlink_to({"zero": "/dev/zero", "memory": "/proc/self/mem"}[what])
+    name = f"{path}/" if what == "slash" else str(path)
+    if ending == "csv":
+        words = ["check", *ARCH, "--shake", name]
+        words[-1] = name
+    elif ending == "npz":
+        words = ["render", name, "--out", str(tmp_path / "o.png")]
+    else:
+        words = ["check", name, "--mu", "0.7"]
+    one_line(blocksim(*words))
+    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+
+
+def test_what_says_that_it_is_empty_is_read_up_to_a_bound(tmp_path: Path) -> None:
+    # A file of the system says that it has no bytes.
+    with pytest.raises(InputError, match="at most 10 bytes"):
+        read_file("/proc/self/status", "file", "a file", 10)
+    path = tmp_path / "a"
+    path.write_bytes(b"0123456789")
+    assert read_file(path, "file", "a file", 10) == b"0123456789"
+    with pytest.raises(InputError, match="at most 9 bytes"):
+        read_file(path, "file", "a file", 9)
+
+
+def test_keys_of_many_parts_cost_nothing() -> None:
+    text = (".".join(["a"] * 300_000) + " = 1").encode()
+    started = time.process_time()
+    with pytest.raises(ValueError, match="more than 32 parts"):
+        toml_of(text)
+    # 30,000 of them took the parser 27 s and 3.6 GB.
+    assert time.process_time() - started < 2
+    deepest = ".".join(["a"] * 32)
+    assert toml_of(f"{deepest} = 1\n{'x' * 500_000} = 'a. b. c'".encode())
+
+
+def test_whole_numbers_without_end() -> None:
+    assert json_of(b'{"a": [1, -2]}') == {"a": [1, -2]}
+    assert json_of(b"[" + b"9" * 400 + b", -" + b"9" * 400 + b"]") == [math.inf, -math.inf]
+    with pytest.raises(ValueError, match="whole number of 4000 bits"):
+        toml_of(b"a = [{b = 0x" + b"f" * 1000 + b"}]")
+
+
+@pytest.mark.parametrize("digits", ["9" * 400, "9" * 5000])
+def test_numbers_of_hundreds_of_digits_in_results_of_others(
+    digits: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "validate.json"
+    row = '"eta_low": 0.1, "eta_high": 0.2, "mu": 1, "half_angle_deg": 90, "voussoirs": 9'
+    for key in ("eta_low", "mu", "half_angle_deg", "voussoirs"):
+        path.write_text(
+            '{"rows": [{' + re.sub(rf'("{key}"): [\d.]+', rf"\1: {digits}", row)
+            + ', "mode_observed": null, "weight": "sector", "scenario": "s", "engine": "e", '
+            '"miss": ""}]}'
+        )  # fmt: skip
+        done = blocksim("map", "--out", str(tmp_path / "m.html"), "--results", str(path))
+        if key == "mu":
+            continue  # unbounded friction
+        assert "validate.json as" in one_line(done)
+
+
+def test_shaking_of_any_length_is_refused_without_warnings(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    for rows in ("-1e308,0\n1e308,1", "0,0\n1,1e308", "0,1e308\n1,-1e308", "0," + "1" * 300):
+        path.write_text(f"time_s,acceleration_g\n{rows}\n")
+        one_line(blocksim("check", *ARCH, "--shake", str(path)))
+
+
+# Recordings.
+
+
+def claimed(path: Path, name: str, header: bytes, text: bytes = b"") -> None:
+    """Write an archive of which one array says something else than it is."""
+    good = zipfile.ZipFile(io.BytesIO(packed(*_good())))
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for each in ("header", "times", "poses"):
+            told = header + text if each == name else good.read(f"{each}.npy")
+            archive.writestr(f"{each}.npy", told)
+
+
+def _good() -> tuple[Any, Any, Any]:
+    from strangers import _recording
+
+    return _recording()
+
+
+def npy(shape: tuple[int, ...], kind: str = "<f8") -> bytes:
+    file = io.BytesIO()
+    np.lib.format.write_array_header_1_0(
+        file, {"descr": kind, "fortran_order": False, "shape": shape}
+    )
+    return file.getvalue()
+
+
+@pytest.mark.parametrize("name", ["times", "poses", "header"])
+@pytest.mark.parametrize("shape", [(10**30,), (2**61, 3, 3), (-1, 3, 3), (10**9,), (5,)])
+def test_an_array_is_as_long_as_it_says(
+    name: str, shape: tuple[int, ...], tmp_path: Path
+) -> None:
+    path = tmp_path / "a.npz"
+    claimed(path, name, npy(shape, "<U9" if name == "header" else "<f8"), bytes(24))
+    with pytest.raises(InputError, match="of arrays as long as they say"):
+        load_recording(path)
+
+
+def test_what_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    count = recordings.LARGEST_INSIDE // 72 + 1
+    # A million zeros are packed into a thousandth.
+    claimed(path, "poses", npy((count, 3, 3)), bytes(72 * count))
+    assert path.stat().st_size < recordings.LARGEST_INSIDE / 500
+    with pytest.raises(InputError, match="of at most 268435456 bytes unpacked"):
+        load_recording(path)
+
+
+def test_an_archive_of_many_files_is_not_listed(tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    with zipfile.ZipFile(path, "w") as archive:
+        for number in range(2000):
+            archive.writestr(str(number), b"")
+    with pytest.raises(InputError, match="written by blocksim simulate"):
+        load_recording(path)
+
+
+def test_no_recording_is_written_that_would_not_be_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.npz"
+    path.write_bytes(packed(*_good()))
+    run = load_recording(path)
+    monkeypatch.setattr(recordings, "LARGEST_INSIDE", run.poses.nbytes)
+    with pytest.raises(InputError, match="a shorter time, or fewer blocks"):
+        run.save(tmp_path / "b.npz")
+    assert [each.name for each in tmp_path.iterdir()] == ["a.npz"]
+
+
+@pytest.mark.parametrize("scale", [1e10, 1e150, 1e300])
+def test_times_without_end_are_no_recording(scale: float, tmp_path: Path) -> None:
+    header, times, poses = _good()
+    path = tmp_path / "a.npz"
+    path.write_bytes(packed(header, times * scale, poses))
+    with pytest.raises(InputError, match="of finite poses at times that grow"):
+        load_recording(path)
+
+
+@pytest.mark.parametrize(("kind", "slow"), [("mp4", "1000"), ("gif", "1000")])
+def test_a_film_is_bounded_before_it_is_begun(kind: str, slow: str, tmp_path: Path) -> None:
+    header, times, poses = _good()
+    (tmp_path / "a.npz").write_bytes(packed(header, times * 10, poses))
+    out = str(tmp_path / f"o.{kind}")
+    done = blocksim("render", str(tmp_path / "a.npz"), "--out", out, "--slow", slow)
+    assert "must be at most 600 s long: less slow, or of a shorter recording" in one_line(done)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.npz"]
+
+
+def test_a_film_of_many_pixels_names_its_frames(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Frames:
+        width, height, rate, count = 40, 20, 10, 12
+
+        def frame(self, number: int) -> Any:
+            return np.full((20, 40, 4), number, dtype=np.uint8)
+
+    monkeypatch.setattr(video, "MOST_PIXELS", {"gif": 40 * 20 * 12})
+    write_film(Frames(), tmp_path / "a.gif")
+    monkeypatch.setattr(video, "MOST_PIXELS", {"gif": 40 * 20 * 12 - 1})
+    allowed = "film = '12 frames': must be at most 11 frames of 40 x 20 as .gif"
+    with pytest.raises(InputError, match=allowed):
+        write_film(Frames(), tmp_path / "b.gif")
+    assert [each.name for each in tmp_path.iterdir()] == ["a.gif"]
+
+
+def test_a_table_of_a_long_recording_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.npz").write_bytes(packed(*_good()))
+    monkeypatch.setattr("blocksim.cli.filming.MOST_NUMBERS", 10)
+    for kind in ("csv", "json", "glb", "gltf"):
+        out = str(tmp_path / f"o.{kind}")
+        assert "at most 10 as" in one_line(
+            blocksim("render", str(tmp_path / "a.npz"), "--out", out)
+        )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"title": 3},
+        {"load": "much"},
+        {"origin": {"kind": "circular-arch", "half_angle": "x"}},
+        {"notes": 5},
+        {"gravity": [0.0, -1e300, 0.0]},
+        {"moves": [{"support": 9}]},
+        {"dead": [{"force": [0, 1], "blocks": [99], "point": None, "per_weight": False}]},
+    ],
+)
+def test_a_problem_of_a_stranger_is_checked(change: dict[str, Any], tmp_path: Path) -> None:
+    header, times, poses = _good()
+    header = {**header, "problem": {**header["problem"], **change}}
+    (tmp_path / "a.npz").write_bytes(packed(header, times, poses))
+    out = str(tmp_path / "o.svg")
+    one_line(blocksim("render", str(tmp_path / "a.npz"), "--out", out))
+
+
+def test_three_voussoirs_of_which_any_thickness_stands_are_filmed(tmp_path: Path) -> None:
+    (tmp_path / "a.npz").write_bytes(packed(*_good()))
+    out = tmp_path / "o.svg"
+    assert blocksim("render", str(tmp_path / "a.npz"), "--out", str(out)).returncode == 0
+    assert "any thickness stands" in out.read_text()
+
+
+# Names.
+
+NAMES = [
+    "",
+    "x" * 100_000,
+    "x" * 100_000 + ".png",
+    "\udcff.png",
+    "a.png/",
+    "x/" * 5000 + "a.png",
+]
+
+
+@pytest.mark.parametrize("name", NAMES, ids=range(len(NAMES)))
+@pytest.mark.parametrize("command", [("render", *ARCH), ("map",), ("simulate", *ARCH)])
+def test_names_of_files_that_cannot_be(
+    command: tuple[str, ...], name: str, tmp_path: Path
+) -> None:
+    if command[0] == "simulate":
+        name = name.replace(".png", ".npz")
+    one_line(blocksim(*command, "--out", name, cwd=tmp_path))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["s.toml/", "s.toml//", "s.toml/."])
+@pytest.mark.parametrize("command", ["check", "bracket", "sweep"])
+def test_a_name_with_a_slash_at_its_end_is_no_file(
+    command: str, name: str, tmp_path: Path
+) -> None:
+    (tmp_path / "s.toml").write_text(
+        'title = "t"\nsource = "s"\n[arch]\nhalf_angle_deg = 90\nvoussoirs = 9\n'
+        "eta = 0.12\n[contact]\nmu = 0.7\n"
+    )
+    out = ("--out", "o") if command == "sweep" else ()
+    said = one_line(blocksim(command, name, *out, cwd=tmp_path))
+    assert "s.toml" in said
+
+
+def test_a_folder_may_be_named_with_a_slash(tmp_path: Path) -> None:
+    design = tmp_path / "a.toml"
+    design.write_text('half_angle_deg = [90]\nmu = [0.7]\nmethod = "limit"\n')
+    done = blocksim("sweep", str(design), "--out", f"{tmp_path}/rows/", "--workers", "1")
+    assert done.returncode == 0
+    assert list((tmp_path / "rows").glob("rows-*.jsonl"))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("check", "--" + "x" * 100_000),
+        ("x" * 100_000,),
+        ("check", *ARCH, "--method", "x" * 100_000),
+        ("check", *ARCH, "--set", "x" * 100_000),
+        ("check", "x" * 100_000 + ".toml"),
+        ("check", "portal", "--mu", "1", "--with", "x" * 100_000 + "=1"),
+        ("check", "portal", "--mu", "1", "--with", "pier_width=" + "9" * 400),
+        ("kinds", "a\nb\x1b[31m"),
+        ("check", "a\nb.toml"),
+    ],
+    ids=range(9),
+)
+def test_what_is_said_is_one_short_line(words: tuple[str, ...], tmp_path: Path) -> None:
+    one_line(blocksim(*words, cwd=tmp_path))
+
+
+def test_structures_in_python_name_the_file_as_given(tmp_path: Path) -> None:
+    (tmp_path / "a.json").write_text(json.dumps({}))
+    with pytest.raises(InputError, match="an existing structure file"):
+        load_structure(f"{tmp_path}/a.json/")
+
+
+def test_no_warning_reaches_a_user() -> None:
+    script = (
+        "import sys, warnings; sys.argv = ['blocksim', 'doctor'];"
+        "import numpy, blocksim.cli as cli;"
+        "cli.run = lambda: numpy.float64(1e308) * 10 > 0 and warnings.warn('a', stacklevel=1);"
+        "cli.main()"
+    )
+    done = subprocess.run([PROGRAM[0], "-c", script], capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
