@@ -55,6 +55,8 @@ SECONDS = 900.0
 NOTHING, SOLVED = 1e-9, 1e-9
 SPEED, FAR, LONG = 1e-3, 0.05, 30.0
 """Speed of a push, way that counts as gone on, and time watched [sqrt(r/g)]."""
+SLIDING = (80.0, 0.25), (90.0, 0.3), (90.0, 0.35), (100.0, 0.42), (115.0, 0.68), (125.0, 0.84)
+"""Half-angles and friction at which many arches slide in their mode."""
 SHOWN, WIDE = 7, 140.0
 """Voussoirs of the arches drawn, and half-angle from which on they are [deg]."""
 BELOW, BEYOND = -1, -2
@@ -107,6 +109,9 @@ def cases() -> list[Case]:
             for alpha in (60.0, 90.0, 115.0, 135.0)
             for mu in (0.3, 0.5, 0.9, 1.4)
         ]
+        found += [Case(7, weight, alpha, 2.4) for alpha in (145.0, 147.5, 150.0, 152.5, 155.0)]
+        found += [Case(5, weight, alpha, mu) for alpha in (150.0, 155.0) for mu in (1.6, 2.0)]
+        found += [Case(n, weight, *at) for n in (5, 7, 8) for at in SLIDING]
     found += [Case(15, "centreline", a, mu) for a in (150.0, 155.0) for mu in (4.5, 6.0, 8.0)]
     found += [Case(27, "centreline", 151.0, mu) for mu in (10.0, 13.0)]
     return [each for each in found if has_limit(each)]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -150,3 +152,41 @@ def test_the_command_says_it() -> None:
     assert "  rest    it can rest, and friction may let it move as well\n" in words
     found = json.loads(blocksim(*options, "--ratio", "1.5", "--must-rest", "--json").stdout)
     assert found["rest"] == "must"
+
+
+def test_the_map_of_two_answers_draws_both_lines_of_each_angle() -> None:
+    study = import_module("analysis.two_answers")
+    rows = [
+        {
+            "voussoirs": 7,
+            "weight": "centreline",
+            "alpha_deg": alpha,
+            "mu": mu,
+            "eta_limit": 1.0,
+            "eta_moves": 1.4 if mu > 2 else None,
+        }
+        for alpha in (145.0, 155.0)
+        for mu in (3.0, 2.0)
+    ]
+    (axes,) = study.draw(rows).axes
+    lines = {
+        (line.get_label() if line.get_linestyle() == "-" else "end"): line.get_xydata().tolist()
+        for line in axes.lines
+    }
+    assert lines == {
+        "145°": [[2.0, 1.0], [3.0, 1.0]],
+        "155°": [[2.0, 1.0], [3.0, 1.0]],
+        "end": [[2.0, 1.0], [3.0, 1.4]],
+    }
+
+
+@pytest.mark.long
+def test_two_methods_find_the_same_end_of_the_band_and_pushes_agree(tmp_path: Path) -> None:
+    said = import_module("analysis.two_answers").main(
+        tmp_path, pushes=20, processes=1, quick=True
+    )
+    assert "2 arches, 1 with a band, the widest of 38.6%" in said
+    assert "both ends within 0.1" in said
+    assert "along the motion below: 1 of 1 go on" in said
+    assert "along it above: 0 of 1 go on" in said
+    assert "at random above: 0 of 20 go on" in said
