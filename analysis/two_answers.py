@@ -8,8 +8,9 @@ Coulomb's law lets it also start to move, and where does that band end? The end 
 - `direct`'s solver follows a motion from thickness to thickness, begun with that of the last,
   until it is no solution any more.
 
-Then arches are pushed. Just below the end of the band along the motion, with a speed of 1e-3:
-they go on. Just above it in random directions, with that speed: they come to rest.
+Then `direct` is let go. 1 % below the end of the band it begins with what contacts do in the
+motion, without a push: it moves on and falls. 1 % above it is pushed in random directions, with
+a speed of 1e-3: it comes to rest. It is pushed along the motion as well.
 
 Expected: both ends agree to 0.1 %. Without sliding in the mode there is no band. It takes an
 odd number of voussoirs, whose keystone slides, and friction of about cot(alpha/n).
@@ -36,7 +37,7 @@ from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.limit.statics import least_thickness
-from blocksim.blocks.assembly import SUPPORT, Array, displacement
+from blocksim.blocks.assembly import SUPPORT, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.contact import ContactProblem, Solution
 from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS
@@ -223,12 +224,18 @@ def pushed(push: Push) -> Row:
     problem = case.problem(eta)
     world = ENGINE.build(problem, ENGINE.rule(problem.assembly))
     built = world.poses()
-    way: Array | None = (
-        may_start(case.problem(below), seconds=SECONDS).accelerations if along else None
-    )
-    if way is None:
+    if along:
+        start = may_start(case.problem(below), seconds=SECONDS)
+        if start.accelerations is None:
+            raise ValueError("nothing moves")
+        way = start.accelerations
+        if push.index == BELOW:
+            # No push: what the contacts do is the first guess, as if they had done so before.
+            world._solution = begun(problem, start)
+    else:
         way = np.random.default_rng((push.index, case.voussoirs)).normal(size=built.shape)
-    world.push(way * SPEED / displacement(way, problem.assembly))
+    if push.index != BELOW:
+        world.push(way * SPEED / displacement(way, problem.assembly))
     far = 0.0
     steps = round(LONG / ENGINE.rule(problem.assembly).step)
     for _ in range(steps // 100):
@@ -315,7 +322,7 @@ def summary(rows: list[Row], run_on: list[Row]) -> str:
             f"{len(rows)} arches, {len(band)} with a band, the widest of {widest:.1%}",
             f"unknown: {sum(row['band'] is None for row in rows)}",
             f"both ends within {max(apart, default=0.0):.3%} at {len(apart)} arches",
-            f"pushed along the motion below: {sum(along)} of {len(along)} go on",
+            f"begun with the motion below: {sum(along)} of {len(along)} go on",
             f"pushed along it above: {sum(beyond)} of {len(beyond)} go on",
             f"pushed at random above: {sum(aside)} of {len(aside)} go on",
         ]

@@ -187,6 +187,6 @@ def test_two_methods_find_the_same_end_of_the_band_and_pushes_agree(tmp_path: Pa
     )
     assert "2 arches, 1 with a band, the widest of 38.6%" in said
     assert "both ends within 0.1" in said
-    assert "along the motion below: 1 of 1 go on" in said
+    assert "begun with the motion below: 1 of 1 go on" in said
     assert "along it above: 0 of 1 go on" in said
     assert "at random above: 0 of 20 go on" in said

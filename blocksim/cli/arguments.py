@@ -70,6 +70,7 @@ class Argument:
     """What is said of an argument, which may be left out."""
 
     help: str
+    folder: bool = False
 
 
 class _Argument(click.Argument):
@@ -155,7 +156,7 @@ def _parameter(
     if needed and said == Option(""):
         said = Argument("")
     if isinstance(said, Argument):
-        made = _Argument([name], type=_type(kind, None), required=needed, default=default)
+        made = _Argument([name], type=_type(kind, said), required=needed, default=default)
         made.about = said.help
         return made
     flags = [said.name or f"--{name.replace('_', '-')}", name]
@@ -200,11 +201,11 @@ def _parts(hint: Any) -> Iterator[Any]:
         yield hint
 
 
-def _type(kind: Any, said: Option | None) -> Any:
+def _type(kind: Any, said: Option | Argument) -> Any:
     if get_origin(kind) is Literal:
         return click.Choice(get_args(kind))
     if get_origin(kind) is tuple:
         return click.Tuple([KINDS[each] for each in get_args(kind)])
-    if said is not None and said.high is not None:
+    if isinstance(said, Option) and said.high is not None:
         return click.IntRange(said.low, said.high)
-    return _File(folder=True) if said is not None and said.folder else KINDS[kind]
+    return _File(folder=True) if said.folder else KINDS[kind]

@@ -17,7 +17,8 @@ MET = 1e-12
 
 def paper(
     out: Annotated[
-        Path | None, Argument(help="Folder for the figures and a page, index.html; required.")
+        Path | None,
+        Argument(help="Folder for the figures and a page, index.html; required.", folder=True),
     ] = None,
     figures: Annotated[
         list[int] | None,
