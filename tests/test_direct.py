@@ -205,7 +205,7 @@ def test_without_slip_the_least_thickness_is_not_shifted():
 
 
 @pytest.mark.parametrize("half_angle_deg", [45, 100, 140])
-@pytest.mark.parametrize("mu", [20.0, 1e4, 1e9])
+@pytest.mark.parametrize("mu", [20.0, 1e4, 1e6])
 def test_where_nothing_slides_steep_friction_moves_it_as_none_at_all(half_angle_deg, mu):
     arch = arch_at(0.99, half_angle_deg, math.inf, 15)
     assert arch_at(0.99, half_angle_deg, mu, 15).eta == pytest.approx(arch.eta, rel=1e-12)

@@ -198,7 +198,7 @@ def test_over_the_friction_angle(weight: Weight) -> None:
         # The paper's 54.8 and 60.6 degrees.
         assert marks["T"][0] == pytest.approx(54.8, abs=0.05)
         assert marks["J"][0] == pytest.approx(60.6, abs=0.05)
-    (end,) = [line for line in axes.lines if line.get_gid() == "region r"]
+    (end,) = [line for line in axes.lines if line.get_gid() == "region-r"]
     assert set(end.get_xdata()) == {90}
     lowest = {"centreline": 1.0, "sector": 6 * (math.sqrt(4 / 3) - 1)}[weight]
     assert tuple(end.get_ydata()) == pytest.approx((lowest, 2))
@@ -222,11 +222,11 @@ def test_the_sector_map_is_another_one() -> None:
     assert marks["T"] == pytest.approx((1.27702136, 0.61831824), abs=1e-8)
     assert "sector" in axes.get_title(loc="left")
     fills = {str(each.get_gid()): each.get_paths()[0] for each in axes.collections}
-    assert fills["region rs"].contains_point((1.9, 1.0))
+    assert fills["region-rs"].contains_point((1.9, 1.0))
     # The same point for the centreline is in ss | rs at another friction.
     other = {
         str(each.get_gid()): each.get_paths()[0]
         for each in map_figure(central=True).axes[0].collections
     }
-    assert other["region ss"].contains_point((1.7, 1.0))
-    assert fills["region rs"].contains_point((1.7, 1.0))
+    assert other["region-ss"].contains_point((1.7, 1.0))
+    assert fills["region-rs"].contains_point((1.7, 1.0))

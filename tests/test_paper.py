@@ -226,9 +226,9 @@ def test_fig_9_has_unbounded_friction_and_eta_1() -> None:
         for each in axes.collections
         if str(each.get_gid()).startswith("strip")
     }
-    assert (strips["strip r"].y0, strips["strip r"].y1) == (1, 2)
-    assert (strips["strip rrr"].y0, strips["strip rrr"].y1) == (0, 1)
-    assert strips["strip r"].x0 > 4
+    assert (strips["strip-r"].y0, strips["strip-r"].y1) == (1, 2)
+    assert (strips["strip-rrr"].y0, strips["strip-rrr"].y1) == (0, 1)
+    assert strips["strip-r"].x0 > 4
     assert [tick.get_text() for tick in axes.get_xticklabels()][-1] == "∞"
     assert set(line(axes, "asymptote")[:, 1]) == {1.0}
 
@@ -286,7 +286,7 @@ def test_fig_9_says_what_rules_where_both_slide_and_without_thrust() -> None:
 def test_figs_9_to_11_have_the_six_regions_in_their_order(number: int) -> None:
     axes = drawn(number).axes[0]
     fills = {
-        str(each.get_gid()).removeprefix("region "): each.get_paths()[0]
+        str(each.get_gid()).removeprefix("region-"): each.get_paths()[0]
         for each in axes.collections
         if str(each.get_gid()).startswith("region")
     }

@@ -112,8 +112,8 @@ def test_assemblies_start_as_by_pivoting(largest: int, monkeypatch: pytest.Monke
         told[bool(rests), bool(same)] += 1
         kinds.add(sketch.kind)
     # Where they differ, both obey the law: friction leaves a choice.
-    assert told[True, True] > 8
-    assert told[False, True] >= max(8, 5 * told[False, False])
+    assert told[True, True] > 5
+    assert told[False, True] > max(5, 3 * told[False, False])
     assert len(kinds) >= 5
 
 

@@ -186,7 +186,7 @@ def lightness(page, selector: str) -> list[float]:
     return [sum(colour) / 765 for colour in page.evaluate(FILLS, selector)]
 
 
-PAPERS, REGIONS = "#patch_1 path, #patch_2 path", "[id^=FillBetween] use"
+PAPERS, REGIONS = "#patch_1 path, #patch_2 path", "[id^=region] use, [id^=strip] use"
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -121,7 +121,7 @@ def draw_regions(
     for part in shapes.regions:
         axes.fill_between(
             friction.place(part.mu), part.bottom, part.top, color=MODES[part.mode].tint, lw=0,
-            gid=f"region {part.mode}",
+            gid=f"region-{part.mode}",
         )  # fmt: skip
     lines = (
         ("divide", shapes.divide, "-"),
@@ -166,7 +166,7 @@ def draw_unbounded(
     level = CROWN_ETA[weight]
     if friction.angle:
         axes.plot((90, 90), (level, 2.0), color=MODES[Mode.R].colour, lw=4, clip_on=False,
-                  solid_capstyle="butt", gid="region r", zorder=3)  # fmt: skip
+                  solid_capstyle="butt", gid="region-r", zorder=3)  # fmt: skip
         axes.annotate(Mode.R.value, (90, 1.5), xytext=(8, 0), textcoords="offset points",
                       color=MODES[Mode.R].colour, fontweight="bold", fontsize=13,
                       annotation_clip=False)  # fmt: skip
@@ -177,7 +177,7 @@ def draw_unbounded(
         return
     for mode, (low, high) in ((Mode.RRR, (0.0, level)), (Mode.R, (level, 2.0))):
         axes.fill_between(STRIP, low, high, color=MODES[mode].tint, lw=0,
-                          gid=f"strip {mode}")  # fmt: skip
+                          gid=f"strip-{mode}")  # fmt: skip
     axes.plot(STRIP, (level, level), color=INK, lw=1.1)
     middle = sum(STRIP) / 2
     axes.text(middle, 1.5, Mode.R.value, color=MODES[Mode.R].colour, fontweight="bold",

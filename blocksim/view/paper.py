@@ -78,7 +78,7 @@ def _filled(number: int) -> Figure:
     names = {mode.value for mode in MODES}
     for text in axes.texts:
         text.set_visible(text.get_text() not in names)
-    fills = {str(each.get_gid()).removeprefix("region "): each for each in axes.collections}
+    fills = {str(each.get_gid()).removeprefix("region-"): each for each in axes.collections}
     handles = [
         Patch(fc=style.tint, ec=style.colour, label=f"{mode.value}  {mode.description}")
         for mode, style in MODES.items()
