@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from structure_cases import case, names, scenes
+from threadpoolctl import ThreadpoolController
 
 from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
 from blocksim.blocks.assembly import SUPPORT, Assembly, Joint
 from blocksim.blocks.joints import JointState, classify, joint_motion, overlap_share
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
+from blocksim.engines.contact import banded, solver
 from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.files import structure_of as kind_of
 
 MOVED = [
     "box2d_arch",
@@ -329,6 +333,41 @@ def test_a_joint_that_is_given_ends_where_it_was_given() -> None:
     rows = Geometry(assembly).touch(poses)[0].rows
     # Moments of the normal velocities: arms of the ends from the centre, in sizes.
     assert sorted(rows[0, :2, 5] * assembly.size) == pytest.approx([-0.3, 0.5])
+
+
+def falling_wall(courses: int = 8) -> Problem:
+    """A wall at 1.3 times the angle at which it can no longer rest (29.725 deg; `limit`)."""
+    wall = kind_of({"kind": "wall", "courses": courses, "length": 3, "friction": 0.7})
+    return wall.tilted(math.radians(1.3 * 29.725116))
+
+
+def test_contacts_that_are_told_are_found_no_better_on_a_path(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # Its forces are known to 1e-9 and no better; a path of 900 systems once ended there, too.
+    def come_together(*_: object) -> None:
+        raise AssertionError("a path is followed")
+
+    monkeypatch.setattr(solver, "come_together", come_together)
+    onset = observe(falling_wall(), "direct", moving=False).onset
+    assert onset.verdict is Verdict.COLLAPSES
+
+
+def test_wide_systems_are_solved_by_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    pools = ThreadpoolController().select(user_api="blas")
+    seen: list[int] = []
+    whole = banded.Bands.factored
+
+    def factored(bands: banded.Bands, *given: Any) -> Any:
+        seen.extend(pool["num_threads"] for pool in pools.info())
+        return whole(bands, *given)
+
+    monkeypatch.setattr(banded.Bands, "factored", factored)
+    with pools.limit(limits=2):
+        world_of(falling_wall(), 1e-3).hold(1)
+        after = {pool["num_threads"] for pool in pools.info()}
+    assert set(seen) == {1}
+    assert after == {2}
 
 
 def test_corners_open_and_slide_and_are_no_length() -> None:

@@ -12,6 +12,9 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from blocksim.blocks.assembly import Array
 
+BLOCKED = 32
+"""Width from which LAPACK does."""
+
 
 class Bands:
     """Which unknowns each joint couples.
@@ -61,6 +64,11 @@ class Bands:
         """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
         pair = np.repeat(np.stack([before, after], axis=1), 3, axis=1)
         return np.where(pair < 0, self.size, 3 * pair + np.tile(np.arange(3), 2))
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether LAPACK factors by whole blocks of columns, which BLAS may share out."""
+        return self._width >= BLOCKED
 
     def of_joints(self, values: Array) -> Array:
         """Return for each joint the six values of its blocks, 0 for the ground's."""

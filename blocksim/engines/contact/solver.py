@@ -37,6 +37,7 @@ from blocksim.engines.contact.coulomb import Contacts, Friction
 from blocksim.engines.contact.interior import central_path
 from blocksim.engines.contact.path_following import come_together
 from blocksim.engines.contact.step import Answer, Step
+from blocksim.engines.contact.threads import one_thread
 
 EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
@@ -45,8 +46,8 @@ NEAR_REST = 1e-4
 SOLVED = 1e-9
 """Residual of a solution."""
 ENOUGH = 3e-8
-"""Residual of a moving step for which no path is followed: once they have moved, joints may
-not close any better."""
+"""Residual for which no path is followed: of a moving step, because once they have moved joints
+may not close any better; of one whose contacts are told, because a path tells them no better."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -140,6 +141,11 @@ class ContactProblem:
             free=(free * self.root).ravel(),
             friction=self.friction,
         )
+        with one_thread(wide=self.bands.is_wide):
+            return self._solved(step, start, precision)
+
+    def _solved(self, step: Step, start: Solution | None, precision: float) -> Solution:
+        """Take guesses in turn until one leads to a solution."""
         best, paths, preload = Answer.of_nothing(step), 0, None
         for guess in self._guesses(step, start):
             preload = guess.forces if start is None else None
@@ -147,7 +153,8 @@ class ContactProblem:
             if best.is_settled and best.residual <= SOLVED:
                 break
         else:
-            if start is None or not best.residual <= ENOUGH:
+            told = best.is_settled or start is not None
+            if not (told and best.residual <= ENOUGH):
                 guess = come_together(step, preload)
                 best, paths = best.or_better(settle(step, guess, precision)), 1
         # From nothing an answer close by may be that of another arch.
