@@ -16,8 +16,10 @@ from blocksim.blocks.assembly import SUPPORT, Assembly, Joint
 from blocksim.blocks.joints import JointState, classify, joint_motion, overlap_share
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.engines.contact import banded, solver
+from blocksim.engines.contact import banded, interior, path_following, solver
+from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.geometry import Geometry
+from blocksim.engines.contact.step import Answer, Step
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level
 from blocksim.evidence.observation import observe
@@ -351,6 +353,31 @@ def test_contacts_that_are_told_are_found_no_better_on_a_path(
     monkeypatch.setattr(solver, "come_together", come_together)
     onset = observe(falling_wall(), "direct", moving=False).onset
     assert onset.verdict is Verdict.COLLAPSES
+
+
+def test_a_path_from_a_guess_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    # From all apart it takes 873 systems. Where blocks slide there may be several answers; what
+    # is found has to be one.
+    systems: list[int] = []
+
+    def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Any, Any, int]:
+        if dilates:
+            return interior.central_path(step, cones, dilates=True)
+        return np.zeros_like(step.free), np.zeros_like(cones.offset), 0
+
+    def put_right(step: Step, guess: Answer) -> Answer:
+        end = path_following.put_right(step, guess)
+        systems.append(end.systems)
+        return end
+
+    monkeypatch.setattr(solver, "central_path", central_path)
+    monkeypatch.setattr(solver, "put_right", put_right)
+    monkeypatch.setattr(solver, "come_together", lambda *_: pytest.fail("from all apart"))
+    world = world_of(falling_wall(), 1e-3)
+    assert np.abs(world.hold(1)).max() > 0.1
+    assert (world.quality().residual or 0.0) < 1e-8
+    assert len(systems) == 1
+    assert 50 < systems[0] < 300
 
 
 def test_wide_systems_are_solved_by_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -155,12 +155,19 @@ class Bands:
 
 
 class System:
-    """A system (1 + matrix) x = right that grows joint by joint from matrix and right 0."""
+    """A system (1 + matrix) x = right that changes joint by joint.
 
-    def __init__(self, bands: Bands) -> None:
-        self._bands = bands
-        self._band = np.zeros(bands.rows * bands.size + 1)
-        self._right = np.zeros(bands.size + 1)
+    Parameters
+    ----------
+    bands : Bands
+    band : (places,) float
+        The matrix, as from `Bands.band`.
+    right : (3 blocks,) float
+    """
+
+    def __init__(self, bands: Bands, band: Array, right: Array) -> None:
+        self._bands, self._band = bands, band
+        self._right = np.append(right, 0.0)
 
     def add(self, joint: int, matrix: Array, right: Array) -> None:
         """Add a joint's matrix (6, 6) and right side (6,)."""

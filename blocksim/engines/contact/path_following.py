@@ -14,12 +14,15 @@ Methods Eng. 39, 1996, 2673-2691, and M. Anitescu and F. A. Potra, Nonlinear Dyn
 231-247), on the piecewise linear law itself (J. Katzenelson, Bell Syst. Tech. J. 44, 1965,
 1605-1620).
 
-Along the path friction is at most 1 / `FLATTEST`; what ends it takes friction as it is.
+A path may begin at a guess as well: `put_right`.
+
+Along a path friction is at most 1 / `FLATTEST`; what ends it takes friction as it is.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +32,7 @@ from blocksim.engines.contact.banded import System
 from blocksim.engines.contact.coulomb import (
     FLATTEST,
     OPEN,
+    SLIDES_DOWN,
     SLIDES_UP,
     STICKS,
     Contacts,
@@ -55,39 +59,89 @@ def come_together(step: Step, preload: Array | None = None) -> Answer:
     preload = np.zeros_like(step.rates) if preload is None else preload
     glued = preload - STIFF * step.velocities(step.free)
     shares = np.random.default_rng(0).uniform(1.0, 2.0, (len(glued), 2))
-    push = STIFF * shares
-    apart = float(np.maximum(glued[:, :2] / push, 0.0).max(initial=0.0))
-    glued[:, :2] -= apart * push
-    contacts = np.full(push.shape, OPEN, dtype=np.int8)
+    push = np.concatenate([STIFF * shares, np.zeros_like(shares)], axis=1)
+    apart = float(np.maximum(glued[:, :2] / push[:, :2], 0.0).max(initial=0.0))
     most = STEEP_PIECES * len(glued) if step.friction.some_steep else MOST_PIECES
-    found = _follow(step, glued, contacts, push, apart, most)
-    if found is None:
-        return Answer.of_nothing(step)
-    x, held, pieces = found
-    forces = step.friction.as_said(preload - STIFF * step.velocities(x), contacts, held)
-    return Answer(x=x, forces=forces, contacts=contacts, systems=pieces)
+    start = _Start(
+        x=step.free,
+        forces=glued - apart * push,
+        contacts=np.full(shares.shape, OPEN, dtype=np.int8),
+        push=push,
+        pull=np.zeros_like(step.free),
+        left=apart,
+    )
+    return _end(step, start, preload, most)
 
 
-def _follow(
-    step: Step,
-    forces: Array,
-    contacts: Contacts,
-    push: Array,
-    left: float,
-    most: int,
-) -> tuple[Array, Array, int] | None:
-    """Follow the path until nothing is left, over so many pieces at most.
+def put_right(step: Step, guess: Answer) -> Answer:
+    """Balance stiff springs, from what a guess says.
+
+    Velocities that its contacts may not have and forces that do not balance are taken for
+    given, and fall to nothing along the path. It is the shorter the better the guess, a tenth
+    of that from all apart. Nothing tells that it arrives. Steep friction is not asked.
+    """
+    x, contacts, velocities = guess.x, guess.contacts.copy(), step.velocities(guess.x)
+    held = np.abs(guess.forces[:, 2:])
+    pressed = np.maximum(guess.forces, [0.0, 0.0, -math.inf, -math.inf])
+    forces = step.friction.as_said(pressed, contacts, held)
+    normal, slip = velocities[:, :2], velocities[:, 2:]
+    against = np.select(
+        [contacts == STICKS, contacts == SLIDES_UP, contacts == SLIDES_DOWN],
+        [slip, np.maximum(slip, 0.0), np.minimum(slip, 0.0)],
+        0.0,
+    )
+    into = np.where(contacts == OPEN, np.minimum(normal, 0.0), normal)
+    wrong = STIFF * np.concatenate([into, against], axis=1)
+    start = _Start(
+        x=x,
+        forces=forces - STIFF * velocities + wrong,
+        contacts=contacts,
+        push=-wrong,
+        pull=-step.imbalance(x, forces),
+        left=1.0,
+    )
+    return _end(step, start, forces, MOST_PIECES)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Start:
+    """Where a path begins.
 
     Parameters
     ----------
-    step : Step
-    forces, contacts
-        At its beginning, with all contacts open; `forces` as if glued, but for steep friction
-        that slides, whose size stands for the normal force. Contacts are changed in place.
-    push : (joints, 2) float
-        Normal force that keeps a contact apart, per unit of `left`.
+    x : (3 blocks,) float
+    forces : (joints, 4) float
+        As if glued, but for steep friction that slides, whose size stands for the normal force.
+    contacts : (joints, 2) int
+        What they do; changed along the path.
+    push : (joints, 4) float
+        How forces as if glued change at x as `left` falls by 1.
+    pull : (3 blocks,) float
+        How forces on blocks do.
     left : float
-    most : int
+    """
+
+    x: Array
+    forces: Array
+    contacts: Contacts
+    push: Array
+    pull: Array
+    left: float
+
+
+def _end(step: Step, start: _Start, preload: Array, most: int) -> Answer:
+    """Return the end of a path, of springs that had these forces without motion."""
+    found = _follow(step, start, most)
+    if found is None:
+        return Answer.of_nothing(step)
+    x, held, pieces = found
+    glued = preload - STIFF * step.velocities(x)
+    forces = step.friction.as_said(glued, start.contacts, held)
+    return Answer(x=x, forces=forces, contacts=start.contacts, systems=pieces)
+
+
+def _follow(step: Step, start: _Start, most: int) -> tuple[Array, Array, int] | None:
+    """Follow a path until nothing is left, over so many pieces at most.
 
     Returns
     -------
@@ -96,22 +150,23 @@ def _follow(
         Friction of contacts that slide with steep friction.
     pieces : int
     """
-    bands, rows, friction, x = step.bands, step.rows, step.friction, step.free
-    sign = 1.0
-    own = np.zeros(contacts.shape, dtype=np.bool_)
-    system = System(bands)
+    bands, rows, friction = step.bands, step.rows, step.friction
+    x, forces, contacts, left = start.x, start.forces, start.contacts, start.left
+    push, sign = start.push, 1.0
+    own = friction.own(contacts)
+    acting, weight = _acting(rows, contacts, friction.lean, own)
+    right = start.pull + bands.pull(acting, push * (weight > 0))
+    system = System(bands, bands.band(acting, weight, rows), right)
 
     def onward() -> tuple[Array, Array]:
         """Return how x and the forces change."""
         if not own.any():
             way = system.solve()
-            turn = -STIFF * bands.along(rows, way)
-            turn[:, :2] += push
-            return way, turn
+            return way, push - STIFF * bands.along(rows, way)
         slides = Slides(bands, rows, contacts, own, flat)
-        way, held = slides.solve(system.solve, push / STIFF, STIFF)
-        turn = -STIFF * bands.along(rows, way)
-        turn[:, :2] = np.where(own, held, turn[:, :2] + push)
+        way, held = slides.solve(system.solve, push[:, :2] / STIFF, STIFF)
+        turn = push - STIFF * bands.along(rows, way)
+        turn[:, :2] = np.where(own, held, turn[:, :2])
         return way, turn
 
     mu, flat = np.minimum(friction.mu, 1 / FLATTEST), friction.flattest
@@ -146,8 +201,11 @@ def _follow(
         for part, does in ((-1.0, was), (1.0, now)):
             contacts[joint, end] = does
             own[joint] = friction.steep[joint] & (contacts[joint] >= SLIDES_UP)
-            matrix, pull = _part(step, joint, push[joint], contacts[joint], own[joint])
-            system.add(joint, part * matrix, part * pull)
+            acting, weight = _acting(
+                rows[joint], contacts[joint], friction.lean[joint], own[joint]
+            )
+            matrix = np.matmul(acting.T * weight, rows[joint])
+            system.add(joint, part * matrix, part * ((push[joint] * (weight > 0)) @ acting))
         if friction.steep[joint]:
             size = abs(forces[joint, 2 + end])
             closed = size if own[joint, end] else flat[joint, 0] * size
@@ -161,16 +219,19 @@ def _follow(
     return None
 
 
-def _part(
-    step: Step,
-    joint: int,
-    push: Array,
-    contacts: Contacts,
-    own: NDArray[np.bool_],
+def _acting(
+    rows: Array, contacts: Contacts, lean: Array, own: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Return the share of one joint in the system: matrix (6, 6) and right side (6,)."""
-    rows = step.rows[joint]
-    acting = leaning(rows, contacts, step.friction.lean[joint])
+    """Return how forces of springs act, and the stiffness of springs.
+
+    Parameters
+    ----------
+    rows : (..., 4, 6) float
+    contacts : (..., 2) int
+    lean : (..., 1) float
+    own : (..., 2) bool
+        Contacts whose friction is an unknown of its own.
+    """
     closed = (contacts != OPEN) & ~own
-    weight = STIFF * np.concatenate([closed, contacts == STICKS])
-    return np.matmul(acting.T * weight, rows), np.matmul(push * closed, acting[:2])
+    weight = STIFF * np.concatenate([closed, contacts == STICKS], axis=-1)
+    return leaning(rows, contacts, lean), weight

@@ -16,13 +16,14 @@ What each contact does is guessed, and mended until all forces and velocities ag
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction;
-- the end of a path that begins with all contacts apart (`path_following.py`).
+- the end of a path that begins at the first of these guesses (`path_following.py`);
+- the end of one that begins with all contacts apart.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,7 +36,7 @@ from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
 from blocksim.engines.contact.interior import central_path
-from blocksim.engines.contact.path_following import come_together
+from blocksim.engines.contact.path_following import come_together, put_right
 from blocksim.engines.contact.step import Answer, Step
 from blocksim.engines.contact.threads import one_thread
 
@@ -47,7 +48,7 @@ SOLVED = 1e-9
 """Residual of a solution."""
 ENOUGH = 3e-8
 """Residual for which no path is followed: of a moving step, because once they have moved joints
-may not close any better; of one whose contacts are told, because a path tells them no better."""
+may not close any better; from nothing if contacts are told, as a path tells them no better."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,8 +67,6 @@ class Solution:
         over the largest acceleration where that is above 1.
     iterations : int
         Banded systems solved.
-    paths : int
-        Systems for which a path was followed.
     """
 
     acceleration: Array
@@ -75,7 +74,6 @@ class Solution:
     contacts: Contacts
     residual: float
     iterations: int
-    paths: int
 
     def carried(self, old: NDArray[np.int64], new: NDArray[np.int64]) -> Solution:
         """Return the same for another list of joints; those not there before are open."""
@@ -146,17 +144,18 @@ class ContactProblem:
 
     def _solved(self, step: Step, start: Solution | None, precision: float) -> Solution:
         """Take guesses in turn until one leads to a solution."""
-        best, paths, preload = Answer.of_nothing(step), 0, None
+        best = Answer.of_nothing(step)
+        guesses: list[Answer] = []
         for guess in self._guesses(step, start):
-            preload = guess.forces if start is None else None
+            guesses.append(guess)
             best = best.or_better(settle(step, guess, precision))
             if best.is_settled and best.residual <= SOLVED:
                 break
         else:
-            told = best.is_settled or start is not None
-            if not (told and best.residual <= ENOUGH):
-                guess = come_together(step, preload)
-                best, paths = best.or_better(settle(step, guess, precision)), 1
+            for path in self._paths(step, guesses, known=start is not None):
+                if (best.is_settled or start is not None) and best.residual <= ENOUGH:
+                    break
+                best = best.or_better(settle(step, path(), precision))
         # From nothing an answer close by may be that of another arch.
         sure = best.is_settled or start is not None
         return Solution(
@@ -165,7 +164,6 @@ class ContactProblem:
             contacts=best.contacts,
             residual=best.residual if sure else math.inf,
             iterations=best.systems,
-            paths=paths,
         )
 
     def _guesses(self, step: Step, start: Solution | None) -> Iterator[Answer]:
@@ -183,3 +181,11 @@ class ContactProblem:
         if not step.friction.some_steep:
             x, pressed, systems = central_path(step, cones, dilates=False)
             yield cones.answer(step, x, pressed, systems)
+
+    def _paths(
+        self, step: Step, guesses: list[Answer], *, known: bool
+    ) -> Iterator[Callable[[], Answer]]:
+        """Give what follows a path, the shorter one first."""
+        if not step.friction.some_steep:
+            yield lambda: put_right(step, guesses[0])
+        yield lambda: come_together(step, None if known else guesses[-1].forces)

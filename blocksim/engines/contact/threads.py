@@ -18,8 +18,8 @@ def one_thread(*, wide: bool) -> AbstractContextManager[Any]:
 
 
 @cache
-def _pools() -> Any:  # noqa: ANN401 - untyped library
+def _pools() -> Any:
     """Find the libraries loaded, once: it takes as long as a step."""
-    from threadpoolctl import ThreadpoolController  # noqa: PLC0415
+    from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()
