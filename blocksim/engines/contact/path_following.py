@@ -49,6 +49,9 @@ MOST_PIECES = 20_000
 STEEP_PIECES = 40
 """The same for each joint with steep friction: longer ways are round-off going in circles."""
 
+NEAR_PIECES = 3
+"""The same for each joint from a guess: all apart is then as near."""
+
 
 def come_together(step: Step, preload: Array | None = None) -> Answer:
     """Balance stiff springs, from all contacts apart.
@@ -100,7 +103,7 @@ def put_right(step: Step, guess: Answer) -> Answer:
         pull=-step.imbalance(x, forces),
         left=1.0,
     )
-    return _end(step, start, forces, MOST_PIECES)
+    return _end(step, start, forces, NEAR_PIECES * len(forces))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
