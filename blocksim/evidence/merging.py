@@ -1,0 +1,395 @@
+"""Blocks that do not part, merged: no more bodies than a question needs, of any structure.
+
+Impulse engines are asked so by default (`Engine.reduces`); recordings have all blocks.
+
+Which blocks move alike is a guess, which limit analysis makes: of blocks that fall, by the
+mechanism of its linear programme; of blocks that stand, by the one that is nearest, as the
+strength of all joints is scaled to the least that stands. Blocks between which nothing moves
+are one body, whose mass, centre and inertia are the sums of theirs.
+
+Whether the guess was right is seen afterwards, in what the engine says that the joints between
+the bodies carry. Newton's law then gives the acceleration of each body, and what is left for
+the joints within it to carry: resultants, weight, loads and inertia of every block. A linear
+programme looks for such forces. Where they lie within joints and friction, they and the
+engine's solve the contact problem of all blocks. Where there are none, the dual of the programme
+says which blocks would part; they do from then on, and the engine is asked again. So no answer
+rests on the guess, and none on the bodies being rigid.
+
+A structure of which bodies fall does so as its blocks, too: no joint that is held can keep it.
+So does one that slides, as the onset test looks for forces of equilibrium first. Where the
+engine does not decide, or the guess is wrong for the `ROUNDS`-th time, it is given all blocks.
+
+Joints are looked at while the blocks are held; let go, what is merged stays merged, for the
+2e-3 of a size a verdict takes. Nothing is merged where gravity leans out of the plane or the
+ground shakes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
+from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
+from blocksim.common.later import Library
+from blocksim.engines.base import Quality, TakesForces, TellsForces, World
+from blocksim.evidence.verdict import Verdict
+from blocksim.limit import equilibrium, nearest_mechanism
+from blocksim.limit.cones import Cones
+from blocksim.limit.programme import most_common
+
+if TYPE_CHECKING:
+    from scipy import sparse
+    from scipy.sparse import csgraph
+    from scipy.spatial import transform
+
+    from blocksim.evidence.onset import Onset
+else:
+    sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
+    transform = Library("scipy.spatial.transform")
+
+ROUNDS = 2
+"""Guesses that are mended, before all blocks are simulated."""
+FEWER = 0.5
+"""Bodies over blocks from which on nothing is gained."""
+MOVES = 1e-6
+"""Motion of a joint over the largest rate of a block, from which on its blocks part."""
+
+
+@dataclass(frozen=True, eq=False)
+class Merging:
+    """Blocks of a problem, and which of them are one body.
+
+    Parameters
+    ----------
+    whole : Problem
+        Of all blocks, in its plane.
+    owner : (blocks,) int
+        The body each block is part of; bodies are numbered from 0.
+    rounds : int
+        How often the guess was wrong before.
+    forces : (joints, 2, 2) float or None
+        Of all joints, to begin with.
+    """
+
+    whole: Problem
+    owner: NDArray[np.int64]
+    rounds: int = 0
+    forces: Array | None = None
+
+    by = "merging"
+
+    @classmethod
+    def of(cls, problem: Problem) -> Merging | None:
+        """Merge what limit analysis expects not to part; None where that is next to nothing."""
+        rates = nearest_mechanism(problem)
+        if rates is None:
+            rates = np.zeros((len(problem.assembly.blocks), PLANAR))
+        return _unless_many(cls(problem, _alike(problem.assembly, rates)))
+
+    @cached_property
+    def kept(self) -> tuple[int, ...]:
+        """Joints between bodies, or of a body with a support."""
+        return tuple(np.flatnonzero(~self._inside).tolist())
+
+    @cached_property
+    def _inside(self) -> NDArray[np.bool_]:
+        """Which joints lie within a body."""
+        joints, owner = self.whole.assembly.joint_arrays, np.append(self.owner, SUPPORT)
+        return owner[joints.before] == owner[joints.after]
+
+    @property
+    def assembly(self) -> Assembly:
+        """The bodies that are simulated."""
+        return self.problem.assembly
+
+    @cached_property
+    def problem(self) -> Problem:
+        """The problem of the bodies."""
+        whole, assembly = self.whole, self.whole.assembly
+        members = [np.flatnonzero(self.owner == each) for each in range(self.owner.max() + 1)]
+        bodies = Assembly(
+            blocks=tuple(_merged([assembly.blocks[k] for k in its]) for its in members),
+            joints=tuple(self._carried(index) for index in self.kept),
+            size=assembly.size,
+            supports=assembly.supports,
+        )
+        dead, live = (
+            tuple(moved for load in loads for moved in self._loads(load))
+            for loads in (whole.dead, whole.live)
+        )
+        return replace(whole, assembly=bodies, dead=dead, live=live)
+
+    def of_problem(self, problem: Problem) -> Problem:
+        """Return the problem of the bodies, with the friction of another of all blocks."""
+        return replace(self.problem, mu=problem.mu)
+
+    def asked(self, problem: Problem) -> Problem:
+        """Return the problem of all blocks: its world takes their forces."""
+        return problem
+
+    def _carried(self, index: int) -> Joint:
+        """Return a joint between bodies."""
+        assembly = self.whole.assembly
+        joint = assembly.joints[index]
+        owner = np.append(self.owner, SUPPORT)
+        faces = joint.faces
+        if joint.is_corner:
+            # A body has more faces than the block, of which the corner is on one.
+            faces = assembly.joint_arrays.faces[index] * assembly.size
+        before, after = int(owner[joint.before]), int(owner[joint.after])
+        return replace(joint, before=before, after=after, faces=faces)
+
+    def _loads(self, load: Load) -> list[Load]:
+        """Return the loads on bodies that a load on blocks comes to."""
+        blocks = self.whole.assembly.blocks
+        found: list[Load] = []
+        for body in np.unique(self.owner[list(load.blocks)]).tolist():
+            its = [blocks[k] for k in load.blocks if self.owner[k] == body]
+            if load.point is not None:
+                force, point = len(its) * load.force, load.point
+            else:
+                share = np.array([each.mass if load.per_weight else 1.0 for each in its])
+                force = share.sum() * (STANDARD_GRAVITY if load.per_weight else 1.0)
+                force = force * load.force
+                point = share @ np.array([each.centre for each in its]) / share.sum()
+            found.append(Load(force=force, blocks=(body,), point=point))
+        return found
+
+    @cached_property
+    def _offsets(self) -> Array:
+        """Where blocks lie in their bodies, from centre to centre, (blocks, 2) [size]."""
+        own = self.assembly.centres[self.owner]
+        return (self.whole.assembly.centres - own) / self.assembly.size
+
+    def world(self, world: World) -> World:
+        """Return the world of all blocks, from that of the bodies."""
+        return MergedWorld(world, self)
+
+    def poses(self, poses: Array) -> Array:
+        """Return the poses of all blocks from those of the bodies."""
+        return carried_poses(poses, self.owner, self._offsets)
+
+    def rates(self, rates: Array) -> Array:
+        """Return the velocities or accelerations at rest of all blocks likewise."""
+        return carried_rates(rates, self.owner, self._offsets)
+
+    def mended(
+        self, first: Onset, resultants: Array, problem: Problem, allowed: float
+    ) -> Merging | None:
+        """Return this where it stands for all blocks, else what comes nearer to that.
+
+        Parameters
+        ----------
+        first : Onset
+            What was seen.
+        resultants : (joints, 3) float
+            Of the joints of `assembly`, as `TellsForces.resultants`.
+        problem : Problem
+            Of all blocks, with the friction the engine takes.
+        allowed : float
+            Force beyond the strength of a joint that counts as none [mean weights].
+        """
+        if first.verdict is Verdict.UNDECIDED:
+            return None
+        holds, rates = self.parting(resultants, problem, allowed)
+        if holds:
+            return self
+        if first.verdict is Verdict.STANDS and first.forces is None:
+            # Bodies may bear themselves in ways that their blocks cannot.
+            forces = equilibrium(problem).forces
+            if forces is not None:
+                return replace(self, forces=forces)
+        if rates is None or self.rounds == ROUNDS:
+            return None
+        owner = _alike(self.whole.assembly, rates, self._inside)
+        split = Merging(self.whole, owner, self.rounds + 1)
+        return None if len(split.kept) == len(self.kept) else _unless_many(split)
+
+    def parting(
+        self, resultants: Array, problem: Problem, allowed: float
+    ) -> tuple[bool, Array | None]:
+        """Tell whether joints within bodies can bear what is left to them; see `mended`.
+
+        Returns
+        -------
+        holds : bool
+        rates : (blocks, 3) float or None
+            Those of a mechanism with which blocks would part; None where not even joints that
+            pull would hold them.
+        """
+        if not self._inside.any():
+            return True, None
+        left = self.left(resultants, problem)
+        joints = problem.assembly.joints
+        inside = tuple(joints[index] for index in np.flatnonzero(self._inside))
+        cones = Cones(replace(problem, assembly=replace(problem.assembly, joints=inside)))
+        found = most_common(cones, left)
+        if not found.exists:
+            return False, None
+        return bool(found.values[-1] >= -allowed), cones.rates(found.prices)
+
+    def left(self, resultants: Array, problem: Problem) -> Array:
+        """Return what joints within bodies have to bear of each block, (blocks, 3).
+
+        Weight, loads, what other joints carry, and the inertia of its acceleration with its
+        body [mean weights of all blocks].
+        """
+        whole = problem.assembly
+        joints, kept = whole.joint_arrays, list(self.kept)
+        owner, centres = self.owner, whole.centres / whole.size
+        unit = self.problem.unit_force / problem.unit_force
+        left = problem.pull()
+        for sides, sign in ((joints.before[kept], -1.0), (joints.after[kept], 1.0)):
+            on = sides != SUPPORT
+            wrench = sign * unit * about(resultants[on], centres[sides[on]])
+            np.add.at(left, sides[on], wrench)
+        # Of bodies, about their own centres.
+        total = np.zeros((len(self.assembly.blocks), PLANAR))
+        moved = left.copy()
+        x, y = self._offsets.T
+        moved[:, 2] += x * left[:, 1] - y * left[:, 0]
+        np.add.at(total, owner, moved)
+        accelerations = total / (unit * self.assembly.masses)
+        return left - whole.masses * self.rates(accelerations)
+
+
+class MergedWorld:
+    """The world of blocks that an engine knows bodies of.
+
+    Parameters
+    ----------
+    world : World
+        Of the bodies.
+    merging : Merging
+    """
+
+    def __init__(self, world: World, merging: Merging) -> None:
+        self._world, self._merging = world, merging
+
+    def hold(self, sweeps: int) -> Array:
+        """Solve the contacts of one step from rest."""
+        return self._merging.rates(self._world.hold(sweeps))
+
+    def begin(self, forces: Array) -> None:
+        """Begin anew, with forces of which those in joints of the bodies are taken."""
+        whole, bodies = self._merging.whole, self._merging.problem
+        unit = whole.unit_force / bodies.unit_force
+        kept = list(self._merging.kept)
+        cast("TakesForces", self._world).begin(unit * forces[kept])
+
+    def advance(self, steps: int) -> None:
+        """Let the bodies move."""
+        self._world.advance(steps)
+
+    def poses(self) -> Array:
+        """Return the poses of all blocks."""
+        return self._merging.poses(self._world.poses())
+
+    def resultants(self) -> Array:
+        """Return what the joints of the bodies carry."""
+        return cast("TellsForces", self._world).resultants()
+
+    def quality(self) -> Quality:
+        """Tell how well contact and friction have been kept so far."""
+        return self._world.quality()
+
+
+def carried_poses(poses: Array, owner: NDArray[np.int64], offsets: Array) -> Array:
+    """Return poses of blocks that bodies carry.
+
+    Parameters
+    ----------
+    poses : (bodies, 3 or 6) float
+    owner : (blocks,) int
+        The body of each block.
+    offsets : (blocks, 2) float
+        From the centre of the body to that of the block, as built [size].
+    """
+    moved = poses[owner]
+    spatial = moved.shape[1] > PLANAR
+    turns, arms = np.zeros((2, len(moved), 3))
+    turns[:, 2] = moved[:, 2]
+    if spatial:
+        turns[:, :2] = moved[:, 4:]
+    arms[:, :2] = offsets
+    carried = transform.Rotation.from_rotvec(turns).apply(arms)
+    moved[:, :2] += carried[:, :2]
+    if spatial:
+        moved[:, 3] += carried[:, 2]
+    return moved
+
+
+def carried_rates(rates: Array, owner: NDArray[np.int64], offsets: Array) -> Array:
+    """Return velocities or accelerations at rest of blocks that bodies carry, likewise."""
+    moved = rates[owner]
+    x, y = offsets.T
+    moved[:, 0] -= moved[:, 2] * y
+    moved[:, 1] += moved[:, 2] * x
+    if moved.shape[1] > PLANAR:
+        moved[:, 3] += moved[:, 4] * y - moved[:, 5] * x
+    return moved
+
+
+def about(forces: Array, points: Array) -> Array:
+    """Return forces x, y and moments about the origin (k, 3) with moments about points."""
+    turned = forces.copy()
+    turned[:, 2] -= points[:, 0] * forces[:, 1] - points[:, 1] * forces[:, 0]
+    return turned
+
+
+def _unless_many(merging: Merging) -> Merging | None:
+    bodies = int(merging.owner.max()) + 1
+    return None if bodies > FEWER * len(merging.owner) else merging
+
+
+def _alike(
+    assembly: Assembly, rates: Array, within: NDArray[np.bool_] | None = None
+) -> NDArray[np.int64]:
+    """Number the bodies of blocks that rates do not part, across joints `within`, (blocks,)."""
+    joints = assembly.joint_arrays
+    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+    moved = np.vstack([rates, np.zeros(PLANAR)])
+    ways = []
+    for side in (joints.before, joints.after):
+        arm = joints.ends - centres[side][:, None]
+        across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
+        ways.append(moved[side][:, None, :2] + moved[side][:, None, 2:] * across)
+    least = MOVES * max(float(np.abs(rates).max()), 1e-300)
+    together = np.abs(ways[1] - ways[0]).max(axis=(1, 2)) <= least
+    # A block may turn about the only corner it rests on.
+    together &= np.abs(moved[joints.after, 2] - moved[joints.before, 2]) <= least
+    together &= (joints.before != SUPPORT) & (joints.after != SUPPORT)
+    if within is not None:
+        together &= within
+    pairs = joints.before[together], joints.after[together]
+    count = len(rates)
+    graph = sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
+    return csgraph.connected_components(graph, directed=False)[1].astype(np.int64)
+
+
+def _merged(blocks: list[Block]) -> Block:
+    """Return one block of all."""
+    if len(blocks) == 1:
+        return blocks[0]
+    # Imported here, as others are: nothing is loaded before it is asked for.
+    from scipy.spatial import ConvexHull
+
+    mass = np.array([block.mass for block in blocks])
+    centres = np.array([block.centre for block in blocks])
+    centre = mass @ centres / mass.sum()
+    inertia = sum(block.inertia for block in blocks)
+    parts = tuple(part for block in blocks for part in block.polygons)
+    corners = np.concatenate(parts)
+    return Block(
+        vertices=corners[ConvexHull(corners).vertices],
+        centre=centre,
+        mass=float(mass.sum()),
+        inertia=float(inertia + mass @ ((centres - centre) ** 2).sum(axis=1)),
+        depth=max(block.depth for block in blocks),
+        parts=parts,
+    )
