@@ -33,8 +33,8 @@ from numpy.typing import NDArray
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import weakest_joints
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
+from blocksim.blocks.bodies import about, carried_poses, carried_rates
 from blocksim.engines.base import Quality, TakesForces, TellsForces, World
-from blocksim.evidence.merging import about, carried_poses, carried_rates
 from blocksim.evidence.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -88,7 +88,13 @@ class Reduction:
         return self.of_problem(problem)
 
     def mended(
-        self, first: Onset, resultants: Array, problem: Problem, allowed: float
+        self,
+        first: Onset,
+        resultants: Array,
+        problem: Problem,
+        allowed: float,
+        *,
+        takes_forces: bool,  # noqa: ARG002
     ) -> Reduction | None:
         """Return this where it stands for all voussoirs, else what does; None: all of them."""
         # Large blocks move where they may rest sooner than those they are made of.
@@ -239,10 +245,10 @@ class Reduction:
         """
         joints = self.whole.joint_arrays
         merged = self.merged
-        about = about(resultants, joints.ends.mean(axis=1))[merged]
-        pressure = (about[:, :2] * joints.normal[merged]).sum(axis=1)
-        shear = (about[:, :2] * joints.tangent[merged]).sum(axis=1)
-        tipping = 2 * np.abs(about[:, 2]) / joints.length[merged]
+        acting = about(resultants, joints.ends.mean(axis=1))[merged]
+        pressure = (acting[:, :2] * joints.normal[merged]).sum(axis=1)
+        shear = (acting[:, :2] * joints.tangent[merged]).sum(axis=1)
+        tipping = 2 * np.abs(acting[:, 2]) / joints.length[merged]
         excess = tipping - pressure
         if np.isfinite(mu):
             excess = np.maximum(excess, np.abs(shear) - mu * pressure)

@@ -10,14 +10,17 @@ are one body, whose mass, centre and inertia are the sums of theirs.
 Whether the guess was right is seen afterwards, in what the engine says that the joints between
 the bodies carry. Newton's law then gives the acceleration of each body, and what is left for
 the joints within it to carry: resultants, weight, loads and inertia of every block. A linear
-programme looks for such forces. Where they lie within joints and friction, they and the
-engine's solve the contact problem of all blocks. Where there are none, the dual of the programme
-says which blocks would part; they do from then on, and the engine is asked again. So no answer
-rests on the guess, and none on the bodies being rigid.
+programme looks for such forces within joints and friction. If it finds them, they and the
+engine's solve the contact problem of all blocks. If there are none, its dual says which blocks
+would part: they do from then on, and the engine is asked again. No answer rests on the guess.
+
+Of blocks that stand, joints may carry what is left to them in many ways. Those that the engine
+has found need not suit the blocks within bodies; then it begins again, with forces of
+equilibrium of all blocks, and has to keep them.
 
 A structure of which bodies fall does so as its blocks, too: no joint that is held can keep it.
 So does one that slides, as the onset test looks for forces of equilibrium first. Where the
-engine does not decide, or the guess is wrong for the `ROUNDS`-th time, it is given all blocks.
+engine does not decide, or the guess is still wrong once mended, it is given all blocks.
 
 Joints are looked at while the blocks are held; let go, what is merged stays merged, for the
 2e-3 of a size a verdict takes. Nothing is merged where gravity leans out of the plane or the
@@ -33,8 +36,16 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
-from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
+from blocksim.blocks.bodies import (
+    Owner,
+    about,
+    carried_poses,
+    carried_rates,
+    problem_of_bodies,
+    within_bodies,
+)
+from blocksim.blocks.problem import Problem
 from blocksim.common.later import Library
 from blocksim.engines.base import Quality, TakesForces, TellsForces, World
 from blocksim.evidence.verdict import Verdict
@@ -45,17 +56,15 @@ from blocksim.limit.programme import most_common
 if TYPE_CHECKING:
     from scipy import sparse
     from scipy.sparse import csgraph
-    from scipy.spatial import transform
 
     from blocksim.evidence.onset import Onset
 else:
     sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
-    transform = Library("scipy.spatial.transform")
 
-ROUNDS = 2
-"""Guesses that are mended, before all blocks are simulated."""
-FEWER = 0.5
-"""Bodies over blocks from which on nothing is gained."""
+ROUNDS = 1
+"""Guesses that are mended, before all blocks are simulated: more are seldom worth it."""
+LEAST, FEWER = 10, 0.5
+"""Blocks below which none are merged, and bodies over blocks beyond which nothing is gained."""
 MOVES = 1e-6
 """Motion of a joint over the largest rate of a block, from which on its blocks part."""
 
@@ -77,7 +86,7 @@ class Merging:
     """
 
     whole: Problem
-    owner: NDArray[np.int64]
+    owner: Owner
     rounds: int = 0
     forces: Array | None = None
 
@@ -86,9 +95,12 @@ class Merging:
     @classmethod
     def of(cls, problem: Problem) -> Merging | None:
         """Merge what limit analysis expects not to part; None where that is next to nothing."""
+        count = len(problem.assembly.blocks)
+        if count < LEAST:
+            return None
         rates = nearest_mechanism(problem)
         if rates is None:
-            rates = np.zeros((len(problem.assembly.blocks), PLANAR))
+            rates = np.zeros((count, PLANAR))
         return _unless_many(cls(problem, _alike(problem.assembly, rates)))
 
     @cached_property
@@ -99,8 +111,7 @@ class Merging:
     @cached_property
     def _inside(self) -> NDArray[np.bool_]:
         """Which joints lie within a body."""
-        joints, owner = self.whole.assembly.joint_arrays, np.append(self.owner, SUPPORT)
-        return owner[joints.before] == owner[joints.after]
+        return within_bodies(self.whole.assembly, self.owner)
 
     @property
     def assembly(self) -> Assembly:
@@ -110,19 +121,7 @@ class Merging:
     @cached_property
     def problem(self) -> Problem:
         """The problem of the bodies."""
-        whole, assembly = self.whole, self.whole.assembly
-        members = [np.flatnonzero(self.owner == each) for each in range(self.owner.max() + 1)]
-        bodies = Assembly(
-            blocks=tuple(_merged([assembly.blocks[k] for k in its]) for its in members),
-            joints=tuple(self._carried(index) for index in self.kept),
-            size=assembly.size,
-            supports=assembly.supports,
-        )
-        dead, live = (
-            tuple(moved for load in loads for moved in self._loads(load))
-            for loads in (whole.dead, whole.live)
-        )
-        return replace(whole, assembly=bodies, dead=dead, live=live)
+        return problem_of_bodies(self.whole, self.owner)
 
     def of_problem(self, problem: Problem) -> Problem:
         """Return the problem of the bodies, with the friction of another of all blocks."""
@@ -131,34 +130,6 @@ class Merging:
     def asked(self, problem: Problem) -> Problem:
         """Return the problem of all blocks: its world takes their forces."""
         return problem
-
-    def _carried(self, index: int) -> Joint:
-        """Return a joint between bodies."""
-        assembly = self.whole.assembly
-        joint = assembly.joints[index]
-        owner = np.append(self.owner, SUPPORT)
-        faces = joint.faces
-        if joint.is_corner:
-            # A body has more faces than the block, of which the corner is on one.
-            faces = assembly.joint_arrays.faces[index] * assembly.size
-        before, after = int(owner[joint.before]), int(owner[joint.after])
-        return replace(joint, before=before, after=after, faces=faces)
-
-    def _loads(self, load: Load) -> list[Load]:
-        """Return the loads on bodies that a load on blocks comes to."""
-        blocks = self.whole.assembly.blocks
-        found: list[Load] = []
-        for body in np.unique(self.owner[list(load.blocks)]).tolist():
-            its = [blocks[k] for k in load.blocks if self.owner[k] == body]
-            if load.point is not None:
-                force, point = len(its) * load.force, load.point
-            else:
-                share = np.array([each.mass if load.per_weight else 1.0 for each in its])
-                force = share.sum() * (STANDARD_GRAVITY if load.per_weight else 1.0)
-                force = force * load.force
-                point = share @ np.array([each.centre for each in its]) / share.sum()
-            found.append(Load(force=force, blocks=(body,), point=point))
-        return found
 
     @cached_property
     def _offsets(self) -> Array:
@@ -179,7 +150,13 @@ class Merging:
         return carried_rates(rates, self.owner, self._offsets)
 
     def mended(
-        self, first: Onset, resultants: Array, problem: Problem, allowed: float
+        self,
+        first: Onset,
+        resultants: Array,
+        problem: Problem,
+        allowed: float,
+        *,
+        takes_forces: bool,
     ) -> Merging | None:
         """Return this where it stands for all blocks, else what comes nearer to that.
 
@@ -193,13 +170,15 @@ class Merging:
             Of all blocks, with the friction the engine takes.
         allowed : float
             Force beyond the strength of a joint that counts as none [mean weights].
+        takes_forces : bool
+            Whether the engine can be given some to begin with.
         """
         if first.verdict is Verdict.UNDECIDED:
             return None
         holds, rates = self.parting(resultants, problem, allowed)
         if holds:
             return self
-        if first.verdict is Verdict.STANDS and first.forces is None:
+        if first.verdict is Verdict.STANDS and first.forces is None and takes_forces:
             # Bodies may bear themselves in ways that their blocks cannot.
             forces = equilibrium(problem).forces
             if forces is not None:
@@ -299,58 +278,13 @@ class MergedWorld:
         return self._world.quality()
 
 
-def carried_poses(poses: Array, owner: NDArray[np.int64], offsets: Array) -> Array:
-    """Return poses of blocks that bodies carry.
-
-    Parameters
-    ----------
-    poses : (bodies, 3 or 6) float
-    owner : (blocks,) int
-        The body of each block.
-    offsets : (blocks, 2) float
-        From the centre of the body to that of the block, as built [size].
-    """
-    moved = poses[owner]
-    spatial = moved.shape[1] > PLANAR
-    turns, arms = np.zeros((2, len(moved), 3))
-    turns[:, 2] = moved[:, 2]
-    if spatial:
-        turns[:, :2] = moved[:, 4:]
-    arms[:, :2] = offsets
-    carried = transform.Rotation.from_rotvec(turns).apply(arms)
-    moved[:, :2] += carried[:, :2]
-    if spatial:
-        moved[:, 3] += carried[:, 2]
-    return moved
-
-
-def carried_rates(rates: Array, owner: NDArray[np.int64], offsets: Array) -> Array:
-    """Return velocities or accelerations at rest of blocks that bodies carry, likewise."""
-    moved = rates[owner]
-    x, y = offsets.T
-    moved[:, 0] -= moved[:, 2] * y
-    moved[:, 1] += moved[:, 2] * x
-    if moved.shape[1] > PLANAR:
-        moved[:, 3] += moved[:, 4] * y - moved[:, 5] * x
-    return moved
-
-
-def about(forces: Array, points: Array) -> Array:
-    """Return forces x, y and moments about the origin (k, 3) with moments about points."""
-    turned = forces.copy()
-    turned[:, 2] -= points[:, 0] * forces[:, 1] - points[:, 1] * forces[:, 0]
-    return turned
-
-
 def _unless_many(merging: Merging) -> Merging | None:
     bodies = int(merging.owner.max()) + 1
     return None if bodies > FEWER * len(merging.owner) else merging
 
 
-def _alike(
-    assembly: Assembly, rates: Array, within: NDArray[np.bool_] | None = None
-) -> NDArray[np.int64]:
-    """Number the bodies of blocks that rates do not part, across joints `within`, (blocks,)."""
+def _alike(assembly: Assembly, rates: Array, within: NDArray[np.bool_] | None = None) -> Owner:
+    """Return the body of each block, of those that rates do not part across joints `within`."""
     joints = assembly.joint_arrays
     centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
     moved = np.vstack([rates, np.zeros(PLANAR)])
@@ -370,26 +304,3 @@ def _alike(
     count = len(rates)
     graph = sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
     return csgraph.connected_components(graph, directed=False)[1].astype(np.int64)
-
-
-def _merged(blocks: list[Block]) -> Block:
-    """Return one block of all."""
-    if len(blocks) == 1:
-        return blocks[0]
-    # Imported here, as others are: nothing is loaded before it is asked for.
-    from scipy.spatial import ConvexHull
-
-    mass = np.array([block.mass for block in blocks])
-    centres = np.array([block.centre for block in blocks])
-    centre = mass @ centres / mass.sum()
-    inertia = sum(block.inertia for block in blocks)
-    parts = tuple(part for block in blocks for part in block.polygons)
-    corners = np.concatenate(parts)
-    return Block(
-        vertices=corners[ConvexHull(corners).vertices],
-        centre=centre,
-        mass=float(mass.sum()),
-        inertia=float(inertia + mass @ ((centres - centre) ** 2).sum(axis=1)),
-        depth=max(block.depth for block in blocks),
-        parts=parts,
-    )

@@ -161,7 +161,13 @@ def hold(
         if reduction:
             resultants = cast("TellsForces", world).resultants()
             allowed = simulation.settings.still
-            better = reduction.mended(first, resultants, simulation.taken, allowed)
+            better = reduction.mended(
+                first,
+                resultants,
+                simulation.taken,
+                allowed,
+                takes_forces=simulation.engine.takes_forces,
+            )
             if better is not reduction:
                 splits = splits + len(better.kept) - len(reduction.kept) if better else 0
                 reduction = better

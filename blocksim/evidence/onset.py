@@ -179,7 +179,9 @@ def onset(
     if begun is not None:
         cast("TakesForces", world).begin(begun)
     may_rest = may_slide = False
-    helped = begun is not None or not (engine.takes_forces and problem.is_planar and settings.unaided is not None)
+    helped = begun is not None or not (
+        engine.takes_forces and problem.is_planar and settings.unaided is not None
+    )
     # Without bound on friction even an engine that looks for rest can miss it: forces may be
     # wedged, a thousand times their pressures.
     bounded = bool(np.isfinite(problem.friction).all())

@@ -109,7 +109,13 @@ class Reduced(Protocol):
         ...
 
     def mended(
-        self, first: Onset, resultants: Array, problem: Problem, allowed: float
+        self,
+        first: Onset,
+        resultants: Array,
+        problem: Problem,
+        allowed: float,
+        *,
+        takes_forces: bool,
     ) -> Reduced | None:
         """Return this where it stands for all blocks, else what does; None: all blocks.
 
@@ -123,6 +129,8 @@ class Reduced(Protocol):
             Of all blocks, with the friction the engine takes.
         allowed : float
             Force beyond the strength of a joint that counts as none [mean weights].
+        takes_forces : bool
+            Whether the engine can be given some to begin with.
         """
         ...
 
