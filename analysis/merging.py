@@ -4,12 +4,12 @@ Question: what does it save to merge blocks that do not part (`blocksim.evidence
 does it ever change an answer? The structures are those of which answers are known
 (`structure_cases.py`), and walls in running bond (`WALLS`), pushed by a share of their weight,
 whose load factor the linear programme knows. Each is asked 1 % to either side, held at rest
-and let go, with all blocks and merged, one after the other. Rows are kept as they come, the
-smallest first: a run that is stopped goes on where it was.
+and, unless `--held`, let go, with all blocks and merged, one after the other. Rows are kept as
+they come, the smallest first: a run that is stopped goes on where it was.
 
 Expected: the same verdicts, or one where all blocks leave it open, in less time.
 
-    python -m analysis.merging OUT [--engine NAME] [--most BLOCKS] [--quick]
+    python -m analysis.merging OUT [--engine NAME] [--most BLOCKS] [--held] [--quick]
 """
 
 from __future__ import annotations
@@ -105,14 +105,14 @@ def cases(*, quick: bool) -> Iterator[tuple[Asked, Problem]]:
                 yield (name, question.name, side), question.at(0.0 if stands else at)
 
 
-def ask(asked: Asked, *, problems: dict[Asked, Problem], engine: str) -> Row:
+def ask(asked: Asked, *, problems: dict[Asked, Problem], engine: str, held: bool) -> Row:
     """Ask with all blocks, and merged."""
     problem = problems[asked]
 
     def timed(*, merge: bool) -> tuple[Observation, float]:
         started = time.process_time()
         reduction = Merging.of(problem) if merge else None
-        found = observe(problem, engine, reduction=reduction)
+        found = observe(problem, engine, moving=not held, reduction=reduction)
         return found, round(time.process_time() - started, 3)
 
     whole, whole_s = timed(merge=False)
@@ -137,6 +137,7 @@ def main(
     quick: bool = False,
     engine: str = "pymunk",
     most: int = 140,
+    held: bool = False,
 ) -> Result:
     """Run the study, write its rows, and return its numbers.
 
@@ -149,6 +150,8 @@ def main(
     engine : str
     most : int
         Blocks of the largest structure asked of.
+    held : bool
+        Let nothing go.
     """
     problems = {
         asked: problem
@@ -157,11 +160,11 @@ def main(
     }
     order = sorted(problems, key=lambda asked: len(problems[asked].assembly.blocks))
     # What is loaded when it is first asked for is nobody's time.
-    ask(order[0], problems=problems, engine=engine)
+    ask(order[0], problems=problems, engine=engine, held=held)
     rows = answers(
         out / f"merging_{engine}.jsonl",
         order,
-        partial(ask, problems=problems, engine=engine),
+        partial(ask, problems=problems, engine=engine, held=held),
         1,
     )
     write_rows(out / f"merging_{engine}.csv", rows)

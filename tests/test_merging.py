@@ -26,6 +26,7 @@ from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
+from blocksim.evidence import merging
 from blocksim.evidence.merging import Merging
 from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.onset import onset
@@ -110,12 +111,12 @@ def test_bodies_weigh_and_are_pulled_as_their_blocks(kind: str) -> None:
 @pytest.mark.parametrize("columns", [3, 6])
 def test_blocks_of_a_body_stay_where_they_are_in_it(columns: int) -> None:
     whole = known("oppenheim_28", 1.0)
-    merging = merged(whole, tuple(range(5)), tuple(range(5, 20)))
-    start = np.zeros((len(merging.assembly.blocks), columns))
-    start[:, :2] = merging.assembly.centres / whole.assembly.size
+    made = merged(whole, tuple(range(5)), tuple(range(5, 20)))
+    start = np.zeros((len(made.assembly.blocks), columns))
+    start[:, :2] = made.assembly.centres / whole.assembly.size
     rng = np.random.default_rng(2)
     moved = start + rng.uniform(-1, 1, start.shape)
-    built, poses = merging.poses(start), merging.poses(moved)
+    built, poses = made.poses(start), made.poses(moved)
     assert built[:, :2] == pytest.approx(
         whole.assembly.centres / whole.assembly.size, abs=1e-12
     )
@@ -127,8 +128,8 @@ def test_blocks_of_a_body_stay_where_they_are_in_it(columns: int) -> None:
         assert apart[0] == pytest.approx(apart[1], abs=1e-12)
         assert poses[first, 2] == poses[last, 2]
     rates = rng.uniform(-1, 1, start.shape)
-    after, before = (merging.poses(start + sign * 1e-4 * rates) for sign in (1, -1))
-    assert (after - before) / 2e-4 == pytest.approx(merging.rates(rates), abs=1e-7)
+    after, before = (made.poses(start + sign * 1e-4 * rates) for sign in (1, -1))
+    assert (after - before) / 2e-4 == pytest.approx(made.rates(rates), abs=1e-7)
 
 
 @pytest.mark.parametrize("name", LOADED)
@@ -150,8 +151,8 @@ def test_the_guess_falls_as_the_blocks_do(name: str) -> None:
 def test_forces_of_equilibrium_are_taken_and_no_others(name: str, share: float) -> None:
     """What joints carry is given: of a state of all blocks, and of one without its friction."""
     problem = known(name, share)
-    merging = Merging.of(problem)
-    if merging is None:
+    guess = Merging.of(problem)
+    if guess is None:
         return
     joints = problem.assembly.joint_arrays
     forces = equilibrium(problem).forces
@@ -160,12 +161,23 @@ def test_forces_of_equilibrium_are_taken_and_no_others(name: str, share: float) 
     x, y = joints.ends[..., 0], joints.ends[..., 1]
     moments = (x * acting[..., 1] - y * acting[..., 0]).sum(axis=1)
     carried = np.column_stack([acting.sum(axis=1), moments])
-    carried *= problem.unit_force / merging.problem.unit_force
-    carried = carried[list(merging.kept)]
-    assert merging.left(carried, problem)[:, :2].sum() == pytest.approx(0, abs=1e-6)
-    assert merging.parting(carried, problem, 1e-9)[0]
+    carried *= problem.unit_force / guess.problem.unit_force
+    carried = carried[list(guess.kept)]
+    assert guess.left(carried, problem)[:, :2].sum() == pytest.approx(0, abs=1e-6)
+    assert guess.parting(carried, problem, 1e-9)[0]
     # Bodies that carry ten times their weight upside down hold together by nothing.
-    assert not merging.parting(-10 * carried, problem, 1e-6)[0]
+    assert not guess.parting(-10 * carried, problem, 1e-6)[0]
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_resultants_obey_newton_for_every_body(engine: str, share: float) -> None:
+    """Several joints lie between the same two bodies of a wall."""
+    problem = known("ferris_tinloi_1", share)
+    fives = Merging(problem, np.arange(33) // 5)
+    world = Simulation.of(problem, engine, reduction=fives).world()
+    rates = world.hold(20_000 if engine != "direct" else 1)[:, :3]
+    found = fives.acting(world.resultants(), problem)[1]
+    assert found == pytest.approx(rates, abs=1e-4)
 
 
 def test_without_a_second_look_a_wrong_guess_would_stand(engine: str) -> None:
@@ -232,6 +244,20 @@ def test_merged_it_answers_as_is_known(
     assert seen.verdict is expected, seen.reason
     if expected is Verdict.STANDS and engine != "direct":
         assert seen.blocks < len(problem.assembly.blocks) / 2
+
+
+@pytest.mark.parametrize(("name", "share"), [("oppenheim_28", 1.01), ("oppenheim_7", 1.3)])
+def test_bodies_that_fall_start_as_all_blocks_do(
+    name: str, share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Hinges only: there is one motion."""
+    monkeypatch.setattr(merging, "LEAST", 0)
+    problem = known(name, share)
+    held, every = (
+        hold(problem, "direct", reduction=each) for each in (Merging.of(problem), None)
+    )
+    assert held.simulation.blocks < len(problem.assembly.blocks)
+    assert accelerations(held) == pytest.approx(accelerations(every), abs=1e-8)
 
 
 def test_let_go_blocks_of_a_body_move_as_one() -> None:

@@ -48,7 +48,7 @@ Reduce = Annotated[
     bool | None,
     Option(
         name="--reduce/--no-reduce",
-        help="Simulate half the arch; voussoirs that stay together are one block: "
+        help="Simulate blocks that stay together as one, and half of an arch: "
         "pymunk and pybullet do.",
     ),
 ]

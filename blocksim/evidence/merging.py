@@ -103,7 +103,7 @@ class Merging:
             rates = np.zeros((count, PLANAR))
         return _unless_many(cls(problem, _alike(problem.assembly, rates)))
 
-    @cached_property
+    @property
     def kept(self) -> tuple[int, ...]:
         """Joints between bodies, or of a body with a support."""
         return tuple(np.flatnonzero(~self._inside).tolist())
@@ -218,23 +218,26 @@ class Merging:
         Weight, loads, what other joints carry, and the inertia of its acceleration with its
         body [mean weights of all blocks].
         """
+        acting, accelerations = self.acting(resultants, problem)
+        return acting - problem.assembly.masses * accelerations
+
+    def acting(self, resultants: Array, problem: Problem) -> tuple[Array, Array]:
+        """Return what acts on each block but in its body, and the accelerations that gives."""
         whole = problem.assembly
         joints, kept = whole.joint_arrays, list(self.kept)
-        owner, centres = self.owner, whole.centres / whole.size
+        centres = whole.centres / whole.size
         unit = self.problem.unit_force / problem.unit_force
-        left = problem.pull()
+        acting = problem.pull()
         for sides, sign in ((joints.before[kept], -1.0), (joints.after[kept], 1.0)):
             on = sides != SUPPORT
             wrench = sign * unit * about(resultants[on], centres[sides[on]])
-            np.add.at(left, sides[on], wrench)
+            np.add.at(acting, sides[on], wrench)
         # Of bodies, about their own centres.
+        moved, (x, y) = acting.copy(), self._offsets.T
+        moved[:, 2] += x * acting[:, 1] - y * acting[:, 0]
         total = np.zeros((len(self.assembly.blocks), PLANAR))
-        moved = left.copy()
-        x, y = self._offsets.T
-        moved[:, 2] += x * left[:, 1] - y * left[:, 0]
-        np.add.at(total, owner, moved)
-        accelerations = total / (unit * self.assembly.masses)
-        return left - whole.masses * self.rates(accelerations)
+        np.add.at(total, self.owner, moved)
+        return acting, self.rates(total / (unit * self.assembly.masses))
 
 
 class MergedWorld:
@@ -288,7 +291,7 @@ def _alike(assembly: Assembly, rates: Array, within: NDArray[np.bool_] | None = 
     joints = assembly.joint_arrays
     centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
     moved = np.vstack([rates, np.zeros(PLANAR)])
-    ways = []
+    ways: list[Array] = []
     for side in (joints.before, joints.after):
         arm = joints.ends - centres[side][:, None]
         across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)

@@ -155,10 +155,10 @@ def hold(
             simulation.taken,
             simulation.settings,
             progress,
-            asked=reduction and reduction.asked(simulation.taken),
-            forces=reduction and reduction.forces,
+            asked=reduction.asked(simulation.taken) if reduction else None,
+            forces=reduction.forces if reduction else None,
         )
-        if reduction:
+        if reduction and not first.too_far:
             resultants = cast("TellsForces", world).resultants()
             allowed = simulation.settings.still
             better = reduction.mended(
