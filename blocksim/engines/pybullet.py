@@ -279,7 +279,6 @@ ENGINE = Engine(
     takes_forces=True,
     tells_forces=True,
     reduces=True,
-    merges=True,
     contacts=4,
     usual_sweeps=10,
     chart={

@@ -1,6 +1,6 @@
 """Blocks that do not part, merged: no more bodies than a question needs, of any structure.
 
-Impulse engines are asked so by default (`Engine.reduces`); recordings have all blocks.
+pymunk is asked so by default (`Engine.merges`); recordings have all blocks.
 
 Which blocks move alike is a guess, which limit analysis makes: of blocks that fall, by the
 mechanism of its linear programme; of blocks that stand, by the one that is nearest, as the
@@ -20,7 +20,7 @@ equilibrium of all blocks, and has to keep them.
 
 A structure of which bodies fall does so as its blocks, too: no joint that is held can keep it.
 So does one that slides, as the onset test looks for forces of equilibrium first. Where the
-engine does not decide, or the guess is still wrong once mended, it is given all blocks.
+engine does not decide, or the guess is still wrong after `ROUNDS`, it is given all blocks.
 
 Joints are looked at while the blocks are held; let go, what is merged stays merged, for the
 2e-3 of a size a verdict takes. Nothing is merged where gravity leans out of the plane or the
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 else:
     sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
 
-ROUNDS = 1
+ROUNDS = 2
 """Guesses that are mended, before all blocks are simulated: more are seldom worth it."""
 LEAST, FEWER = 10, 0.5
 """Blocks below which none are merged, and bodies over blocks beyond which nothing is gained."""
