@@ -33,7 +33,7 @@ from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium, nearest_mechanism
 
-LOADED = ("oppenheim_28", "ferris_tinloi_1", "two_spans_load_b9", "jack_arch_load")
+LOADED = ("oppenheim_28", "ferris_tinloi_1", "two_spans_load_b9")
 """Structures whose largest load factor is known."""
 
 
@@ -151,8 +151,7 @@ def test_forces_of_equilibrium_are_taken_and_no_others(name: str, share: float) 
     """What joints carry is given: of a state of all blocks, and of one without its friction."""
     problem = known(name, share)
     guess = Merging.of(problem)
-    if guess is None:
-        return
+    assert guess is not None
     joints = problem.assembly.joint_arrays
     forces = equilibrium(problem).forces
     along = np.stack([joints.normal, joints.tangent], axis=1)

@@ -63,7 +63,7 @@ else:
 
 ROUNDS = 2
 """Guesses that are mended, before all blocks are simulated: more are seldom worth it."""
-LEAST, FEWER = 10, 0.5
+LEAST, FEWER = 20, 0.5
 """Blocks below which none are merged, and bodies over blocks beyond which nothing is gained."""
 MOVES = 1e-6
 """Motion of a joint over the largest rate of a block, from which on its blocks part."""
