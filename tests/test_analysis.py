@@ -302,6 +302,16 @@ def test_reduced_arches_are_right_by_default(tmp_path: Path) -> None:
     assert result.whole == 0
 
 
+def test_few_bodies_answer_as_all_blocks_do(tmp_path: Path) -> None:
+    result = study("merging").main(tmp_path, quick=True)
+    assert (result.asked, result.false, result.opened) == (4, 0, 0)
+    assert result.merged > 0
+    with (tmp_path / "merging_pymunk.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["side"] for row in rows].count("inside") == 2
+    assert all(int(row["bodies"]) <= int(row["all_blocks"]) for row in rows)
+
+
 def test_lmgc90_says_where_it_is_missing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -246,7 +246,7 @@ def bracket(
             reason=search.reason,
         )
         if reduced and search.blocks is not None and search.splits is not None:
-            words = reduced_words(search.blocks, voussoirs, search.splits)
+            words = reduced_words(Reduction.by, search.blocks, voussoirs, search.splits)
             answer = replace(answer, reason=f"{answer.reason}; {words}")
     reason = answer.reason + given_words(settings) + chosen_words(method, rung)
     return replace(answer, reason=reason, wall_s=time.perf_counter() - started)

@@ -32,14 +32,14 @@ from numpy.typing import NDArray
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import weakest_joints
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, Block, Joint
-from blocksim.common.later import Library
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
+from blocksim.blocks.bodies import about, carried_poses, carried_rates
 from blocksim.engines.base import Quality, TakesForces, TellsForces, World
+from blocksim.evidence.verdict import Verdict
 
 if TYPE_CHECKING:
-    from scipy.spatial import transform
-else:
-    transform = Library("scipy.spatial.transform")
+    from blocksim.blocks.problem import Problem
+    from blocksim.evidence.onset import Onset
 
 UNTURNED = 1e18
 """Factor on the inertia of half a keystone."""
@@ -63,6 +63,9 @@ class Reduction:
     whole: Assembly
     kept: tuple[int, ...]
 
+    by = "symmetry and by merging"
+    forces = None
+
     @classmethod
     def of(cls, arch: Arch, mu: float) -> Reduction:
         """Keep the joints that limit analysis expects to move."""
@@ -75,6 +78,34 @@ class Reduction:
     def world(self, world: World) -> World:
         """Return the world of all voussoirs, from that of the blocks simulated."""
         return ReducedWorld(world, self)
+
+    def of_problem(self, problem: Problem) -> Problem:
+        """Return the problem of the blocks that are simulated."""
+        return replace(problem, assembly=self.assembly)
+
+    def asked(self, problem: Problem) -> Problem:
+        """Return the same: its world takes their forces."""
+        return self.of_problem(problem)
+
+    def mended(
+        self,
+        first: Onset,
+        resultants: Array,
+        problem: Problem,
+        allowed: float,
+        *,
+        takes_forces: bool,  # noqa: ARG002
+    ) -> Reduction | None:
+        """Return this where it stands for all voussoirs, else what does; None: all of them."""
+        # Large blocks move where they may rest sooner than those they are made of.
+        if first.may_rest:
+            return None
+        if first.verdict is Verdict.UNDECIDED:
+            return self
+        moving = self.overstrained(resultants, problem.mu, allowed)
+        if self.parts(resultants):
+            return None
+        return self.split(moving) if moving else self
 
     def at(self, arch: Arch) -> Reduction:
         """Keep the same joints of an arch that differs in thickness only."""
@@ -157,28 +188,11 @@ class Reduction:
 
     def poses(self, poses: Array) -> Array:
         """Return the poses of all voussoirs from those of the blocks."""
-        moved = poses[self._owner]
-        spatial = moved.shape[1] > PLANAR
-        turns, offsets = np.zeros((2, len(moved), 3))
-        turns[:, 2] = moved[:, 2]
-        if spatial:
-            turns[:, :2] = moved[:, 4:]
-        offsets[:, :2] = self._offsets
-        carried = transform.Rotation.from_rotvec(turns).apply(offsets)
-        moved[:, :2] += carried[:, :2]
-        if spatial:
-            moved[:, 3] += carried[:, 2]
-        return self._mirrored(moved)
+        return self._mirrored(carried_poses(poses, self._owner, self._offsets))
 
     def rates(self, rates: Array) -> Array:
         """Return the velocities or accelerations at rest of all voussoirs likewise."""
-        moved = rates[self._owner]
-        x, y = self._offsets.T
-        moved[:, 0] -= moved[:, 2] * y
-        moved[:, 1] += moved[:, 2] * x
-        if moved.shape[1] > PLANAR:
-            moved[:, 3] += moved[:, 4] * y - moved[:, 5] * x
-        return self._mirrored(moved)
+        return self._mirrored(carried_rates(rates, self._owner, self._offsets))
 
     def _mirrored(self, left: Array) -> Array:
         """Add the right half; a keystone is both its halves' mean."""
@@ -204,14 +218,14 @@ class Reduction:
         """
         blocks, size = self.assembly, self.whole.size
         total = resultants[:-1] - resultants[1:]
-        rates = _about(total, blocks.centres / size) / blocks.masses
+        rates = about(total, blocks.centres / size) / blocks.masses
         rates[:, 1] -= 1.0
         half = len(self._shares)
         # What it takes to accelerate each voussoir so, and to bear its weight.
         rates = self.rates(rates)[:half]
         rates[:, 1] += 1.0
         taken = self.whole.masses[:half] * self._shares[:, None] * rates
-        taken = _about(taken, -self.whole.centres[:half] / size)
+        taken = about(taken, -self.whole.centres[:half] / size)
         springing = resultants[0] * _mean_mass(blocks) / _mean_mass(self.whole)
         found = springing - np.vstack([np.zeros(3), np.cumsum(taken, axis=0)])
         left, crown = found[:half], found[half:]
@@ -231,10 +245,10 @@ class Reduction:
         """
         joints = self.whole.joint_arrays
         merged = self.merged
-        about = _about(resultants, joints.ends.mean(axis=1))[merged]
-        pressure = (about[:, :2] * joints.normal[merged]).sum(axis=1)
-        shear = (about[:, :2] * joints.tangent[merged]).sum(axis=1)
-        tipping = 2 * np.abs(about[:, 2]) / joints.length[merged]
+        acting = about(resultants, joints.ends.mean(axis=1))[merged]
+        pressure = (acting[:, :2] * joints.normal[merged]).sum(axis=1)
+        shear = (acting[:, :2] * joints.tangent[merged]).sum(axis=1)
+        tipping = 2 * np.abs(acting[:, 2]) / joints.length[merged]
         excess = tipping - pressure
         if np.isfinite(mu):
             excess = np.maximum(excess, np.abs(shear) - mu * pressure)
@@ -285,13 +299,6 @@ class ReducedWorld:
     def quality(self) -> Quality:
         """Tell how well contact and friction have been kept so far."""
         return self._world.quality()
-
-
-def _about(forces: Array, points: Array) -> Array:
-    """Return forces x, y and moments about the origin (k, 3) with moments about points."""
-    turned = forces.copy()
-    turned[:, 2] -= points[:, 0] * forces[:, 1] - points[:, 1] * forces[:, 0]
-    return turned
 
 
 def _mean_mass(assembly: Assembly) -> float:

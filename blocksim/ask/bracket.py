@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from blocksim.ask.families import Family
-from blocksim.ask.methods import choose, chosen_words
+from blocksim.ask.methods import choose, chosen_words, merges
 from blocksim.ask.search import Answer, Bisection
 from blocksim.common.checks import is_number, require
-from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
@@ -124,6 +123,7 @@ def bracket(
     tol: float = 0.005,
     within: tuple[float, float] | None = None,
     settings: Overrides = BY_RULE,
+    reduce: bool | None = None,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the value of a family's parameter at which it changes from standing to falling.
@@ -142,6 +142,8 @@ def bracket(
         Where to search; by default where limit analysis says, within the family's range.
     settings : mapping of str to float
         Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+    reduce : bool, optional
+        As of `blocksim.ask.check.check`.
     progress : Progress, optional
 
     Returns
@@ -162,9 +164,11 @@ def bracket(
     allowed = f"two values, the lower first, from {family.low:g} to {family.high:g}"
     require(ranged, "within", f"{low:g} {high:g}", allowed)
     probe = family.at(low + GUESS * (high - low))
-    chosen = choose(method, tol, problem=probe, settings=settings)
-    if family.spreading is not None and chosen.name not in {"limit", "direct"}:
-        raise InputError("method", chosen.name, "limit or direct: others move no supports")
+    chosen = choose(method, tol, problem=probe, settings=settings, reduce=reduce)
+    if family.spreading is not None:
+        able = chosen.name in {"limit", "direct"}
+        require(able, "method", chosen.name, "limit or direct: others move no supports")
+        require(not reduce, "reduce", reduce, "left out where supports move")
     # What limit analysis says is of ground at rest.
     static = probe.is_planar and probe.shaking is None
     exact = family.exact() if static else None
@@ -183,10 +187,18 @@ def bracket(
         known = exact and math.isfinite(exact) and low <= exact <= high
         start = exact if exact and known else low + GUESS * (high - low)
         # What moves blocks is loaded where it is asked for.
-        from blocksim.evidence.observation import hold
+        from blocksim.evidence.merging import Merging
+        from blocksim.evidence.observation import hold, reduced_words
+
+        reduced = merges(chosen, reduce, probe)
+
+        def held_at(value: float) -> Held:
+            problem = family.at(value)
+            merging = Merging.of(problem) if reduced else None
+            return hold(problem, chosen.name, settings=settings, reduction=merging)
 
         found = by_engine(
-            lambda value: hold(family.at(value), chosen.name, settings=settings),
+            held_at,
             start,
             (max(low, start / FARTHEST), high),
             tol,
@@ -194,6 +206,9 @@ def bracket(
             more_is_safer=family.stands == "high",
             progress=progress,
         )
+        most = len(probe.assembly.blocks)
+        if reduced and found.blocks is not None and found.blocks < most:
+            said += f"; {reduced_words(Merging.by, found.blocks, most, found.splits or 0)}"
     ends = (found.falls, found.stands)
     lower, upper = ends if family.stands == "high" else ends[::-1]
     return Bracket(

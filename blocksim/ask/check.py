@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from blocksim.ask.carried import Carried, carried_by
-from blocksim.ask.methods import choose, chosen_words
+from blocksim.ask.methods import choose, chosen_words, merges
 from blocksim.ask.rest import Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
@@ -121,6 +121,7 @@ def check(
     *,
     method: str = "auto",
     settings: Overrides = BY_RULE,
+    reduce: bool | None = None,
     must_rest: bool = False,
     progress: Progress = silent,
 ) -> ProblemCheck:
@@ -133,6 +134,9 @@ def check(
         `auto`, `limit`, or the name of an engine.
     settings : mapping of str to float
         Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+    reduce : bool, optional
+        Simulate blocks that do not part as one (`blocksim.evidence.merging`); by default where
+        the engine says so (`Engine.merges`), gravity lies in the plane and the ground rests.
     must_rest : bool
         Find out as well whether it must rest, or friction may let it move
         (`blocksim.limit.starting`): a second with 8 joints, ten with 28.
@@ -151,7 +155,7 @@ def check(
         If the engine's library is not installed.
     """
     started = time.perf_counter()
-    chosen = choose(method, problem=problem, settings=settings)
+    chosen = choose(method, problem=problem, settings=settings, reduce=reduce)
     if must_rest:
         require_rest(problem)
     if problem.shaking is not None:
@@ -170,9 +174,16 @@ def check(
         reason = _static_words(static, problem)
         mechanism = static.mechanism
     else:
+        from blocksim.evidence.merging import Merging
         from blocksim.evidence.observation import observe
 
-        seen = observe(problem, chosen.name, settings=settings, progress=progress)
+        seen = observe(
+            problem,
+            chosen.name,
+            settings=settings,
+            reduction=Merging.of(problem) if merges(chosen, reduce, problem) else None,
+            progress=progress,
+        )
         verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
     exists = None if static is None else static.exists
     moved = seen is not None and seen.moved

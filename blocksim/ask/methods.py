@@ -94,16 +94,17 @@ def choose(
             raise InputError("method", method, f"another: {_beyond(METHODS[SPATIAL], problem)}")
     else:
         rung = METHODS[method]
-    spatial = problem is not None and not problem.is_planar
     beyond = _beyond(rung, problem)
     if beyond:
         raise InputError("method", method, beyond)
     if moving and rung.is_static:
         able = ", ".join(ENGINES)
         raise InputError("method", method, f"one of {able}: others move nothing")
-    if reduce and (spatial or not _can_reduce(rung)):
+    still = problem is None or (problem.is_planar and problem.shaking is None)
+    if reduce and not (still and _can_reduce(rung)):
         able = ", ".join(each.name for each in ENGINES.values() if _can_reduce(each))
-        raise InputError("reduce", reduce, f"left out but for {able}, in the plane")
+        allowed = f"left out but for {able}, in the plane, on ground at rest"
+        raise InputError("reduce", reduce, allowed)
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     for name, value in settings.items():
@@ -130,7 +131,7 @@ def _beyond(method: Method, problem: Problem | None) -> str:
 
 
 def _can_reduce(method: Method) -> bool:
-    """Tell whether it says what joints carry, which a reduced arch takes."""
+    """Tell whether it says what joints carry, which fewer blocks than all take."""
     return isinstance(method, Engine) and method.tells_forces
 
 
@@ -139,6 +140,14 @@ def reduces(method: Method, reduce: bool | None, *, is_planar: bool) -> bool:
     if reduce is not None:
         return reduce
     return is_planar and isinstance(method, Engine) and method.reduces
+
+
+def merges(method: Method, reduce: bool | None, problem: Problem) -> bool:
+    """Tell whether blocks of any structure are merged; as `reduces`."""
+    if reduce is not None:
+        return reduce
+    still = problem.is_planar and problem.shaking is None
+    return still and isinstance(method, Engine) and method.merges
 
 
 def chosen_words(method: str, rung: Method) -> str:

@@ -48,8 +48,8 @@ Reduce = Annotated[
     bool | None,
     Option(
         name="--reduce/--no-reduce",
-        help="Simulate half the arch; voussoirs that stay together are one block: "
-        "pymunk and pybullet do.",
+        help="Simulate blocks that stay together as one, and half of an arch: pymunk does, "
+        "pybullet does with arches.",
     ),
 ]
 MustRest = Annotated[

@@ -195,14 +195,28 @@ def check_problem(
     Nothing is done where an arch bears its own weight only.
     """
     if scene is not None and is_structure(scene):
-        require(not reduce, "--reduce", reduce, "left out: it is for arches")
         problem = structure(scene, given, loading)
-        check_structure(problem, method, settings, joint, must_rest=must_rest, as_json=as_json)
+        check_structure(
+            problem,
+            method,
+            settings,
+            joint,
+            reduce=reduce,
+            must_rest=must_rest,
+            as_json=as_json,
+        )
     if loading.given:
         asked = question(scene, given, thick=True)
-        require(not reduce, "--reduce", reduce, "left out with a load or a tilt")
         problem = problem_of_arch(arch_of(asked, given.ratio), asked, loading)
-        check_structure(problem, method, settings, joint, must_rest=must_rest, as_json=as_json)
+        check_structure(
+            problem,
+            method,
+            settings,
+            joint,
+            reduce=reduce,
+            must_rest=must_rest,
+            as_json=as_json,
+        )
 
 
 def check_structure(
@@ -211,6 +225,7 @@ def check_structure(
     settings: list[str] | None,
     joint: str | None = None,
     *,
+    reduce: bool | None = None,
     must_rest: bool = False,
     as_json: bool,
 ) -> None:
@@ -221,6 +236,7 @@ def check_structure(
             problem,
             method=method,
             settings=settings_of(settings),
+            reduce=reduce,
             must_rest=must_rest,
             progress=report,
         )
@@ -248,9 +264,10 @@ def bracket_problem(
     """Answer `bracket` but over the thickness of an arch; tell whether it was answered."""
     if not (is_structure(scene) or loading.on_road or over not in {None, THICKNESS}):
         return False
-    require(not reduce, "--reduce", reduce, "left out but for the thickness of arches")
     problem = problem_asked(scene, given, loading, thick=True)
-    bracket_structure(problem, over, within, method, tol, settings, as_json=as_json)
+    bracket_structure(
+        problem, over, within, method, tol, settings, reduce=reduce, as_json=as_json
+    )
     return True
 
 
@@ -262,6 +279,7 @@ def bracket_structure(
     tol: float,
     settings: list[str] | None,
     *,
+    reduce: bool | None = None,
     as_json: bool,
 ) -> None:
     """Answer `bracket` over any parameter."""
@@ -276,6 +294,7 @@ def bracket_structure(
             tol=tol,
             within=within,
             settings=settings_of(settings),
+            reduce=reduce,
             progress=report,
         )
     answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)

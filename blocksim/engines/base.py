@@ -234,12 +234,14 @@ class Engine(Method):
     finds_rest : bool
         Whether rest is found wherever it is possible, from any beginning.
     takes_forces, tells_forces : bool
-        Whether its worlds are also `TakesForces` and `TellsForces`. A reduced arch asks for
-        the second.
+        Whether its worlds are also `TakesForces` and `TellsForces`. Fewer blocks than all ask
+        for the second.
     keeps_impulses : bool
         Whether its worlds go on from forces that are given, also from such that do not balance.
     reduces : bool
         Whether arches are reduced where nothing else is said: shown to be right, and faster.
+    merges : bool
+        The same of the blocks of other structures.
     contacts : int
         Contacts of a joint.
     usual_sweeps : int
@@ -259,6 +261,7 @@ class Engine(Method):
     tells_forces: bool = False
     keeps_impulses: bool = False
     reduces: bool = False
+    merges: bool = False
     contacts: int = 2
     usual_sweeps: int = 1
 

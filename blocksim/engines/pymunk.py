@@ -377,6 +377,7 @@ ENGINE = Engine(
     tells_forces=True,
     keeps_impulses=True,
     reduces=True,
+    merges=True,
     usual_sweeps=10,
     chart={
         "tolerance": (1e-2, 1e-3, 1e-4),

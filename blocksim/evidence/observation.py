@@ -149,24 +149,28 @@ def hold(
     while True:
         simulation = Simulation.of(problem, engine, settings=settings, reduction=reduction)
         world = simulation.world()
-        simulated = simulation.simulated
         first = onset(
             world,
             simulation.engine,
             simulation.taken,
             simulation.settings,
             progress,
-            simulated=simulated,
+            asked=reduction.asked(simulation.taken) if reduction else None,
+            forces=reduction.forces if reduction else None,
         )
-        if reduction and (first.may_rest or first.verdict is not Verdict.UNDECIDED):
+        if reduction and not first.too_far:
             resultants = cast("TellsForces", world).resultants()
-            moving = reduction.overstrained(resultants, simulated.mu, simulation.settings.still)
-            # Large blocks move where they may rest sooner than those they are made of.
-            if first.may_rest or reduction.parts(resultants):
-                reduction, splits = None, 0
-                continue
-            if moving:
-                reduction, splits = reduction.split(moving), splits + len(moving)
+            allowed = simulation.settings.still
+            better = reduction.mended(
+                first,
+                resultants,
+                simulation.taken,
+                allowed,
+                takes_forces=simulation.engine.takes_forces,
+            )
+            if better is not reduction:
+                splits = splits + len(better.kept) - len(reduction.kept) if better else 0
+                reduction = better
                 continue
         return Held(simulation=simulation, world=world, onset=first, splits=splits)
 
@@ -209,7 +213,12 @@ def _asides(held: Held, motion: Motion | None) -> str:
     said: list[str] = []
     if simulation.reduction:
         said.append(
-            reduced_words(simulation.blocks, len(simulation.assembly.blocks), held.splits)
+            reduced_words(
+                simulation.reduction.by,
+                simulation.blocks,
+                len(simulation.assembly.blocks),
+                held.splits,
+            )
         )
     if motion and not simulation.problem.is_planar:
         way = f"{motion.recording.beyond_plane[-1]:.1e} {simulation.length}"
@@ -223,9 +232,6 @@ def _asides(held: Held, motion: Motion | None) -> str:
     return "".join(f"; {each}" for each in said)
 
 
-def reduced_words(blocks: int, of: int, splits: int) -> str:
+def reduced_words(by: str, blocks: int, of: int, splits: int) -> str:
     """Tell what a reduction has come to."""
-    return (
-        "reduced by symmetry and by merging "
-        f"(blocks: {blocks} of {of}, joints split again: {splits})"
-    )
+    return f"reduced by {by} (blocks: {blocks} of {of}, joints split again: {splits})"

@@ -137,7 +137,8 @@ def onset(
     settings: Settings,
     progress: Progress = silent,
     *,
-    simulated: Problem | None = None,
+    asked: Problem | None = None,
+    forces: Array | None = None,
 ) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
 
@@ -151,8 +152,10 @@ def onset(
     settings : Settings
         What counts as at rest, and the most sweeps to spend.
     progress : Progress, optional
-    simulated : Problem, optional
-        Of those blocks the engine knows, where they are others (`blocksim.arch.reduction`).
+    asked : Problem, optional
+        Whose forces the world takes, where the engine knows other blocks than those.
+    forces : (joints, 2, 2) float, optional
+        To begin with; by default none.
 
     Returns
     -------
@@ -172,9 +175,13 @@ def onset(
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
     first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
     total, sweeps = 0, first
-    begun = None
+    begun = forces
+    if begun is not None:
+        cast("TakesForces", world).begin(begun)
     may_rest = may_slide = False
-    helped = not (engine.takes_forces and problem.is_planar and settings.unaided is not None)
+    helped = begun is not None or not (
+        engine.takes_forces and problem.is_planar and settings.unaided is not None
+    )
     # Without bound on friction even an engine that looks for rest can miss it: forces may be
     # wedged, a thousand times their pressures.
     bounded = bool(np.isfinite(problem.friction).all())
@@ -191,11 +198,10 @@ def onset(
         slow = not helped and total >= (settings.unaided or 0)
         decided = seen.verdict is not Verdict.UNDECIDED
         if slides or (slow and not decided):
-            asked = simulated or problem
-            forces = equilibrium(asked).forces
+            forces = equilibrium(asked or problem).forces
             may_rest, unasked, helped = forces is not None, False, helped or slow
             if forces is None and engine.keeps_impulses and slow and not decided:
-                least = least_motion(asked)
+                least = least_motion(asked or problem)
                 forces = None if least is None else least.forces
             if forces is not None and engine.takes_forces:
                 cast("TakesForces", world).begin(forces)

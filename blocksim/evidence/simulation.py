@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from blocksim.common.checks import is_number, require
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.evidence.recording import Recording
+
+if TYPE_CHECKING:
+    from blocksim.evidence.onset import Onset
 
 Overrides = Mapping[str, float]
 """Fields of an engine's `Settings` by name, given instead of what its rule says."""
@@ -79,24 +82,56 @@ class Reduced(Protocol):
     """What stands for all blocks of a problem in an engine: fewer, that move alike."""
 
     @property
-    def assembly(self) -> Assembly:
-        """The blocks that are simulated."""
+    def by(self) -> str:
+        """What it does, in words."""
+        ...
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Joints that may move."""
+        ...
+
+    @property
+    def forces(self) -> Array | None:
+        """What its world begins with; None for nothing."""
+        ...
+
+    def of_problem(self, problem: Problem) -> Problem:
+        """Return the problem that is simulated, from that of all blocks."""
+        ...
+
+    def asked(self, problem: Problem) -> Problem:
+        """Return the problem whose forces its world takes, from that of all blocks."""
         ...
 
     def world(self, world: World) -> World:
         """Return the world of all blocks, from that of those simulated."""
         ...
 
-    def overstrained(self, resultants: Array, mu: float, allowed: float) -> tuple[int, ...]:
-        """Return joints taken not to move that would."""
-        ...
+    def mended(
+        self,
+        first: Onset,
+        resultants: Array,
+        problem: Problem,
+        allowed: float,
+        *,
+        takes_forces: bool,
+    ) -> Reduced | None:
+        """Return this where it stands for all blocks, else what does; None: all blocks.
 
-    def parts(self, resultants: Array) -> bool:
-        """Tell whether it cannot stand for all blocks."""
-        ...
-
-    def split(self, joints: tuple[int, ...]) -> Reduced:
-        """Let more joints move."""
+        Parameters
+        ----------
+        first : Onset
+            What was seen.
+        resultants : (joints, 3) float
+            What `TellsForces.resultants` of its world says.
+        problem : Problem
+            Of all blocks, with the friction the engine takes.
+        allowed : float
+            Force beyond the strength of a joint that counts as none [mean weights].
+        takes_forces : bool
+            Whether the engine can be given some to begin with.
+        """
         ...
 
 
@@ -157,7 +192,7 @@ class Simulation:
         """The same of the blocks the engine is given."""
         if self.reduction is None:
             return self.taken
-        return replace(self.taken, assembly=self.reduction.assembly)
+        return self.reduction.of_problem(self.taken)
 
     @property
     def length(self) -> str:

@@ -5,6 +5,7 @@ from blocksim.limit.least import least_motion as least_motion
 from blocksim.limit.margins import Margins as Margins
 from blocksim.limit.margins import Thrust as Thrust
 from blocksim.limit.margins import margins as margins
+from blocksim.limit.margins import nearest_mechanism as nearest_mechanism
 from blocksim.limit.margins import thrust_range as thrust_range
 from blocksim.limit.programme import Collapse as Collapse
 from blocksim.limit.programme import Equilibrium as Equilibrium

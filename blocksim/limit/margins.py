@@ -29,6 +29,9 @@ STEP = 1e-6
 """Change of the share by which the balance of forces is differentiated."""
 ROUNDS = 60
 """Shares that are tried at most."""
+ROUGHLY, LITTLE = 0.01, 0.05
+"""How far below the least share of strength a mechanism is looked at, as a part of it; and the
+share of strength with which blocks stand so well that none is near."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -156,6 +159,39 @@ def margins(problem: Problem) -> Margins:
     )
 
 
+def nearest_mechanism(problem: Problem) -> Array | None:
+    """Find how blocks fall, or how they would with hardly less strength than they need.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+
+    Returns
+    -------
+    (blocks, 3) float or None
+        Rates x, y and rotation, as of `Equilibrium`, of blocks that fall. Of blocks that stand
+        those at which all widths and all friction are scaled to a little less than the least
+        share that stands (within `ROUGHLY`); None where a small share would do.
+    """
+    search = _Search(problem, LinearProgramme())
+    low, high, share, rates = 0.0, 1.0, 1.0, None
+    while high - low > ROUGHLY * high and high > LITTLE:
+        margin, slope, moving = search.seen(share)
+        if margin < -NOTHING:
+            low, rates = share, moving
+        else:
+            high = share
+        if low == high:
+            break
+        step = -margin / slope if slope > 0 and math.isfinite(margin) else math.nan
+        # A little below where it is expected to stand, by what decides.
+        share = (share + step) * (1 - ROUGHLY / 2)
+        if not low < share < high:
+            share = (low + high) / 2
+    return rates
+
+
 def _least_share(search: _Search, low: float, *, stands: bool = False) -> float | None:
     """Find the least share that suffices, where none below `low` does.
 
@@ -199,19 +235,23 @@ class _Search:
 
     def margin(self, share: float) -> tuple[float, float]:
         """Return the margin of `Equilibrium` at a share, and its derivative."""
+        return self.seen(share)[:2]
+
+    def seen(self, share: float) -> tuple[float, float, Array | None]:
+        """Return the margin at a share, its derivative, and the mechanism that is nearest."""
         cones = self._cones(share)
         found = most_common(cones, self._pull, self._solver)
         if not found.exists:
-            return -math.inf, math.nan
-        margin = float(found.values[-1])
+            return -math.inf, math.nan, None
+        margin, rates = float(found.values[-1]), cones.rates(found.prices)
         if not share:
-            return margin, math.nan
+            return margin, math.nan, rates
         # By the envelope theorem only the balance of forces changes.
         parts = found.values[:-1] + margin * cones.bounded
         turned = self._cones(share * (1 + STEP)).balance - cones.balance
         gained = np.asarray(turned @ parts)
         slope = float(found.prices @ gained) / (share * STEP)
-        return margin, slope
+        return margin, slope, rates
 
     def boundary(self, low: float, high: float, guess: float) -> float:
         """Find the least share at which the margin is not below 0.

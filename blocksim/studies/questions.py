@@ -151,7 +151,8 @@ def answer(known: Known, expected: ExpectEntry, method: str) -> StructureRow:
 def _judged(row: StructureRow, known: Known, expected: ExpectEntry) -> StructureRow:
     """Ask whether it stands as it is."""
     wanted = Verdict(expected.verdict)
-    seen = check(known.problem, method=row.method)
+    # Engines as they are, as arches are asked.
+    seen = check(known.problem, method=row.method, reduce=False)
     right = seen.verdict is wanted
     return replace(
         row,
@@ -220,7 +221,9 @@ def _aside(row: StructureRow, family: Family, value: float, aside: float) -> Str
     low, high = (value * (1 - aside), value * (1 + aside)) if value else (None, family.low)
     inside, beyond = (low, high) if family.stands == "low" else (high, low)
     seen = {
-        at: check(family.at(at), method=row.method) for at in (inside, beyond) if at is not None
+        at: check(family.at(at), method=row.method, reduce=False)
+        for at in (inside, beyond)
+        if at is not None
     }
     misses = [
         f"{seen[at].verdict} at {at:.9g}"

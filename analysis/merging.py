@@ -1,0 +1,197 @@
+"""Structures of which an engine gets few bodies, against all their blocks: answers, and time.
+
+Question: what does it save to merge blocks that do not part (`blocksim.evidence.merging`), and
+does it ever change an answer? The structures are those of which answers are known
+(`structure_cases.py`), and walls in running bond (`WALLS`), pushed by a share of their weight,
+whose load factor the linear programme knows. Each is asked 1 % to either side, held at rest
+and, unless `--held`, let go, with all blocks and merged, one after the other. Rows are kept as
+they come, the smallest first: a run that is stopped goes on where it was.
+
+Expected: the same verdicts, or one where all blocks leave it open, in less time.
+
+    python -m analysis.merging OUT [--engine NAME] [--most BLOCKS] [--held] [--quick]
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from analysis.command import run
+from analysis.rows import write_rows
+from analysis.saved_answers import Row, answers
+from analysis.structure_cases import COARSE, questions
+from blocksim import Verdict
+from blocksim.blocks.problem import Load, Problem
+from blocksim.evidence.merging import LEAST, Merging
+from blocksim.evidence.observation import Observation, observe
+from blocksim.kinds.files import structure_of
+from blocksim.limit import collapse
+from tests.structure_cases import names
+
+WALLS = ((1.6, 7), (2.4, 10), (3.6, 14))
+"""Lengths [m] and courses of blocks of 0.4 by 0.2 m: 31, 65 and 133 blocks."""
+QUICK = ("oppenheim_28",)
+Asked = tuple[str, str, str]
+"""Name, question, and the side: inside or outside of what stands."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """Headline numbers.
+
+    Parameters
+    ----------
+    asked, merged : int
+        Questions, and those in which the last answer was by fewer bodies than blocks.
+    false, opened, closed : int
+        Answers of the reduced structure that are wrong; that are none where all blocks have
+        one; that are right where all blocks have none.
+    whole_s, merged_s : float
+        Processor time of all.
+    slowest : float
+        Largest ratio of the times, merged over all blocks, of what takes these over a second.
+    """
+
+    asked: int
+    merged: int
+    false: int
+    opened: int
+    closed: int
+    whole_s: float
+    merged_s: float
+    slowest: float
+
+
+def wall(length: float, courses: int) -> tuple[Problem, float]:
+    """Make a wall that is pushed to the right, and find by how much of its weight it falls."""
+    made = structure_of(
+        {
+            "kind": "wall",
+            "friction": 0.7,
+            "length": length,
+            "courses": courses,
+            "block_length": 0.4,
+            "block_height": 0.2,
+        }
+    )
+    blocks = tuple(range(len(made.assembly.blocks)))
+    pushed = replace(made, live=(Load(force=(1.0, 0.0), blocks=blocks, per_weight=True),))
+    factor = collapse(pushed).load_factor
+    assert factor is not None  # noqa: S101
+    return pushed, factor
+
+
+def cases(*, quick: bool) -> Iterator[tuple[Asked, Problem]]:
+    """Return what is asked, with the problem."""
+    for length, courses in WALLS[:1] if quick else WALLS:
+        pushed, factor = wall(length, courses)
+        name = f"wall of {len(pushed.assembly.blocks)}"
+        for side, share in (("inside", 1 - COARSE), ("outside", 1 + COARSE)):
+            yield (name, "push", side), pushed.with_load(share * factor)
+    for name in QUICK if quick else names():
+        for question in questions(name):
+            value, size = question.expected, abs(question.expected) or 1.0
+            for side, sense in (("inside", 1.0), ("outside", -1.0)):
+                stands = question.name == "stands"
+                if (stands and bool(value) != (side == "inside")) or (
+                    question.name == "least friction" and value == 0
+                ):
+                    continue
+                at = value + sense * COARSE * size * question.inside
+                yield (name, question.name, side), question.at(0.0 if stands else at)
+
+
+def ask(asked: Asked, *, problems: dict[Asked, Problem], engine: str, held: bool) -> Row:
+    """Ask with all blocks, and merged."""
+    problem = problems[asked]
+
+    def timed(*, merge: bool) -> tuple[Observation, float]:
+        started = time.process_time()
+        reduction = Merging.of(problem) if merge else None
+        found = observe(problem, engine, moving=not held, reduction=reduction)
+        return found, round(time.process_time() - started, 3)
+
+    whole, whole_s = timed(merge=False)
+    merged, merged_s = timed(merge=True)
+    return {
+        "case": asked[0],
+        "question": asked[1],
+        "side": asked[2],
+        "all_blocks": whole.blocks,
+        "bodies": merged.blocks,
+        "splits": merged.splits,
+        "whole": str(whole.verdict),
+        "merged": str(merged.verdict),
+        "whole_s": whole_s,
+        "merged_s": merged_s,
+    }
+
+
+def main(
+    out: Path,
+    *,
+    quick: bool = False,
+    engine: str = "pymunk",
+    most: int = 70,
+    held: bool = False,
+) -> Result:
+    """Run the study, write its rows, and return its numbers.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of `merging_ENGINE.csv`.
+    quick : bool
+        One wall and one arch.
+    engine : str
+    most : int
+        Blocks of the largest structure asked of; of walls twice that.
+    held : bool
+        Let nothing go.
+    """
+    problems = {
+        asked: problem
+        for asked, problem in cases(quick=quick)
+        if LEAST <= len(problem.assembly.blocks) <= most * (2 if asked[1] == "push" else 1)
+    }
+    order = sorted(problems, key=lambda asked: len(problems[asked].assembly.blocks))
+    # What is loaded when it is first asked for is nobody's time.
+    ask(order[0], problems=problems, engine=engine, held=held)
+    rows = answers(
+        out / f"merging_{engine}.jsonl",
+        order,
+        partial(ask, problems=problems, engine=engine, held=held),
+        1,
+    )
+    write_rows(out / f"merging_{engine}.csv", rows)
+    return result(rows)
+
+
+def result(rows: list[Row]) -> Result:
+    """Sum up rows."""
+
+    def right(row: Row) -> Verdict:
+        return Verdict.STANDS if row["side"] == "inside" else Verdict.COLLAPSES
+
+    def ended(row: Row, which: str) -> bool:
+        return row[which] != Verdict.UNDECIDED
+
+    times = [(float(row["whole_s"] or 0), float(row["merged_s"] or 0)) for row in rows]
+    return Result(
+        asked=len(rows),
+        merged=sum(row["bodies"] != row["all_blocks"] for row in rows),
+        false=sum(ended(row, "merged") and row["merged"] != right(row) for row in rows),
+        opened=sum(ended(row, "whole") and not ended(row, "merged") for row in rows),
+        closed=sum(ended(row, "merged") and not ended(row, "whole") for row in rows),
+        whole_s=sum(whole for whole, _ in times),
+        merged_s=sum(merged for _, merged in times),
+        slowest=max((merged / whole for whole, merged in times if whole > 1), default=0.0),
+    )
+
+
+if __name__ == "__main__":
+    run(main)
