@@ -67,7 +67,7 @@ def _methods(_: str) -> str:
         error = _error(method, finest)
         cells = [_seconds(check), f"to {100 * width:g} %: {_seconds(bracket)}", error, cannot]
         rows.append([f"`{method}`", *cells])
-    return table(["method", "a check", "a bracket", "error", "it cannot see"], rows)
+    return table(["method", "a check", "a bracket", "error", "it cannot do"], rows)
 
 
 def _seconds(row: dict[str, str]) -> str:
