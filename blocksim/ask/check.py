@@ -132,7 +132,8 @@ def check(
     method : str
         `auto`, `limit`, or the name of an engine.
     settings : mapping of str to float
-        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
     must_rest : bool
         Find out as well whether it must rest, or friction may let it move
         (`blocksim.limit.starting`): a second with 8 joints, ten with 28.
