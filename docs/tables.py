@@ -83,9 +83,7 @@ def _short(value: float) -> str:
 def _error(method: str, error: float) -> str:
     if method == "theory":
         return "none, of the continuous arch"
-    return (
-        "none" if error < 1e-12 else f"{error:.0e}" if error < 1e-6 else f"{100 * error:.1g} %"
-    )
+    return "none" if error < 1e-12 else f"{100 * error:.1g} %".replace("e-0", "e-")
 
 
 def _kinds(_: str) -> str:
