@@ -34,8 +34,8 @@ FENCE = re.compile(
     flags=re.MULTILINE | re.DOTALL,
 )
 ELSEWHERE = "other machines"
-SAYS_NO = {"check", "report"}
-"""Commands that end with 1 or 3 where something falls or is undecided."""
+SAYS_NO = {"check", "report", "validate"}
+"""Commands that end with 1 or 3 where something falls, is undecided or differs."""
 OTHERS = re.compile(r"python3 -m venv |(BLOCKSIM_\w+=\S+ )?\.venv/bin/(?!blocksim)\w+")
 """Commands of others, in what is said of setting up: the README's are those of `.ci/run`."""
 LINK = re.compile(r"\]\(([^)\s:#]+)(?:#[^)]*)?\)")
@@ -115,6 +115,20 @@ def missing(shown: list[str], printed: str) -> str | None:
     return None if skip or not shown or at == len(lines) else f"more than {shown[-1]}"
 
 
+def false_answers(path: Path) -> list[str]:
+    """Return what `validate` found that is false: neither open, nor a mode beside a line."""
+    told = json.loads(path.read_text(encoding="utf-8"))
+    rows = [*told["rows"], *told["structures"]["rows"]]
+    assert len(rows) > 80
+    return [
+        f"{row.get('scenario') or row.get('structure')}: {row['miss']}"
+        for row in rows
+        if row["miss"]
+        and not row["miss"].startswith("undecided")
+        and not row["note"].startswith("on a line of the map")
+    ]
+
+
 def run(page: Path, *, long: bool) -> int:
     """Run a page in the current folder, in its order; return how many commands that were."""
     count = 0
@@ -130,6 +144,8 @@ def run(page: Path, *, long: bool) -> int:
             ran = inside(*command.split())
             ends = {0, 1, 3} if command.split()[0] in SAYS_NO else {0}
             assert ran.returncode in ends, (command, ran.stdout, ran.stderr)
+            if command.startswith("validate"):
+                assert false_answers(Path("out/validate/validate.json")) == []
             assert missing(shown, ran.stdout) is None, (command, ran.stdout)
             count += 1
     return count
