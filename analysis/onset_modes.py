@@ -12,14 +12,12 @@ the least thickness of the voussoirs (or the friction they need, where that is c
 same voussoirs at the same thickness, then with theory.
 
 Run: python -m analysis.onset_modes OUT [--engine pymunk] [--sweep N] [--rsr N] [--about N]
-[--most N]. Rows are kept in OUT/onset_modes_ENGINE.jsonl, the same command goes on after an
-interruption; they are written as OUT/onset_modes_ENGINE.csv, too.
+[--most N] [--processes N]. Rows are kept in OUT/onset_modes_ENGINE.jsonl, the same command goes
+on after an interruption; they are written as OUT/onset_modes_ENGINE.csv, too.
 """
 
 from __future__ import annotations
 
-import csv
-import datetime
 import itertools
 import math
 from collections import Counter
@@ -36,6 +34,7 @@ from matplotlib.lines import Line2D
 
 from analysis.command import run
 from analysis.mode_draws import critical_draws, draw
+from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
@@ -145,8 +144,7 @@ def ask(fine: Fine, engine: str) -> Row:
         "mode_limit": NONE if there is None else there.value,
         "mode_theory": theory_of(alpha, mu).mode.value,
         "engine": engine,
-        "version": version_of(engine),
-        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+        "engine_version": version_of(engine),
     }
 
 
@@ -159,20 +157,18 @@ def main(
     rsr: int = 230,
     about: int = 40,
     most: int = FINEST,
+    processes: int = 2,
 ) -> Result:
     """Run the study or go on with it; write rows and figure and return the numbers."""
     cases = drawn(10, 2, 1, FEWEST) if quick else drawn(sweep, rsr, about, most)
     path = out / f"onset_modes_{engine}.jsonl"
-    rows = answers(path, cases, partial(ask, engine=engine), 1 if quick else 2)
+    rows = answers(path, cases, partial(ask, engine=engine), 1 if quick else processes)
     return written(rows, path, engine)
 
 
 def written(rows: list[Row], path: Path, engine: str) -> Result:
     """Write rows as a table and as a figure beside the file they are kept in; count them."""
-    with path.with_suffix(".csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(path.with_suffix(".csv"), rows)
     _figure(rows, path.with_suffix(".png"), engine)
     called = [row for row in rows if row["mode_limit"] == Mode.RSR]
     return Result(

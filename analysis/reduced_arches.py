@@ -14,7 +14,6 @@ Answers are kept as they come: a run that was stopped goes on where it was.
 
 from __future__ import annotations
 
-import csv
 import math
 import time
 from collections.abc import Iterator
@@ -26,6 +25,7 @@ import numpy as np
 
 from analysis.command import run
 from analysis.drawing import Draw, draws
+from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import check
 from blocksim.arch.limit import least_thickness
@@ -139,10 +139,7 @@ def main(
     name = f"reduced_arches_{engine}{'_all' * all_voussoirs}"
     cases = [Case(engine, draw, ratio, reduce) for draw in drawn for ratio in SIDES]
     rows = answers(out / f"{name}.jsonl", cases, ask, processes)
-    with (out / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, list(rows[0]))
-        table.writeheader()
-        table.writerows(rows)
+    write_rows(out / f"{name}.csv", rows)
     said = [(row["verdict"], row["expected"]) for row in rows]
     times = [float(str(row["processor_s"])) for row in rows]
     right = sum(verdict == expected for verdict, expected in said)

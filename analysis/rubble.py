@@ -28,6 +28,7 @@ from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 from analysis.command import run
+from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
@@ -234,10 +235,7 @@ def main(
     rows = answers(
         out / f"rubble_{engine}.jsonl", asked, partial(ask, engine=engine), processes
     )
-    with (out / f"rubble_{engine}.csv").open("w", newline="", encoding="utf-8") as file:
-        written = csv.DictWriter(file, list(rows[0]))
-        written.writeheader()
-        written.writerows(rows)
+    write_rows(out / f"rubble_{engine}.csv", rows)
     _figure(out)
 
     def worst(name: str) -> float:

@@ -13,7 +13,6 @@ of more blocks than `MOST` are asked of `limit` only.
 
 from __future__ import annotations
 
-import csv
 import math
 import time
 from collections.abc import Callable, Iterator
@@ -25,6 +24,7 @@ from typing import Any, cast
 from scipy.optimize import bisect
 
 from analysis.command import run
+from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import Verdict
 from blocksim.ask.methods import choose
@@ -324,10 +324,7 @@ def main(
         partial(ask, moving=moving, engine=engine, aside=aside),
         processes,
     )
-    with (out / f"{kept}.csv").open("w", newline="", encoding="utf-8") as file:
-        written = csv.DictWriter(file, list(rows[0]))
-        written.writeheader()
-        written.writerows(rows)
+    write_rows(out / f"{kept}.csv", rows)
     own = [{field.name: row[field.name] for field in fields(Line)} for row in rows]
     return Result(tuple(Line(**cast("dict[str, Any]", row)) for row in own), engine)
 

@@ -30,6 +30,8 @@ NAMED = re.compile(r"<mi>(sin|cos|cot|arctan|min)</mi>")
 """Functions, which want a little room around them."""
 FIGURES = "analysis/figures"
 SHOWN = {".png", ".csv"}
+NAMING = re.compile(r"<code>[^<]*--[^<]*</code>")
+OPTION = re.compile(r"--[\w-]+")
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^()\s]+)\)")
 CODE = re.compile(r"(^```.*?^```|`[^`\n]+`)", flags=re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(
@@ -57,8 +59,11 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
 
 
 def on_page_content(content: str, **_: Any) -> str:
-    """Turn formulas into MathML, which browsers draw by themselves."""
-    return FORMULA.sub(_formula, content)
+    """Turn formulas into MathML, which browsers draw by themselves; keep options in a line."""
+    whole = NAMING.sub(
+        lambda found: OPTION.sub(r'<span class="option">\g<0></span>', found[0]), content
+    )
+    return FORMULA.sub(_formula, whole)
 
 
 def relinked(markdown: str, written: Path, page: str) -> str:

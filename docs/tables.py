@@ -67,7 +67,7 @@ def _methods(_: str) -> str:
         error = _error(method, finest)
         cells = [_seconds(check), f"to {100 * width:g} %: {_seconds(bracket)}", error, cannot]
         rows.append([f"`{method}`", *cells])
-    return table(["method", "a check", "a bracket", "error", "it cannot see"], rows)
+    return table(["method", "a check", "a bracket", "error", "it cannot do"], rows)
 
 
 def _seconds(row: dict[str, str]) -> str:
@@ -83,9 +83,7 @@ def _short(value: float) -> str:
 def _error(method: str, error: float) -> str:
     if method == "theory":
         return "none, of the continuous arch"
-    return (
-        "none" if error < 1e-12 else f"{error:.0e}" if error < 1e-6 else f"{100 * error:.1g} %"
-    )
+    return "none" if error < 1e-12 else f"{100 * error:.1g} %".replace("e-0", "e-")
 
 
 def _kinds(_: str) -> str:

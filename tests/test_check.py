@@ -85,10 +85,10 @@ LEANING = Arch(half_angle=1.0, eta=0.2, voussoirs=9).problem(0.7, lean=0.1)
 @pytest.mark.parametrize(
     ("asked", "taken", "why"),
     [
-        ({}, "limit", "blocks as built, good for any width"),
-        ({"tol": 1e-9}, "limit", "good for any width"),
-        ({"moving": True}, "direct", "moves them, good for a width of 1e-08"),
-        ({"moving": True, "tol": 1e-2}, "direct", "moves them"),
+        ({}, "limit", "the cheapest method that sees the blocks as built and is exact"),
+        ({"tol": 1e-9}, "limit", "is exact"),
+        ({"moving": True}, "direct", "can move blocks and brackets down to 1e-08"),
+        ({"moving": True, "tol": 1e-2}, "direct", "can move blocks"),
         ({"problem": LEANING}, "pybullet", "out of the plane"),
     ],
 )

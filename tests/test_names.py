@@ -69,10 +69,20 @@ def test_direct_is_of_blocksims_version() -> None:
     assert f"blocksim {package.__version__}\n" == blocksim("--version").stdout
 
 
+INSTEAD = {
+    ("bracket", "--alpha", "90"): "--friction-angle",
+    ("check", "--alpha", "90", "--mu", "1"): "--ratio",
+    ("check", "--alpha", "90"): "--friction-angle, --ratio",
+}
+"""What may be given in the place of what is missing."""
+
+
 @pytest.mark.parametrize(
     ("asked", "named"),
     [
         (("check",), "--alpha, --mu and --eta are missing"),
+        (("check", "--alpha", "90"), "--mu and --eta are missing"),
+        (("check", "--alpha", "90", "--mu", "1"), "--eta is missing"),
         (("check", "--mu", "1"), "--alpha and --eta are missing"),
         (("simulate",), "--out, --alpha, --mu and --eta are missing"),
         (("render",), "--out, --alpha and --mu are missing"),
@@ -84,6 +94,8 @@ def test_all_missing_options_are_named(asked: tuple[str, ...], named: str) -> No
     done = blocksim(*asked)
     # Who gives no half-angle may have measured the arch.
     instead = " (or --span, --rise and --thickness, in m)" if "--alpha" in named else ""
+    if asked in INSTEAD:
+        instead = f" (or {INSTEAD[asked]})"
     said = f"blocksim: {named}: must be given{instead}\n"
     assert (done.returncode, done.stderr) == (2, said)
 

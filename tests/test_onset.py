@@ -77,7 +77,9 @@ def test_brackets_close_where_there_are_two_answers(case: Case) -> None:
 def test_what_was_given_is_told() -> None:
     """The answer says whether it took forces of equilibrium to find rest."""
     case = TWO_ANSWERS[-1]
-    assert "it was given" in hold(arch_at(1.01, *case).problem(case[1]), "pymunk").onset.reason
+    assert (
+        "they were given" in hold(arch_at(1.01, *case).problem(case[1]), "pymunk").onset.reason
+    )
     alone = hold(arch_at(1.01, 90.0, 0.7, 27).problem(0.7), "pymunk").onset
     assert alone.verdict is Verdict.STANDS
     assert alone.forces is None
@@ -94,7 +96,7 @@ def test_bullet_keeps_forces_it_is_given(case: Case) -> None:
     above = hold(arch_at(1.0005, *case).problem(case[1]), "pybullet").onset
     assert below.verdict is Verdict.COLLAPSES
     assert above.verdict is Verdict.STANDS
-    assert "it was given" in above.reason
+    assert "they were given" in above.reason
 
 
 def test_forces_that_break_friction_are_not_kept() -> None:

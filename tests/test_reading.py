@@ -232,7 +232,7 @@ def test_a_converted_drawing_is_the_same_problem(tmp_path: Path) -> None:
     out = tmp_path / "wall.json"
     done = inside("convert", str(path), "--mu", "0.7", "--unit", "0.01", "--out", str(out))
     assert done.returncode == 0, done.stderr
-    assert "40 blocks, 1 supports, 100 joints" in done.stdout
+    assert "40 blocks, 1 support, 100 joints" in done.stdout
     written_ = load_structure(out)
     known = structure_of(structure(WALL))
     assert answers(written_) == pytest.approx(answers(known), rel=1e-12)

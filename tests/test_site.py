@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -51,6 +52,10 @@ def test_links_are_of_the_site_and_formulas_are_drawn(site: Path) -> None:
         assert f"<span>({number})</span>" in theory
     api = (site / "api.html").read_text(encoding="utf-8")
     assert "Half-angle of embrace alpha" in api
+    # Not broken after a dash; blocks of code to be copied stay as they are.
+    paper = (site / "theory" / "paper.html").read_text(encoding="utf-8")
+    assert '<code><span class="option">--weight</span> sector</code>' in paper
+    assert "map --phi --out map.png" in re.sub("<[^>]+>", "", paper)
 
 
 @pytest.mark.parametrize(

@@ -133,7 +133,7 @@ def test_the_same_keys_in_toml(tmp_path: Path):
     (load,) = problem.dead
     assert isinstance(load, Load)
     assert (load.blocks, load.force.tolist()) == ((0,), [0, -10])
-    assert any("1 joints found" in note and "1e-06" in note for note in problem.notes)
+    assert any("1 joint found" in note and "1e-06" in note for note in problem.notes)
 
 
 def test_given_joints_are_taken():

@@ -47,7 +47,8 @@ class Bracket(Shown):
         Exact values for the voussoirs as built and the continuous arch; `eta_limit` is 0
         where any thickness stands (some arches of three voussoirs).
     mode, mode_limit : Mode or None
-        Of the mechanism it starts with at `eta_low`; exact, at the least thickness.
+        `mode` is that of the mechanism the arch starts with at `eta_low`. `mode_limit` is that
+        of limit analysis at the least thickness.
     modes_theory : tuple of Mode
         Of the continuous arch at its least thickness: all that coincide.
     mode_in_motion : Mode or None
@@ -60,8 +61,8 @@ class Bracket(Shown):
     runs, undecided : int
         Arches tried, and those without an answer.
     blocks, splits : int or None
-        Most blocks simulated of any arch, and how many joints in all `reduce` merged and
-        had to split again; None for static methods.
+        The most blocks with which an arch was simulated, and the number of joints that `reduce`
+        had merged and had to split again. None for static methods.
     reason : str
         What the answer rests on.
     wall_s : float
@@ -130,8 +131,8 @@ def bracket(
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
 
-    Engines bisect with the onset test and let the arch go at both ends. The search
-    starts at the closed form's value, and only starts there.
+    Engines bisect with the onset test and let the arch go at both ends. The search begins at
+    the value of the closed form, and takes nothing else from it.
 
     Parameters
     ----------
@@ -148,14 +149,16 @@ def bracket(
     lean : float
         Angle by which gravity leans out of the plane [rad].
     depth : float
-        Depth out of the plane [r], which decides only where gravity leans.
+        Depth out of the plane [r]; it matters only where gravity leans.
     confirm : bool
         Let the arch go at both ends; without, an engine answers by the onset test alone.
     settings : mapping of str to float
-        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
     reduce : bool, optional
-        Simulate no more blocks than it takes (`blocksim.arch.reduction`); by default where
-        the engine says so (`Engine.reduces`) and gravity lies in the plane.
+        Simulate half of the arch, and voussoirs that stay together as one block
+        (`blocksim.arch.reduction`). By default the engine decides (`Engine.reduces`); not where
+        gravity leans out of the plane.
     progress : Progress, optional
 
     Returns

@@ -31,7 +31,7 @@ TIMES = 0.5
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ArchCheck(Check):
-    """What is told of an arch besides; its joints go from the left springing to the right.
+    """What a check says of an arch; its joints go from the left springing to the right.
 
     Parameters
     ----------
@@ -40,19 +40,22 @@ class ArchCheck(Check):
     lean : float
         Angle by which gravity leans out of the plane [rad].
     eta_limit, eta_theory : float or None
-        Least thickness of the voussoirs as built and of the continuous arch; 0 where any
-        thickness stands (some arches of three voussoirs), None where none up to 2 does.
+        Least thickness over radius, of the voussoirs as built and of the continuous arch. It is
+        0 where any thickness stands (some arches of three voussoirs), and None where no
+        thickness up to 2 stands.
     mode : Mode or None
-        How this arch starts to collapse: of the mechanism of the onset test by an engine,
-        of eqs (15) and (16) by `limit`. By `theory`, which tells of no other thickness, as
-        `mode_theory`. None where it stands or the joints form none of the modes.
+        How this arch starts to collapse. An engine takes it from the mechanism of the onset
+        test, `limit` from eqs (15) and (16). `theory` knows the mode at the least thickness
+        only, and gives that. None where the arch stands, or where its joints form none of the
+        modes.
     mode_in_motion : Mode or None
         As seen in the moving run after a displacement of `motion.EARLY`; see `Observation`.
     mode_limit : Mode or None
-        At the least thickness of the voussoirs as built, which need not be `mode`; at
-        eta = 2 where no thickness up to that stands.
+        Mode of the voussoirs as built at their least thickness, where `mode` may be another.
+        Where no thickness up to 2 stands, it is the mode at 2.
     modes_theory : tuple of Mode
-        The same of the continuous arch: all that coincide, several on a line of the map.
+        Modes of the continuous arch at its least thickness: several on a line of the map, where
+        they coincide.
     """
 
     arch: Arch
@@ -107,12 +110,15 @@ def check(
         Angle by which gravity leans out of the plane [rad]; `eta_limit` and `eta_theory`
         are those without it.
     settings : mapping of str to float
-        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
     reduce : bool, optional
-        Simulate no more blocks than it takes (`blocksim.arch.reduction`); by default where
-        the engine says so (`Engine.reduces`) and gravity lies in the plane.
+        Simulate half of the arch, and voussoirs that stay together as one block
+        (`blocksim.arch.reduction`). By default the engine decides (`Engine.reduces`); not where
+        gravity leans out of the plane.
     must_rest : bool
-        As of `blocksim.ask.check.check`: of the voussoirs as built, whatever the method.
+        Find out as well whether it must rest, or friction may let it move
+        (`blocksim.ask.check`). This is asked of the voussoirs as built, whatever the method.
     progress : Progress, optional
 
     Returns

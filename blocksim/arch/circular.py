@@ -156,7 +156,7 @@ class Arch(Shown):
         return Assembly(blocks=blocks, joints=joints, size=self.radius)
 
     def problem(self, mu: float, lean: float = 0.0) -> Problem:
-        """Ask about it under its own weight.
+        """Return the problem of this arch under its own weight.
 
         Parameters
         ----------

@@ -40,7 +40,8 @@ def simulate(
     lean : float
         Angle by which gravity leans out of the plane [rad].
     settings : mapping of str to float
-        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
     progress : Progress, optional
 
     Returns
@@ -50,7 +51,7 @@ def simulate(
     Raises
     ------
     InputError
-        If a value is out of range, or the method moves nothing.
+        If a value is out of range, or the method moves no blocks.
     MissingPart
         If the engine's library is not installed.
     """
@@ -64,7 +65,7 @@ def simulate(
 
 
 def load_recording(path: AnyPath) -> Recording:
-    """Read a recording, also one of format 1, which knew arches only.
+    """Read a recording; those of format 1, which knew arches only, are read, too.
 
     Raises
     ------

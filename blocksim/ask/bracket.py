@@ -128,8 +128,8 @@ def bracket(
 ) -> Bracket:
     """Find the value of a family's parameter at which it changes from standing to falling.
 
-    Engines search with the onset test and let the blocks go at both ends. The search starts
-    at the value of limit analysis where there is one, and only starts there.
+    Engines search with the onset test and let the blocks go at both ends. Where limit analysis
+    knows the value, the search begins there, and takes nothing else from it.
 
     Parameters
     ----------
@@ -141,7 +141,8 @@ def bracket(
     within : tuple of float, optional
         Where to search; by default where limit analysis says, within the family's range.
     settings : mapping of str to float
-        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
     reduce : bool, optional
         As of `blocksim.ask.check.check`.
     progress : Progress, optional

@@ -133,7 +133,8 @@ def check(
     method : str
         `auto`, `limit`, or the name of an engine.
     settings : mapping of str to float
-        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
     reduce : bool, optional
         Simulate blocks that do not part as one (`blocksim.evidence.merging`); by default where
         the engine says so (`Engine.merges`), gravity lies in the plane and the ground rests.

@@ -52,8 +52,8 @@ class Family:
     stands : {"low", "high"}
         At which end of a bracket it stands.
     exact : callable
-        The value at which limit analysis sees the change: None where there is none in the
-        range, inf where it stands at all values, 0 where it does down to the range's end.
+        The value at which limit analysis sees the change. None where the range has none, inf
+        where it stands at all values, 0 where it stands down to the end of the range.
     remark : callable
         What else limit analysis saw on the way, to be added to a reason.
     start : float or None

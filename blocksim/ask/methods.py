@@ -99,7 +99,7 @@ def choose(
         raise InputError("method", method, beyond)
     if moving and rung.is_static:
         able = ", ".join(ENGINES)
-        raise InputError("method", method, f"one of {able}: others move nothing")
+        raise InputError("method", method, f"one of {able}: {rung.name} moves no blocks")
     still = problem is None or (problem.is_planar and problem.shaking is None)
     if reduce and not (still and _can_reduce(rung)):
         able = ", ".join(each.name for each in ENGINES.values() if _can_reduce(each))
@@ -155,11 +155,11 @@ def chosen_words(method: str, rung: Method) -> str:
     if method != "auto":
         return ""
     if rung.is_spatial:
-        seen = "sees out of the plane"
+        seen = "can move blocks out of the plane"
     else:
-        seen = "tells of the blocks as built" if rung.is_static else "moves them"
-    width = f"a width of {rung.finest:g}" if rung.finest else "any width"
-    return f"; auto took {rung.name}: the cheapest that {seen}, good for {width}"
+        seen = "sees the blocks as built" if rung.is_static else "can move blocks"
+    fine = f"brackets down to {rung.finest:g}" if rung.finest else "is exact"
+    return f"; auto took {rung.name}, the cheapest method that {seen} and {fine}"
 
 
 def missing(method: Method) -> str | None:

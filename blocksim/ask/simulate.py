@@ -32,7 +32,8 @@ def simulate(
         Time to record [sqrt(size/g)]; by default until the verdict is certain, or, where
         the ground shakes, until the blocks lie still.
     settings : mapping of str to float
-        Of `blocksim.evidence.simulation.SETTINGS`, instead of what the engine's rule says.
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
     progress : Progress, optional
 
     Returns
@@ -42,7 +43,7 @@ def simulate(
     Raises
     ------
     InputError
-        If the method moves nothing, or cannot do what the problem asks for.
+        If the method moves no blocks, or cannot do what the problem asks for.
     MissingPart
         If the engine's library is not installed.
     """

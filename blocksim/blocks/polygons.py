@@ -30,6 +30,7 @@ from blocksim.blocks.touching import (
 )
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
+from blocksim.common.words import counted
 
 TOLERANCE = 1e-6
 """Distance within which blocks touch, in units of the size of the assembly."""
@@ -191,7 +192,7 @@ def assembly_of_bodies(
         outlines = [shape.outlines for shape in shapes]
         names = [_name(bodies, index) for index in range(len(bodies))]
         found = as_given(joints, outlines, names, size, tolerance, notes)
-        notes.append(f"{len(found)} joints as given")
+        notes.append(f"{counted(len(found), 'joint')} as given")
     _require_held([touch for touch, _ in found], bodies)
     blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
     place = {index: at for at, index in enumerate(moving)}
@@ -317,7 +318,8 @@ def _found(
     found = [sense(touch) for touch in found]
     found.sort(key=lambda touch: (touch.one, touch.other, *touch.ends[0], *touch.ends[1]))
     notes.append(
-        f"{len(found)} joints found, within {tolerance:.3g} m ({TOLERANCE:g} of the size)"
+        f"{counted(len(found), 'joint')} found, within {tolerance:.3g} m "
+        f"({TOLERANCE:g} of the size)"
     )
     if near:
         notes.append(

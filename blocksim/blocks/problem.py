@@ -114,10 +114,10 @@ class Problem(Shown):
         The parameters it was made from, and by which `kind` of generator; empty where its
         blocks were given.
     weighed : bool
-        Whether its weights are real ones: a unit weight or the blocks' own were given. Where
-        they are not only ratios of forces have a meaning.
+        Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
+        forces have a meaning.
     notes : tuple of str
-        What was mended or taken when it was read, for answers to state.
+        What was mended or assumed when it was read; answers repeat it.
 
     Raises
     ------
@@ -222,7 +222,7 @@ class Problem(Shown):
         return math.sqrt(self.assembly.size / STANDARD_GRAVITY)
 
     def with_friction(self, mu: float) -> Problem:
-        """Return the same with another friction coefficient, but for joints with their own."""
+        """Return the same with another friction coefficient; joints with their own keep it."""
         return replace(self, mu=mu)
 
     def pull(self, poses: Array | None = None) -> Array:

@@ -21,6 +21,11 @@ CRASHED = 70
 """After what should not happen: Python's own 1 would say that the arch collapses."""
 LONGEST = 1000
 """Letters of what is said of wrong input."""
+PLAIN = {
+    "is not a valid float": "must be a number",
+    "is not a valid integer": "must be a whole number",
+}
+"""What click says, and what is said instead."""
 CLOSED = 141
 """As a shell says it of the signal for a closed pipe."""
 
@@ -69,11 +74,18 @@ def _code() -> int:
     except (BlocksimError, OSError) as error:
         return _complain(str(error) or type(error).__name__)
     except click.ClickException as error:
-        return _complain(" ".join(error.format_message().split()))
+        return _complain(_plain(" ".join(error.format_message().split())))
     except Exception:
         if not interrupts.code():
             traceback.print_exc()
         return CRASHED
+
+
+def _plain(message: str) -> str:
+    """Return what click says of a wrong value, in the words of every other message."""
+    for said, plain in PLAIN.items():
+        message = message.replace(said, plain)
+    return message
 
 
 def _complain(message: str) -> int:

@@ -11,6 +11,7 @@ from blocksim.cli.output import say
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text, require_place, write_whole
+from blocksim.common.words import counted
 from blocksim.kinds.files import is_drawing, named_file, structure_of, with_friction
 
 
@@ -47,8 +48,9 @@ def convert(
     write_whole(out, lambda file: file.write(_text(table).encode()))
     assembly = problem.assembly
     say(
-        f"wrote {out}: {len(assembly.blocks)} blocks, {len(assembly.supports)} supports, "
-        f"{len(assembly.joints)} joints"
+        f"wrote {out}: {counted(len(assembly.blocks), 'block')}, "
+        f"{counted(len(assembly.supports), 'support')}, "
+        f"{counted(len(assembly.joints), 'joint')}"
     )
     for note in problem.notes:
         say(f"  {note}")

@@ -21,6 +21,7 @@ from blocksim.cli.output import progress, say
 from blocksim.cli.structures import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
+from blocksim.common.words import counted
 from blocksim.engines import ENGINES
 from blocksim.evidence.motion import MOVED
 from blocksim.evidence.observation import conclude, hold
@@ -134,11 +135,12 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
         say(f"wrote {out}")
         return
     why = ", until a block reaches the ground or a footing" if made.on_ground else ""
-    radius = "" if made.metric else " if r = 1 m"
-    pace = f"{made.slow:g} times slower than" if made.slow != 1 else "in real time,"
+    radius = "" if made.metric else " (if r = 1 m)"
+    length = made.count / made.rate
+    pace = f"{made.slow:g} times slower" if made.slow != 1 else "in real time"
     say(
-        f"wrote {out}: {made.count / made.rate:.1f} s, {pace} the "
-        f"{made.seconds:.3g} s it shows{radius}{why}"
+        f"wrote {out}: a film of {length:.1f} s: {made.seconds:.3g} s of motion{radius}, "
+        f"{pace}, and {length - made.seconds * made.slow:.1g} s at rest{why}"
     )
     for recording, moves in zip(shown, made.moves, strict=True):
         if not moves:
@@ -162,7 +164,8 @@ def export(out: Path, kind: str, recording: Recording) -> None:
     no_radius = recording.assembly.size == 1 and arch_of_problem(recording.problem)
     radius = " if r = 1 m" if no_radius else ""
     say(
-        f"wrote {out}: {len(recording.assembly.blocks)} blocks, {len(recording.times)} frames, "
+        f"wrote {out}: {counted(len(recording.assembly.blocks), 'block')}, "
+        f"{counted(len(recording.times), 'frame')}, "
         f"{recording.seconds(STANDARD_GRAVITY)[-1]:.3g} s{radius}"
     )
 

@@ -10,6 +10,7 @@ import click
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.output import progress, say
 from blocksim.common.errors import MISSING, InputError
+from blocksim.common.words import counted
 
 MET = 1e-12
 """Relative difference up to which a printed number is met."""
@@ -44,5 +45,5 @@ def paper(
         if worst <= MET
         else f"MISSES a number: {worst:.0e}"
     )
-    say(f"wrote {paths[0]}, with {len(paths) - 2} figures and {paths[1].name}")
+    say(f"wrote {paths[0]}, with {counted(len(paths) - 2, 'figure')} and {paths[1].name}")
     raise click.exceptions.Exit(int(worst > MET))

@@ -68,12 +68,19 @@ def question(
             thickness = given.thickness if given.ratio is None else given.ratio
             thick_enough = {"thickness": thickness} if thick else {}
             require_given(
-                **needed, span=given.span, rise=given.rise, mu=given_mu, **thick_enough
+                instead_of(given_mu, **thick_enough),
+                **needed,
+                span=given.span,
+                rise=given.rise,
+                mu=given_mu,
+                **thick_enough,
             )
         else:
             eta = given.eta if given.ratio is None else given.ratio
             thick_enough = {"eta": eta} if thick else {}
-            instead = "" if given.alpha is not None else IN_METRES
+            instead = instead_of(given_mu, **thick_enough)
+            if given.alpha is None:
+                instead = IN_METRES
             require_given(instead, **needed, alpha=given.alpha, mu=given_mu, **thick_enough)
     require_given(**needed)
     no_kind = "left out: it is for kinds of structures"
@@ -103,6 +110,13 @@ def _scenario(scene: str) -> Scenario:
 
 
 IN_METRES = " (or --span, --rise and --thickness, in m)"
+
+
+def instead_of(friction: float | None, **thickness: float | None) -> str:
+    """Say what may be given in the place of friction or of a thickness that is missing."""
+    others = [] if friction is not None else ["--friction-angle"]
+    others += ["--ratio" for value in thickness.values() if value is None]
+    return f" (or {', '.join(others)})" if others else ""
 
 
 def _require_ranges(given: Given) -> None:

@@ -35,7 +35,7 @@ from blocksim.cli.output import answer_with, progress, say
 from blocksim.cli.question import arch_of, joint_of, question
 from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
-from blocksim.common.errors import InputError
+from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import read_file, toml_of
 from blocksim.evidence.recording import Recording
 from blocksim.kinds import KINDS
@@ -286,7 +286,7 @@ def bracket_structure(
     known = families_of(problem)
     over = over or (THICKNESS if THICKNESS in known else None)
     if over is None:
-        raise InputError("--over", None, f"one of {', '.join(known)}")
+        raise InputError("--over", MISSING, f"one of {', '.join(known)}")
     with named_options(), progress() as report:
         answer = bracket(
             family_of(problem, over),

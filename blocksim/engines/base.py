@@ -57,8 +57,8 @@ class Settings:
     repeats : int
         Most repetitions, with finer sweeps, of a moving run that contacts started.
     farthest : float
-        Distance of a block from the origin from which on none is given [size]: coordinates
-        round off by 2e-16 of it.
+        Distance from the origin beyond which the engine is given no block [size]: coordinates
+        there round off by 2e-16 of it.
     """
 
     step: float

@@ -50,6 +50,7 @@ from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.joints import overlap_share, slip_share
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.common.words import counted
 from blocksim.engines.base import Engine, Settings, TakesForces, World, trusted
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium, least_motion
@@ -109,25 +110,26 @@ class Onset:
     @property
     def reason(self) -> str:
         """The evidence in words."""
-        size = f"{self.acceleration:.1e} g after {self.sweeps} sweeps"
+        spent = counted(self.sweeps, "sweep")
+        size = f"{self.acceleration:.1e} g, found in {spent}"
         if self.forces is not None and not self.may_slide:
             size += ", the last of them begun with forces of limit analysis"
         match self.verdict:
             case Verdict.STANDS if self.may_slide:
-                given = "held at rest, it keeps forces of equilibrium it was given"
-                return f"{given}, to {size} (friction may let it move, too)"
+                given = "contacts keep the forces of equilibrium that they were given"
+                return f"{given}, to {size}; friction may let it move, too"
             case Verdict.STANDS:
-                return f"held at rest, contact forces balance the weight to {size}"
+                return f"contact forces balance the weight to {size}"
             case Verdict.COLLAPSES:
-                return f"held at rest, it starts as a mechanism with {size}"
+                return f"no contact forces hold it: a mechanism starts with {size}"
             case Verdict.UNDECIDED if self.too_far:
                 return "a block is too far from the origin for its size"
             case Verdict.UNDECIDED if self.may_rest:
-                return f"it starts with {size}, or rests: friction allows both"
+                return f"friction allows both: it rests, or it starts with {size}"
             case Verdict.UNDECIDED if not math.isfinite(self.acceleration):
-                return f"{UNFOUND} in {self.sweeps} sweeps"
+                return f"{UNFOUND} in {spent}"
             case Verdict.UNDECIDED:
-                return f"contact forces have not converged ({size})"
+                return f"contact forces have not converged: {size}"
 
 
 def onset(

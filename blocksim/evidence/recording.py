@@ -100,7 +100,7 @@ class Recording(Shown):
 
     @property
     def mu(self) -> float:
-        """Friction coefficient of its joints, but for those with their own."""
+        """Friction coefficient of all joints that have none of their own."""
         return self.problem.mu
 
     @property

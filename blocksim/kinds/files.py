@@ -68,11 +68,12 @@ def load_structure(
     path : str or path
         Ends in .json, .toml, .dxf or .svg, or the name of a shipped one.
     changes : mapping of str to object
-        Parameters of its kind instead of those it says; `arch.thickness`: of its arch.
+        Parameters of its kind that replace those in the file; `arch.thickness` is one of its
+        arch.
     density : float, optional
         Weight per volume instead of what it says [N/m^3].
     friction : float, optional
-        Where the file says none, as drawings do not; inf allowed.
+        Friction coefficient where the file has none; a drawing never has one. inf allowed.
 
     Raises
     ------

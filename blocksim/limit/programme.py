@@ -84,10 +84,10 @@ class Collapse:
 
 
 def equilibrium(problem: Problem) -> Equilibrium:
-    """Find forces of equilibrium, as far inside their cones of friction as they can all be.
+    """Find forces of equilibrium, all as far inside their cones of friction as possible.
 
-    Each force is a sum of parts along the two edges of its cone, and the least of all these
-    parts is made as large as it can be.
+    Each force is the sum of two parts along the edges of its cone. The smallest of all these
+    parts is made as large as possible.
 
     Parameters
     ----------

@@ -67,9 +67,9 @@ class Summary:
 
     @property
     def saved_s(self) -> float | None:
-        """Time that simulating the spared arches, too, would have taken [s], about.
+        """About how long it would have taken to simulate the spared arches, too [s].
 
-        At the mean of those simulated; None where none was.
+        Each is taken to cost the mean of those simulated; None where none was.
         """
         if not self.tally.simulated:
             return None

@@ -97,7 +97,8 @@ def read_rows(folder: AnyPath) -> Iterator[dict[str, object]]:
     dict
         The question (`half_angle_deg`, `mu`, `voussoirs`, `weight`, `eta`, `ratio`,
         `asked`, `settings`), `method` that answered and its `version`, and the answer;
-        `error` is None unless there is none. Infinite friction is the text "inf".
+        `error` says why there is no answer, and is None where there is
+        one. Infinite friction is the text "inf".
 
     Raises
     ------

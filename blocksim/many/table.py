@@ -129,8 +129,8 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
 def write_csv(folder: AnyPath, path: AnyPath) -> None:
     """Write the rows of a sweep as CSV, in the order of `read_rows`: for `pandas.read_csv`.
 
-    Nothing stands for what is not there, `inf` for infinity; settings are columns of their
-    own, `settings.step`.
+    A missing value is an empty cell, infinity is `inf`. Each setting has a column of its own,
+    such as `settings.step`.
 
     Parameters
     ----------

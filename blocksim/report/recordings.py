@@ -6,6 +6,7 @@ import math
 
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.record import to_record
+from blocksim.common.words import counted
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.shaken import rocking_of
 
@@ -37,9 +38,9 @@ def recording_record(recording: Recording) -> dict[str, object]:
 def recording_lines(recording: Recording, unit: str) -> list[str]:
     """Return a recording in words; `unit` is that of lengths in which it has been made."""
     lines = [
-        f"{len(recording.times)} frames, "
+        f"{counted(len(recording.times), 'frame')}, "
         f"{recording.seconds(STANDARD_GRAVITY)[-1]:.2f} s, "
-        f"moved {recording.displacement[-1]:.2g} {unit}, state {recording.state_hash}"
+        f"moved {recording.displacement[-1]:.2g} {unit}, hash of its end {recording.state_hash}"
     ]
     kept, rocking, problem = recording.quality, rocking_of(recording), recording.problem
     said: list[str] = []

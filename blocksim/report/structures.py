@@ -16,6 +16,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import shaking_record
 from blocksim.common.version import __version__
+from blocksim.common.words import counted
 from blocksim.kinds.files import kind_behind
 from blocksim.report.carried import carried_lines, carried_record
 from blocksim.report.structuresizes import problem_size_lines, problem_size_record
@@ -110,7 +111,8 @@ def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[st
     if active:
         lines.append(f"  joints  {_few(active)}")
     if answer.mechanism is not None:
-        lines.append(f"  moves   {_few(_movers(answer.mechanism, problem.assembly))}")
+        movers = _few(_movers(answer.mechanism, problem.assembly))
+        lines.append(f"  moves   {movers} (the fastest first)")
     return lines
 
 
@@ -254,7 +256,7 @@ def described(problem: Problem) -> str:
     turned = tilt_and_lean(problem)
     assembly = problem.assembly
     said = [problem.title] if problem.title else []
-    said.append(f"{len(assembly.blocks)} blocks, {len(assembly.joints)} joints")
+    said += [counted(len(assembly.blocks), "block"), counted(len(assembly.joints), "joint")]
     said.append(f"mu {problem.mu:g}")
     if turned["tilt_deg"]:
         said.append(f"tilted {turned['tilt_deg']:g} deg")

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from blocksim.arch.circular import GRAVITY, arch_of
 from blocksim.blocks.joints import JointState
+from blocksim.common.words import counted
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
@@ -251,7 +252,7 @@ class Film:
         """Say what it is, outcome, loading and engine, above a panel."""
         size, problem = self._size, stage.recording.problem
         arch, blocks = arch_of(problem), len(stage.assembly.blocks)
-        count = f"{blocks} block" if blocks == 1 else f"{blocks} blocks"
+        count = counted(blocks, "block")
         facts = [verdict, *against(stage.recording)]
         if arch:
             head = (

@@ -22,6 +22,7 @@ from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
+from blocksim.common.words import counted
 from blocksim.view.arrows import draw_forces, draw_gravity, draw_loads
 from blocksim.view.drawing import (
     HINGES,
@@ -285,7 +286,7 @@ def _frame(figure: Figure, axes: Axes, shown: Array) -> None:
 
 def _title(axes: Axes, problem: Problem, verdict: str, told: Sequence[str] | None) -> None:
     blocks = len(problem.assembly.blocks)
-    count = f"{blocks} block" if blocks == 1 else f"{blocks} blocks"
+    count = counted(blocks, "block")
     title = textwrap.fill(problem.title or count, LINE)
     axes.set_title(title, fontsize=10.5, pad=20)
     facts = [
