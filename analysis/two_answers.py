@@ -58,6 +58,16 @@ SPEED, FAR, LONG = 1e-3, 0.05, 30.0
 """Speed of a push, way that counts as gone on, and time watched [sqrt(r/g)]."""
 SLIDING = (80.0, 0.25), (90.0, 0.3), (90.0, 0.35), (100.0, 0.42), (115.0, 0.68), (125.0, 0.84)
 """Half-angles and friction at which many arches slide in their mode."""
+BETWEEN = (
+    (7, 144.0, 2.4), (7, 146.0, 2.6), (7, 149.0, 3.2), (7, 151.5, 3.2), (7, 154.0, 3.2),
+    (7, 156.0, 3.2), (9, 150.0, 3.6), (9, 152.5, 3.6), (9, 155.0, 3.6), (9, 155.0, 4.5),
+    (11, 152.5, 4.5), (11, 155.0, 4.5), (11, 155.0, 5.5),
+    (6, 150.0, 2.4), (6, 155.0, 2.4), (6, 155.0, 3.0),
+    (8, 147.5, 2.6), (8, 150.0, 3.0), (8, 155.0, 3.0), (8, 155.0, 4.0),
+)  # fmt: skip
+"""More wide arches, also of an even number: voussoirs, half-angle and friction."""
+PUSHED = 46
+"""So many arches are pushed at random, the first with an end."""
 SHOWN, WIDE = 7, 140.0
 """Voussoirs of the arches drawn, and half-angle from which on they are [deg]."""
 BELOW, BEYOND = -1, -2
@@ -115,6 +125,7 @@ def cases() -> list[Case]:
         found += [Case(n, weight, *at) for n in (5, 7, 8) for at in SLIDING]
     found += [Case(15, "centreline", a, mu) for a in (150.0, 155.0) for mu in (4.5, 6.0, 8.0)]
     found += [Case(27, "centreline", 151.0, mu) for mu in (10.0, 13.0)]
+    found += [Case(n, "centreline", *at) for n, *at in BETWEEN]
     return [each for each in found if has_limit(each)]
 
 
@@ -166,8 +177,11 @@ def ask(case: Case) -> Row:
 def follow(case: Case, eta: float, start: Start) -> float:
     """Follow a motion to the largest thickness at which `direct`'s solver still has it."""
     solution = settled(case.problem(eta), begun(case.problem(eta), start))
-    if solution is None:
-        return eta
+    return eta if solution is None else follow_on(case, eta, solution)
+
+
+def follow_on(case: Case, eta: float, solution: Solution) -> float:
+    """Follow a solution in motion to the largest thickness that the solver finds it at."""
     step = STEP
     while step - 1 > FINE:
         further = eta * step
@@ -274,7 +288,8 @@ def main(out: Path, *, pushes: int = 1000, processes: int = 2, quick: bool = Fal
         if row["eta_followed"] and row["eta_rests"]
     ]
     asked_pushes = [Push(*end, side) for end in ends for side in (BELOW, BEYOND)]
-    asked_pushes += [Push(*ends[index % len(ends)], index) for index in range(pushes)]
+    at_random = ends[:PUSHED]
+    asked_pushes += [Push(*at_random[each % len(at_random)], each) for each in range(pushes)]
     kept = out / "two_answers_pushed.jsonl"
     run_on = answers(kept, asked_pushes, pushed, processes)
     write_rows(out / "two_answers_pushed.csv", run_on)
