@@ -45,6 +45,11 @@ FRICTIONS = 1.05, 1.2, 1.5
 """Friction times tan(alpha/n)."""
 BEFORE = THICKEST - 1e-9
 """Thickness up to which ends are looked for: from 2 on the inner faces are gone."""
+NEAR = 0.997
+"""Thickness over that of the end from which on the motion is followed."""
+POWER = 1e-11
+"""Power of the loads, over that of the fall, up to which nothing moves: many voussoirs move
+little so near the end."""
 BEYOND = 1.0005
 """Thickness over that of the end at which the rest of the arch is looked at."""
 
@@ -96,12 +101,12 @@ class Keystone:
 
     @property
     def rubs(self) -> Array:
-        """Force on the keystone at the corner that slides, over its pressure: friction is up."""
+        """Force on the keystone at the sliding corner over its pressure: friction is up."""
         return self._normal + self._mu * self._tangent
 
     @property
     def excess(self) -> float:
-        """What overturns the half beyond what the pressure does that just holds the keystone."""
+        """What overturns the half beyond what the pressure `held` does against it."""
         return self.overturning - self._upright * self.held
 
     @property
@@ -140,7 +145,9 @@ class Keystone:
         blocks = (slice(0, middle), self.foot, slide.half), (
             slice(middle, middle + 1), self.edge, slide.keystone)  # fmt: skip
         for own, about, rate in blocks:
-            acceleration[own, :2] = [rate * _turned(each - about) for each in self._centres[own]]
+            acceleration[own, :2] = [
+                rate * _turned(each - about) for each in self._centres[own]
+            ]
             acceleration[own, 2] = rate
         contacts = np.full((joints, 2), STICKS, dtype=np.int8)
         contacts[0] = OPEN, STICKS
@@ -228,9 +235,9 @@ def ask(case: Case) -> Row:
     holds = ends is not None and rest_holds(case, ends * BEYOND)
     followed = None
     if holds:
-        middle = (least + ends) / 2
-        begun = settled(case.problem(middle), Keystone(case.problem(middle)).solution())
-        followed = None if begun is None else follow_on(case, middle, begun)
+        eta = ends * NEAR
+        begun = settled(case.problem(eta), Keystone(case.problem(eta)).solution(), POWER)
+        followed = None if begun is None else follow_on(case, eta, begun, POWER)
     return {
         "voussoirs": case.voussoirs,
         "weight": case.weight,

@@ -180,12 +180,16 @@ def follow(case: Case, eta: float, start: Start) -> float:
     return eta if solution is None else follow_on(case, eta, solution)
 
 
-def follow_on(case: Case, eta: float, solution: Solution) -> float:
+def follow_on(
+    case: Case, eta: float, solution: Solution, least_power: float = LEAST_POWER
+) -> float:
     """Follow a solution in motion to the largest thickness that the solver finds it at."""
     step = STEP
     while step - 1 > FINE:
         further = eta * step
-        after = settled(case.problem(further), solution) if further < THICKEST else None
+        after = None
+        if further < THICKEST:
+            after = settled(case.problem(further), solution, least_power)
         if after is None:
             step = 1 + (step - 1) / 2
         else:
@@ -214,8 +218,13 @@ def begun(problem: Problem, start: Start) -> Solution:
     )
 
 
-def settled(problem: Problem, start: Solution) -> Solution | None:
-    """Solve the contacts at rest beginning with a motion; None where that ends in rest."""
+def settled(
+    problem: Problem, start: Solution, least_power: float = LEAST_POWER
+) -> Solution | None:
+    """Solve the contacts at rest beginning with a motion; None where that ends in rest.
+
+    That is where the power of the loads, over that of the fall without contacts, is least.
+    """
     joints, masses = problem.assembly.joint_arrays, problem.assembly.masses
     rates = rates_of(problem).reshape(len(joints.before), 3, len(masses), 3)
     rows = np.zeros((len(joints.before), 4, 6))
@@ -226,7 +235,7 @@ def settled(problem: Problem, start: Solution) -> Solution | None:
     free = problem.pull() / masses
     found = contact.solve(rows, np.zeros(rows.shape[:2]), free, start)
     power = float((problem.pull() * found.acceleration).sum())
-    moves = power > LEAST_POWER * float((problem.pull() * free).sum())
+    moves = power > least_power * float((problem.pull() * free).sum())
     return found if found.residual <= SOLVED and moves else None
 
 
