@@ -29,7 +29,7 @@ from blocksim.limit.starting import Start, rates_of
 
 DILATES = tuple(max(0.6**turn, 1e-4) for turn in range(1, 20))
 """Share of the dilatancy in each programme that gives rates to begin with."""
-TURNS = 40
+TURNS = 60
 """So often forces and rates take turns from one beginning."""
 NOTHING = 1e-9
 """Forces [mean weights], and rates where the load's is 1, that count as none."""

@@ -25,16 +25,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.figure import Figure
 
 from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
+from analysis.two_answers_map import draw
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.blocks.assembly import SUPPORT, displacement
@@ -68,8 +66,6 @@ BETWEEN = (
 """More wide arches, also of an even number: voussoirs, half-angle and friction."""
 PUSHED = 46
 """So many arches are pushed at random, the first with an end."""
-SHOWN, WIDE = 7, 140.0
-"""Voussoirs of the arches drawn, and half-angle from which on they are [deg]."""
 BELOW, BEYOND = -1, -2
 ASIDE = 0.01
 """How far from the end of the band arches are pushed."""
@@ -303,30 +299,6 @@ def main(out: Path, *, pushes: int = 1000, processes: int = 2, quick: bool = Fal
     run_on = answers(kept, asked_pushes, pushed, processes)
     write_rows(out / "two_answers_pushed.csv", run_on)
     return summary(rows, run_on)
-
-
-def draw(rows: list[Row]) -> Figure:
-    """Draw the band of seven voussoirs: thickness over friction, one colour for each angle."""
-    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
-    axes = figure.subplots()
-    mine = [row for row in rows if row["voussoirs"] == SHOWN and row["weight"] == "centreline"]
-    colours = colormaps["viridis"]
-    angles = sorted({float(row["alpha_deg"]) for row in mine if float(row["alpha_deg"]) > WIDE})
-    for index, alpha in enumerate(angles):
-        own = sorted((row for row in mine if row["alpha_deg"] == alpha), key=itemgetter("mu"))
-        mu, least = ([float(row[key]) for row in own] for key in ("mu", "eta_limit"))
-        end = [float(row["eta_moves"] or row["eta_limit"]) for row in own]
-        colour = colours(index / len(angles))
-        axes.fill_between(mu, least, end, color=colour, alpha=0.25, lw=0)
-        axes.plot(mu, least, color=colour, label=f"{alpha:g}°")
-        axes.plot(mu, end, color=colour, ls="--")
-    axes.set(
-        xlabel="friction coefficient μ",
-        ylabel="thickness-to-radius ratio η",
-        title=f"{SHOWN} voussoirs: least thickness (solid), end of the band (dashed)",
-    )
-    axes.legend(title="half-angle", frameon=False, fontsize="small")
-    return figure
 
 
 def summary(rows: list[Row], run_on: list[Row]) -> str:

@@ -143,7 +143,7 @@ def kept(problem: Problem, law: Law, motion: Motion) -> float | None:
     return least
 
 
-def main(out: Path, *, beginnings: int = 8, processes: int = 2, quick: bool = False) -> str:
+def main(out: Path, *, beginnings: int = 12, processes: int = 2, quick: bool = False) -> str:
     """Search each wall for the least push at which it may move."""
     asked = [Beginning(wall.number, seed) for seed in range(beginnings) for wall in WALLS]
     if quick:
