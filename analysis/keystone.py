@@ -33,6 +33,7 @@ from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from analysis.two_answers import THICKEST, Case, follow_on, has_limit, limit_of, settled
+from blocksim.arch.circular import Weight
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
 from blocksim.engines.contact import Solution
@@ -43,6 +44,8 @@ VOUSSOIRS = 7, 15, 27, 51, 101
 ANGLES = 150.0, 152.5, 155.0, 157.5
 FRICTIONS = 1.05, 1.2, 1.5
 """Friction times tan(alpha/n)."""
+APART: tuple[tuple[int, Weight, float, float], ...] = ((7, "sector", 147.5, 5.0),)
+"""An arch that rests just above its least thickness, and may move further up."""
 BEFORE = THICKEST - 1e-9
 """Thickness up to which ends are looked for: from 2 on the inner faces are gone."""
 NEAR = 0.997
@@ -267,6 +270,7 @@ def cases() -> list[Case]:
         for alpha in ANGLES
         for share in FRICTIONS
     ]
+    found += [Case(*each) for each in APART]
     return [each for each in found if has_limit(each)]
 
 

@@ -164,7 +164,7 @@ def summary(rows: list[Row]) -> str:
         end = "none" if direct is None else f"{direct:.6f}"
         lines.append(
             f"wall {number}: rests to {mine[0]['limit']:.6f}, may move from {moves:.6f}, "
-            f"known {known}, direct direct to {end}"
+            f"known {known}, direct moves at {end}"
         )
     worst = max(float(row["wrong"]) for row in rows if row["moves"])
     return "\n".join([*lines, f"laws broken by {worst:.1e} at most"])
