@@ -8,6 +8,8 @@ Coulomb's law lets it also start to move, and where does that band end? The end 
 - `direct`'s solver follows a motion from thickness to thickness, begun with that of the last,
   until it is no solution any more.
 
+It is asked just above the least thickness. A band that begins further up is not seen.
+
 Then `direct` is let go. 1 % below the end of the band it begins with what contacts do in the
 motion, without a push: it moves on and falls. 1 % above it is pushed in random directions, with
 a speed of 1e-3: it comes to rest. It is pushed along the motion as well.
