@@ -26,7 +26,7 @@ ANGLES = 142.5, 157.5
 """Half-angles of the first and the last colour [deg]."""
 LEFT = 58.0
 """Friction angle at which the map begins here [deg]."""
-PLACES = {Mode.RRR: (60.0, 0.5), Mode.SS: (59.6, 1.5), Mode.RRS: (86.5, 0.9),
+PLACES = {Mode.RRR: (60.0, 0.5), Mode.SS: (59.6, 1.5), Mode.RRS: (59.7, 0.8),
           Mode.RS: (86.5, 1.9)}  # fmt: skip
 """Where modes are named: friction angle [deg] and thickness."""
 MARKERS = {5: "p", 9: "v", 11: "^", 15: "s", 27: "D", 101: "*"}
