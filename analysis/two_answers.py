@@ -8,6 +8,8 @@ Coulomb's law lets it also start to move, and where does that band end? The end 
 - `direct`'s solver follows a motion from thickness to thickness, begun with that of the last,
   until it is no solution any more.
 
+It is asked just above the least thickness. A band that begins further up is not seen.
+
 Then `direct` is let go. 1 % below the end of the band it begins with what contacts do in the
 motion, without a push: it moves on and falls. 1 % above it is pushed in random directions, with
 a speed of 1e-3: it comes to rest. It is pushed along the motion as well.
@@ -25,16 +27,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.figure import Figure
 
 from analysis.command import run
 from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
+from analysis.two_answers_map import draw
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.blocks.assembly import SUPPORT, displacement
@@ -58,8 +58,16 @@ SPEED, FAR, LONG = 1e-3, 0.05, 30.0
 """Speed of a push, way that counts as gone on, and time watched [sqrt(r/g)]."""
 SLIDING = (80.0, 0.25), (90.0, 0.3), (90.0, 0.35), (100.0, 0.42), (115.0, 0.68), (125.0, 0.84)
 """Half-angles and friction at which many arches slide in their mode."""
-SHOWN, WIDE = 7, 140.0
-"""Voussoirs of the arches drawn, and half-angle from which on they are [deg]."""
+BETWEEN = (
+    (7, 144.0, 2.4), (7, 146.0, 2.6), (7, 149.0, 3.2), (7, 151.5, 3.2), (7, 154.0, 3.2),
+    (7, 156.0, 3.2), (9, 150.0, 3.6), (9, 152.5, 3.6), (9, 155.0, 3.6), (9, 155.0, 4.5),
+    (11, 152.5, 4.5), (11, 155.0, 4.5), (11, 155.0, 5.5),
+    (6, 150.0, 2.4), (6, 155.0, 2.4), (6, 155.0, 3.0),
+    (8, 147.5, 2.6), (8, 150.0, 3.0), (8, 155.0, 3.0), (8, 155.0, 4.0),
+)  # fmt: skip
+"""More wide arches, also of an even number: voussoirs, half-angle and friction."""
+PUSHED = 46
+"""So many arches are pushed at random, the first with an end."""
 BELOW, BEYOND = -1, -2
 ASIDE = 0.01
 """How far from the end of the band arches are pushed."""
@@ -115,6 +123,7 @@ def cases() -> list[Case]:
         found += [Case(n, weight, *at) for n in (5, 7, 8) for at in SLIDING]
     found += [Case(15, "centreline", a, mu) for a in (150.0, 155.0) for mu in (4.5, 6.0, 8.0)]
     found += [Case(27, "centreline", 151.0, mu) for mu in (10.0, 13.0)]
+    found += [Case(n, "centreline", *at) for n, *at in BETWEEN]
     return [each for each in found if has_limit(each)]
 
 
@@ -166,12 +175,19 @@ def ask(case: Case) -> Row:
 def follow(case: Case, eta: float, start: Start) -> float:
     """Follow a motion to the largest thickness at which `direct`'s solver still has it."""
     solution = settled(case.problem(eta), begun(case.problem(eta), start))
-    if solution is None:
-        return eta
+    return eta if solution is None else follow_on(case, eta, solution)
+
+
+def follow_on(
+    case: Case, eta: float, solution: Solution, least_power: float = LEAST_POWER
+) -> float:
+    """Follow a solution in motion to the largest thickness that the solver finds it at."""
     step = STEP
     while step - 1 > FINE:
         further = eta * step
-        after = settled(case.problem(further), solution) if further < THICKEST else None
+        after = None
+        if further < THICKEST:
+            after = settled(case.problem(further), solution, least_power)
         if after is None:
             step = 1 + (step - 1) / 2
         else:
@@ -200,8 +216,13 @@ def begun(problem: Problem, start: Start) -> Solution:
     )
 
 
-def settled(problem: Problem, start: Solution) -> Solution | None:
-    """Solve the contacts at rest beginning with a motion; None where that ends in rest."""
+def settled(
+    problem: Problem, start: Solution, least_power: float = LEAST_POWER
+) -> Solution | None:
+    """Solve the contacts at rest beginning with a motion; None where that ends in rest.
+
+    That is where the power of the loads, over that of the fall without contacts, is least.
+    """
     joints, masses = problem.assembly.joint_arrays, problem.assembly.masses
     rates = rates_of(problem).reshape(len(joints.before), 3, len(masses), 3)
     rows = np.zeros((len(joints.before), 4, 6))
@@ -212,7 +233,7 @@ def settled(problem: Problem, start: Solution) -> Solution | None:
     free = problem.pull() / masses
     found = contact.solve(rows, np.zeros(rows.shape[:2]), free, start)
     power = float((problem.pull() * found.acceleration).sum())
-    moves = power > LEAST_POWER * float((problem.pull() * free).sum())
+    moves = power > least_power * float((problem.pull() * free).sum())
     return found if found.residual <= SOLVED and moves else None
 
 
@@ -274,35 +295,12 @@ def main(out: Path, *, pushes: int = 1000, processes: int = 2, quick: bool = Fal
         if row["eta_followed"] and row["eta_rests"]
     ]
     asked_pushes = [Push(*end, side) for end in ends for side in (BELOW, BEYOND)]
-    asked_pushes += [Push(*ends[index % len(ends)], index) for index in range(pushes)]
+    at_random = ends[:PUSHED]
+    asked_pushes += [Push(*at_random[each % len(at_random)], each) for each in range(pushes)]
     kept = out / "two_answers_pushed.jsonl"
     run_on = answers(kept, asked_pushes, pushed, processes)
     write_rows(out / "two_answers_pushed.csv", run_on)
     return summary(rows, run_on)
-
-
-def draw(rows: list[Row]) -> Figure:
-    """Draw the band of seven voussoirs: thickness over friction, one colour for each angle."""
-    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
-    axes = figure.subplots()
-    mine = [row for row in rows if row["voussoirs"] == SHOWN and row["weight"] == "centreline"]
-    colours = colormaps["viridis"]
-    angles = sorted({float(row["alpha_deg"]) for row in mine if float(row["alpha_deg"]) > WIDE})
-    for index, alpha in enumerate(angles):
-        own = sorted((row for row in mine if row["alpha_deg"] == alpha), key=itemgetter("mu"))
-        mu, least = ([float(row[key]) for row in own] for key in ("mu", "eta_limit"))
-        end = [float(row["eta_moves"] or row["eta_limit"]) for row in own]
-        colour = colours(index / len(angles))
-        axes.fill_between(mu, least, end, color=colour, alpha=0.25, lw=0)
-        axes.plot(mu, least, color=colour, label=f"{alpha:g}°")
-        axes.plot(mu, end, color=colour, ls="--")
-    axes.set(
-        xlabel="friction coefficient μ",
-        ylabel="thickness-to-radius ratio η",
-        title=f"{SHOWN} voussoirs: least thickness (solid), end of the band (dashed)",
-    )
-    axes.legend(title="half-angle", frameon=False, fontsize="small")
-    return figure
 
 
 def summary(rows: list[Row], run_on: list[Row]) -> str:

@@ -104,6 +104,39 @@ def _parameters(name: str) -> str:
     return table(["parameter", "if left out", "may be", "what it is", "`--over`"], rows)
 
 
+def _walls(_: str) -> str:
+    """Walls that friction may let move below the push at which they can rest."""
+    found = list[list[str]]()
+    rows = _rows("walls_two_answers")
+    for number in sorted({row["wall"] for row in rows}):
+        mine = [row for row in rows if row["wall"] == number and row["moves"]]
+        best = min(mine, key=lambda row: float(row["moves"]))
+        known = best["known"] and f"{float(best['known']):.6g}"
+        cells = [f"{float(best['limit']):.5f}", f"{float(best['moves']):.5f}", known or "-"]
+        below = 1 - float(best["moves"]) / float(best["limit"])
+        found.append([number, best["blocks"], *cells, f"{100 * below:.1f} %"])
+    return table(
+        ["wall", "blocks", "can rest up to", "may move from", "known before", "below"], found
+    )
+
+
+def _keystone(_: str) -> str:
+    """How wide the band of the keystone's motion is, for each number of voussoirs."""
+    found = list[list[str]]()
+    rows = [row for row in _rows("keystone") if row["rest_holds"] == "True"]
+    for number in sorted({int(row["voussoirs"]) for row in rows}):
+        mine = [row for row in rows if int(row["voussoirs"]) == number]
+        least = min(float(row["mu"]) for row in mine)
+        wide = max(float(row["eta_end"]) / float(row["eta_limit"]) - 1 for row in mine)
+        found.append([str(number), f"{least:.3g}", f"{100 * wide:.1f} %"])
+    return table(["voussoirs", "least friction asked", "widest band"], found)
+
+
+def _rows(name: str) -> list[dict[str, str]]:
+    with (ROWS / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def _commands(_: str) -> str:
     """Every command with its options, as `--help` has them; shared ones once, at the end."""
     group = app
@@ -161,6 +194,8 @@ TABLES: dict[str, Callable[[str], str]] = {
     "commands": _commands,
     "validated": of_validation,
     "example": _example,
+    "walls": _walls,
+    "keystone": _keystone,
 }
 
 

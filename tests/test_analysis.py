@@ -403,6 +403,26 @@ def test_the_timings_kept_with_the_code_can_be_compared_with() -> None:
         assert benchmark.stored(path) == record.seconds
 
 
+def test_the_keystone_ends_its_motion_where_the_closed_form_says(tmp_path: Path) -> None:
+    said = study("keystone").main(tmp_path, processes=1, quick=True)
+    assert "2 arches, 2 of which the rest holds" in said
+    assert "closed form and motion followed within 0.002% at 2" in said
+    with (tmp_path / "keystone.csv").open(newline="") as file:
+        seven, many = csv.DictReader(file)
+    assert (seven["voussoirs"], many["voussoirs"]) == ("7", "101")
+    # Branch and bound: tests/test_starting.py.
+    assert 1.38 < float(seven["eta_end"]) / float(seven["eta_limit"]) < 1.39
+    assert 1 < float(many["eta_end"]) / float(many["eta_limit"]) < 1.02
+
+
+def test_the_first_wall_may_move_below_the_push_at_which_it_can_rest(tmp_path: Path) -> None:
+    said = study("walls_two_answers").main(tmp_path, processes=1, quick=True)
+    assert "wall 1: rests to 0.642859, may move from 0.638982, known 0.638982" in said
+    with (tmp_path / "walls_two_answers.csv").open(newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert float(row["wrong"]) < 1e-9
+
+
 @pytest.mark.long
 def test_costs_are_measured_and_answers_right(tmp_path: Path) -> None:
     costs = study("costs").main(tmp_path, quick=True)

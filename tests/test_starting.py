@@ -154,32 +154,6 @@ def test_the_command_says_it() -> None:
     assert found["rest"] == "must"
 
 
-def test_the_map_of_two_answers_draws_both_lines_of_each_angle() -> None:
-    study = import_module("analysis.two_answers")
-    rows = [
-        {
-            "voussoirs": 7,
-            "weight": "centreline",
-            "alpha_deg": alpha,
-            "mu": mu,
-            "eta_limit": 1.0,
-            "eta_moves": 1.4 if mu > 2 else None,
-        }
-        for alpha in (145.0, 155.0)
-        for mu in (3.0, 2.0)
-    ]
-    (axes,) = study.draw(rows).axes
-    lines = {
-        (line.get_label() if line.get_linestyle() == "-" else "end"): line.get_xydata().tolist()
-        for line in axes.lines
-    }
-    assert lines == {
-        "145°": [[2.0, 1.0], [3.0, 1.0]],
-        "155°": [[2.0, 1.0], [3.0, 1.0]],
-        "end": [[2.0, 1.0], [3.0, 1.4]],
-    }
-
-
 @pytest.mark.long
 def test_two_methods_find_the_same_end_of_the_band_and_pushes_agree(tmp_path: Path) -> None:
     said = import_module("analysis.two_answers").main(
