@@ -84,12 +84,10 @@ def divide_half_angle(mu: float) -> float:
     thrusts, friction_angle = _inner_thrusts(mu), math.atan(mu)
     short = float(thrusts.short[0])
     if short > 0.5:
-        # Here it is h that is small.
-        thrust = float(thrusts.thrust[0])
-        return root(
-            lambda a: thrust * math.sin(a - friction_angle) - a * math.cos(a - friction_angle),
-            friction_angle,
-            friction_angle + math.pi / 2,
+        # Here it is h that is small, and how far the divide is from its largest.
+        thrust, largest = float(thrusts.thrust[0]), friction_angle + math.pi / 2
+        return largest - root(
+            lambda d: thrust * math.cos(d) - (largest - d) * math.sin(d), 0.0, math.pi / 2
         )
     return root(
         lambda a: shoulder_slip(a, mu, short), friction_angle, friction_angle + math.pi / 2
