@@ -130,7 +130,7 @@ def test_iso_lines_and_divide() -> None:
     assert iso_half_angle(3.0, np.array([1.0, math.inf])).mu.size == 0
 
 
-@pytest.mark.parametrize("mu", [1e-9, 0.3, 1.0, 3.0, 30.0, 1e8, 1e12, 1e300])
+@pytest.mark.parametrize("mu", [1e-9, 0.3, 1.0, 3.0, 1e8, 1e12, 1e300])
 def test_the_divide_for_any_friction(mu: float) -> None:
     """From (8) and (9) in 50 digits; beyond 1e8 it is pi within round-off of 1/mu."""
     found = regions.divide_half_angle(mu)
