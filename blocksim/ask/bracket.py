@@ -401,7 +401,6 @@ def _sought(
 
     A bisection knows values only of which more is safer: of others it is given the inverse.
     """
-
     low, high = within
 
     def turned(value: float) -> float:

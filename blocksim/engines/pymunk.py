@@ -167,7 +167,7 @@ class _Space:
         return pymunk.Poly(body, corners, radius=radius)
 
     def chooses(self, one: pymunk.Shape, other: pymunk.Shape) -> bool:
-        """Tell whether they may touch: two sides of a joint, or polygons that no joint holds."""
+        """Tell whether two may touch: sides of a joint, or polygons that no joint holds."""
         if one in self._polygons:
             return self._solids.may_meet(self._polygons[one], self._polygons[other])
         return self._shapes[one][0] == self._shapes[other][0]
