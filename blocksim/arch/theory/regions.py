@@ -84,11 +84,15 @@ def divide_half_angle(mu: float) -> float:
     thrusts, friction_angle = _inner_thrusts(mu), math.atan(mu)
     short = float(thrusts.short[0])
     if short > 0.5:
-        # Here it is h that is small, and how far the divide is from its largest.
+        # Here it is h that is small.
         thrust, largest = float(thrusts.thrust[0]), friction_angle + math.pi / 2
-        return largest - root(
-            lambda d: thrust * math.cos(d) - (largest - d) * math.sin(d), 0.0, math.pi / 2
-        )
+
+        def slips(angle: float) -> float:
+            aside = angle - friction_angle
+            return thrust * math.sin(aside) - angle * math.cos(aside)
+
+        # With friction above 1e7 the thrust is less than what cosines round off.
+        return largest if slips(largest) <= 0 else root(slips, friction_angle, largest)
     return root(
         lambda a: shoulder_slip(a, mu, short), friction_angle, friction_angle + math.pi / 2
     )
