@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import ParamSpec, TypeVar
+from inspect import Parameter, signature
+from pathlib import Path
+from typing import Annotated, ParamSpec, TypeVar
 
 import click
 
-from blocksim.cli.arguments import command_of
+from blocksim.cli.arguments import Argument, Option, command_of
 
 Asked = ParamSpec("Asked")
 Found = TypeVar("Found")
+ABOUT = "Folder for what is found."
 
 
 def run(main: Callable[Asked, Found], show: Callable[[Found], object] = str) -> None:
@@ -21,4 +24,7 @@ def run(main: Callable[Asked, Found], show: Callable[[Found], object] = str) -> 
     def command(*args: Asked.args, **options: Asked.kwargs) -> None:
         click.echo(show(main(*args, **options)))
 
+    needed = signature(main).parameters["out"].default is Parameter.empty
+    folder = Argument(ABOUT, folder=True) if needed else Option(ABOUT, folder=True)
+    command.__annotations__ = {**main.__annotations__, "out": Annotated[Path, folder]}
     command_of(command).main()

@@ -226,6 +226,16 @@ MUTATIONS = (
         "test_strange_input.py",
     ),
     Mutation(
+        "the search leaves its range", "ask/search.py",
+        "lowest = max(eta, self._floor)", "lowest = eta",
+        "test_bracket.py",
+    ),
+    Mutation(
+        "old spaces wait for the collector", "engines/pymunk.py",
+        "weakref.finalize(self, _let_go, space)", "pass",
+        "test_pymunk.py",
+    ),
+    Mutation(
         "a slash at the end is passed over", "cli/arguments.py",
         'if not self._folder and str(value).endswith("/"):', "if False:",
         "test_strange_input.py",

@@ -40,6 +40,24 @@ def test_every_study_finds_what_it_takes_from_blocksim(path: Path) -> None:
     assert study(path.stem)
 
 
+@pytest.mark.parametrize("end", ["", "/", "//"])
+def test_a_study_takes_a_folder_with_a_slash(
+    end: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def main(out: Path, *, quick: bool = False) -> str:
+        """Tell what was asked."""
+        return f"{out} {quick}"
+
+    monkeypatch.setattr("sys.argv", ["study", f"{tmp_path}/rows{end}", "--quick"])
+    with pytest.raises(SystemExit) as ended:
+        study("command").run(main)
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"{tmp_path}/rows True\n"
+
+
 def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> None:
     result = study("random_arches").main(tmp_path, quick=True)
     assert result.arches == result.confirmed == result.same_mode == 4

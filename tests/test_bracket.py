@@ -139,6 +139,26 @@ def test_never_an_answer(guess: float, tol: float) -> None:
     assert search.undecided == search.runs == len(asked) < 60
 
 
+@pytest.mark.parametrize("verdict", [Verdict.STANDS, Verdict.COLLAPSES, Verdict.UNDECIDED])
+@given(st.floats(1e-9, 1e9), st.floats(1.0, 1e6), st.floats(0.1, 10.0))
+def test_nothing_beyond_the_range_is_asked(
+    verdict: Verdict, floor: float, wide: float, guess: float
+) -> None:
+    """Nor is the range left before both of its ends have had their say."""
+    asked: list[float] = []
+
+    def judge(value: float) -> Answer:
+        asked.append(value)
+        return Answer(verdict, math.nan)
+
+    ceiling = floor * wide
+    Bisection(judge, floor=floor, ceiling=ceiling).expand(guess * math.sqrt(floor * ceiling))
+    assert floor <= min(asked)
+    assert max(asked) <= ceiling
+    assert verdict is Verdict.STANDS or max(asked) == ceiling
+    assert verdict is Verdict.COLLAPSES or min(asked) == floor
+
+
 @pytest.mark.parametrize("weight", ["centreline", "sector"])
 @pytest.mark.parametrize(
     ("degrees", "mu"), [(90, 0.7), (125, 0.9), (145, 1.6), (148, 1.8), (90, 0.35)]

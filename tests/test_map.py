@@ -2,6 +2,7 @@
 
 import math
 
+import exact
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -127,6 +128,16 @@ def test_iso_lines_and_divide() -> None:
     # Fig. 13: constant from the line of first sliding on.
     assert line.eta[-1] == pytest.approx(0.3849612500740051, rel=1e-13)
     assert iso_half_angle(3.0, np.array([1.0, math.inf])).mu.size == 0
+
+
+@pytest.mark.parametrize("mu", [1e-9, 0.3, 1.0, 3.0, 1e8, 1e12, 1e300])
+def test_the_divide_for_any_friction(mu: float) -> None:
+    """From (8) and (9) in 50 digits; beyond 1e8 it is pi within round-off of 1/mu."""
+    found = regions.divide_half_angle(mu)
+    if mu < 1e8:
+        assert found == pytest.approx(float(exact.divide_half_angle(mu, found)), rel=1e-12)
+    else:
+        assert math.pi - found == pytest.approx(1 / mu, abs=5e-16, rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,11 @@ insertion, which process runs it. Energy never grows.
 
 from __future__ import annotations
 
+import gc
 import math
 import subprocess
 import sys
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -51,6 +53,25 @@ ARCHES = [
     (155, math.inf, 14, "centreline", Mode.R),
 ]
 SMALL = Arch(half_angle=math.pi / 2, eta=0.11, voussoirs=13)
+
+
+def test_a_space_goes_without_pythons_collector() -> None:
+    """What chooses holds its space, in pymunk: 2,000 checks grew by 5 MB of old ones."""
+    engine, problem = get_engine("pymunk"), SMALL.problem(0.3)
+    gc.collect()
+    gc.disable()
+    try:
+        world = engine.build(problem, replace(engine.rule(problem.assembly), step=0.02))
+        world.hold(100)
+        world.advance(60)
+        assert np.abs(world.poses()[:, 2]).max() > 0.01
+        assert world._solids.loose or world._polygons
+        space = weakref.ref(world._space)
+        assert space() is not None
+        del world
+        assert space() is None
+    finally:
+        gc.enable()
 
 
 @pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)

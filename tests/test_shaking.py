@@ -369,6 +369,9 @@ def test_an_amplitude_is_bracketed() -> None:
     assert found.high > 0.5 * 0.995
     assert found.high / found.low < 1.06
     assert (found.stands, found.limit) == ("low", None)
+    # A range in which it stands all over, although it starts with 0.5 g.
+    less = bracket(family_of(problem, "amplitude"), method="pymunk", within=(0.0, 1e-4))
+    assert (less.low, less.high) == (1e-4, None)
     still = structure_of(scenes("pulse_1x4_05")[0])
     with pytest.raises(InputError, match="the ground is at rest"):
         family_of(still, "amplitude")

@@ -99,6 +99,27 @@ def test_direct_brackets_the_tilt(stack: str) -> None:
     assert answer["confirmed"] is True
 
 
+@pytest.mark.parametrize("method", ["direct", "pymunk"])
+@pytest.mark.parametrize(
+    ("over", "within", "ends"),
+    [
+        ("load", (0, 1e-9), {"low": 1e-9, "high": None}),
+        ("load", (0.1, 0.2), {"low": 0.2, "high": None}),
+        ("load", (0.5, 0.9), {"low": None, "high": 0.5}),
+        ("mu", (0.03, 0.07), {"low": 0.07, "high": None}),
+        ("mu", (0.3, 0.7), {"low": None, "high": 0.3}),
+    ],
+)
+def test_no_answer_is_beyond_the_range_given(
+    stack: str, method: str, over: str, within: tuple[float, float], ends: dict[str, float]
+) -> None:
+    """It changes at 0.4, over friction at 0.2 under half of that load."""
+    load = ("--load", "0.2") if over == "mu" else ()
+    words = ["--over", over, "--within", *map(str, within), "--method", method, *load]
+    answer = json.loads(blocksim("bracket", stack, *words, "--json").stdout)
+    assert {end: answer[end] for end in ends} == ends
+
+
 def test_a_structure_is_let_go_and_read_back(stack: str, tmp_path: Path) -> None:
     out = tmp_path / "run.npz"
     done = blocksim("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", str(out))

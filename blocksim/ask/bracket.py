@@ -182,7 +182,7 @@ def bracket(
     elif chosen.is_static:
         found = _by_limit(family, exact)
     elif probe.shaking is not None:
-        start = family.start or low + GUESS * (high - low)
+        start = min(max(family.start or low + GUESS * (high - low), low), high)
         found = _shaken(family, chosen.name, start, (low, high), tol, settings, progress)
     else:
         known = exact and math.isfinite(exact) and low <= exact <= high
@@ -417,11 +417,12 @@ def _sought(
 
     A bisection knows values only of which more is safer: of others it is given the inverse.
     """
+    low, high = within
 
     def turned(value: float) -> float:
-        return value if more_is_safer else 1 / value
+        # The inverse of an inverse is rounded, and no value beyond the range is asked.
+        return value if more_is_safer else min(max(1 / value, low), high)
 
-    low, high = within
     floor, ceiling = (low, high) if more_is_safer else (1 / high, 1 / low)
     search = Bisection(
         lambda strength: judge(turned(strength)),
@@ -430,7 +431,7 @@ def _sought(
         ceiling=ceiling,
         name=name,
     )
-    search.expand(turned(start))
+    search.expand(start if more_is_safer else 1 / start)
     search.bisect(tol)
     falls, stands = (None if end is None else turned(end) for end in (search.low, search.high))
     return search, falls, stands

@@ -94,8 +94,8 @@ class Bisection:
 
     def expand(self, guess: float) -> None:
         """Step away from a guess, ever farther, until both answers have been had."""
-        step = FIRST_STEP
-        eta = min(guess * (1 + step), self._most)
+        step, guess = FIRST_STEP, min(max(guess, self._floor), self._most)
+        eta = lowest = min(guess * (1 + step), self._most)
         self._progress(0.0, f"trying {self._name} = {eta:.6g}")
         self.probe(eta)
         while self.high is None and eta < self._most:
@@ -105,10 +105,11 @@ class Bisection:
         if self._ceiling() is None:
             return
         step, eta = FIRST_STEP, guess
-        while self.low is None and eta > self._floor:
+        while self.low is None and lowest > self._floor:
             eta *= 1 - min(step, 0.5)
             step *= 2
-            self.probe(eta)
+            lowest = max(eta, self._floor)
+            self.probe(lowest)
 
     def bisect(self, tol: float) -> None:
         """Narrow the bracket until its relative width is `tol` or darkness fills it."""

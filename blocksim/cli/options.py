@@ -34,7 +34,10 @@ Over = Annotated[
 ]
 Within = Annotated[
     tuple[float, float] | None,
-    Option(metavar="LOW HIGH", help="Where to search, instead of where limit analysis says."),
+    Option(
+        metavar="LOW HIGH",
+        help="Where an engine searches, instead of where limit analysis says.",
+    ),
 ]
 Set = Annotated[
     list[str] | None,

@@ -85,12 +85,14 @@ def divide_half_angle(mu: float) -> float:
     short = float(thrusts.short[0])
     if short > 0.5:
         # Here it is h that is small.
-        thrust = float(thrusts.thrust[0])
-        return root(
-            lambda a: thrust * math.sin(a - friction_angle) - a * math.cos(a - friction_angle),
-            friction_angle,
-            friction_angle + math.pi / 2,
-        )
+        thrust, largest = float(thrusts.thrust[0]), friction_angle + math.pi / 2
+
+        def slips(angle: float) -> float:
+            aside = angle - friction_angle
+            return thrust * math.sin(aside) - angle * math.cos(aside)
+
+        # With friction above 1e7 the thrust is less than what cosines round off.
+        return largest if slips(largest) <= 0 else root(slips, friction_angle, largest)
     return root(
         lambda a: shoulder_slip(a, mu, short), friction_angle, friction_angle + math.pi / 2
     )
