@@ -38,6 +38,8 @@ EXACT = 1e-18
 """Yield of contacts left in the onset test [g]."""
 PRECISION = 1e-12
 """Yield of contacts left in a moving step [g]."""
+HALVINGS = 3
+"""How often a step that is not solved is halved."""
 PENETRATION = 1e-3
 """Of a collapse until its verdict is certain; falling blocks may do worse on impact."""
 CLOSED = 1e-12
@@ -112,7 +114,17 @@ class Blocks:
                 self._move(whole / count)
         self._balance.look(self._poses, self._velocities, self._velocities)
 
-    def _move(self, step: float) -> None:
+    def _move(self, step: float, halvings: int = HALVINGS) -> None:
+        """Take a step; in two halves where it is not solved as a whole."""
+        before = self.__dict__.copy()
+        self._go(step)
+        if halvings and before["_residual"] <= RESIDUAL < self._residual:
+            self.__dict__.update(before)
+            for _ in range(2):
+                if self._residual <= UNSOLVED:
+                    self._move(step / 2, halvings - 1)
+
+    def _go(self, step: float) -> None:
         self._looked = self._poses + step / 2 * self._velocities
         self._pull()
         self._shake(step)
