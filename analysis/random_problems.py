@@ -307,9 +307,7 @@ def _family(problem: Problem, kind: str, over: str) -> Question | None:
     low, high = RANGES[over]
     if critical is None or not low < critical < high:
         return None
-    return Question(
-        kind=kind, over=over, at=family.at, critical=critical, stands=family.stands
-    )
+    return Question(kind=kind, over=over, at=family.at, critical=critical, stands=family.stands)
 
 
 def _column(problem: Problem, table: Any) -> Question | None:
