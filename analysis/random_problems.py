@@ -1,4 +1,4 @@
-"""Random problems of all shapes: arches, the shipped kinds, walls, assemblies; and their images.
+"""Random problems: arches, the shipped kinds, walls, assemblies; and their images.
 
 A `Question` is a problem for each value of one parameter (thickness, load, tilt, friction,
 overhang), and the value from which on it falls, or stands. `drawn` draws one; `mirrored` and
@@ -34,7 +34,7 @@ ARCH_KINDS = tuple(name for name, kind in KINDS.items() if kind.is_arch)
 OTHER_KINDS = (*(name for name in KINDS if name not in ARCH_KINDS), "wall")
 """Walls are drawn twice as often."""
 GROUPS = ("ring", "arch") * 5 + ("kind",) * 5 + ("assembly",) * 5
-"""What the problems are of, in turn: arches of the map, kinds of arches, other kinds, polygons."""
+"""What the problems are of, in turn: arches of the map, other arches, kinds, polygons."""
 STEEPEST = 85.0
 """Largest tilt that is asked about [deg]."""
 RANGES = {

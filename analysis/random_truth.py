@@ -1,9 +1,9 @@
 """Ten thousand random problems by every method, each answer held to a proof.
 
-Question: is any answer of `limit`, `direct`, pymunk or pybullet false, how many are open, and does
-an answer hang on anything but the question? Arches of the map, all kinds of structures, walls and
-assemblies of polygons (`random_problems.py`) are asked about at 0.5 to 2 times the load, tilt,
-friction, thickness or overhang at which they fall, 0.1 % from it at the nearest.
+Question: is any answer of `limit`, `direct`, pymunk or pybullet false, how many are open, and
+does an answer hang on anything but the question? Arches of the map, all kinds of structures,
+walls and assemblies of polygons (`random_problems.py`) are asked about at 0.5 to 2 times the
+load, tilt, friction, thickness or overhang at which they fall, 0.1 % from it at the nearest.
 
 Truth is none of the methods' own: `certificates.py` proves by plain statics that forces of
 equilibrium exist, or that none do. That they exist means that blocks *can* rest: where joints
@@ -180,13 +180,9 @@ def again(index: int, change: str) -> Row:
 
 def elsewhere(indices: Sequence[int], seed: int, threads: int) -> list[list[str]]:
     """Return the verdicts of a new process, by each problem's methods, in the order given."""
-    programme = (
-        "import json, sys; from analysis.random_truth import *; "
-        "print(json.dumps([[said(i, m)[0] for m in methods_of(i)] for i in json.load(sys.stdin)]))"
-    )
     counts = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), str(threads))
     asked = subprocess.run(  # noqa: S603
-        [sys.executable, "-c", programme],
+        [sys.executable, "-c", "from analysis.random_truth import reply; reply()"],
         input=json.dumps(list(indices)),
         capture_output=True,
         check=True,
@@ -195,6 +191,12 @@ def elsewhere(indices: Sequence[int], seed: int, threads: int) -> list[list[str]
         text=True,
     )
     return json.loads(asked.stdout)
+
+
+def reply() -> None:
+    """Answer a list of problems on standard input."""
+    told = [[said(i, m)[0] for m in methods_of(i)] for i in json.load(sys.stdin)]
+    json.dump(told, sys.stdout)
 
 
 def main(out: Path, *, quick: bool = False, problems: int = PROBLEMS) -> Result:
@@ -210,9 +212,8 @@ def main(out: Path, *, quick: bool = False, problems: int = PROBLEMS) -> Result:
         How many; rows of those asked before are kept.
     """
     # What takes longest is asked last.
-    order = sorted(
-        QUICK if quick else range(problems), key=lambda each: is_of(each, "pybullet")
-    )
+    indices = QUICK if quick else range(problems)
+    order = sorted(indices, key=lambda index: is_of(index, "pybullet"))
     rows = answers(out / "random_truth.jsonl", [case(each) for each in order], ask, 1)
     write_rows(out / "random_truth.csv.gz", rows)
     for row in rows:

@@ -4,9 +4,9 @@ A quoted number is followed by a comment that names the file of rows and what it
 
     none false of 1,700<!-- no_slip: count(ratio > 0) --> arches
 
-The file is `analysis/figures/NAME.csv`, or that packed, `.csv.gz`; its columns are arrays of that name. A number must be
-what the rows say, rounded to the digits that are quoted. `python docs/quotes.py` lists those
-that are not.
+The file is `analysis/figures/NAME.csv`, or that packed, `.csv.gz`; its columns are arrays of
+that name. A number must be what the rows say, rounded to the digits that are quoted. `python
+docs/quotes.py` lists those that are not.
 """
 
 from __future__ import annotations

@@ -22,7 +22,6 @@ from blocksim import Problem, collapse, structure_of
 from blocksim.ask.check import check
 from blocksim.evidence.verdict import Verdict
 
-
 CHANGES = ("", "mirrored", "renumbered")
 
 
@@ -63,7 +62,7 @@ def test_wrong_forces_and_velocities_prove_nothing() -> None:
     assert unbalanced(matrix, loads, held, free) < 1e-12
     assert unbalanced(matrix, loads, 1.01 * held, free) == pytest.approx(0.01)
     # What pulls does not count.
-    assert unbalanced(matrix, loads, held + [0.5, 0.5, -0.5, -0.5], free) > 0.1
+    assert unbalanced(matrix, loads, held + np.array([0.5, 0.5, -0.5, -0.5]), free) > 0.1
     # To rise takes power, to sink closes the joint, to slide along it too, as it has to open.
     assert needed(matrix, loads, np.array([0.0, 1.0, 0.0]), free) == math.inf
     assert needed(matrix, loads, np.array([0.0, -1.0, 0.0]), free) == pytest.approx(1.0)
