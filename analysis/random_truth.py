@@ -181,7 +181,7 @@ def again(index: int, change: str) -> Row:
 def elsewhere(indices: Sequence[int], seed: int, threads: int) -> list[list[str]]:
     """Return the verdicts of a new process, by each problem's methods, in the order given."""
     counts = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), str(threads))
-    asked = subprocess.run(  # noqa: S603
+    asked = subprocess.run(
         [sys.executable, "-c", "from analysis.random_truth import reply; reply()"],
         input=json.dumps(list(indices)),
         capture_output=True,
