@@ -91,6 +91,7 @@ def test_random_assemblies_fall_at_the_load_of_the_linear_programme(tmp_path: Pa
     assert (tmp_path / "random_assemblies.png").stat().st_size > 0
 
 
+@pytest.mark.long
 def test_random_problems_are_answered_as_is_proved(tmp_path: Path) -> None:
     module = study("random_truth")
     result = module.main(tmp_path, quick=True)
@@ -105,7 +106,9 @@ def test_random_problems_are_answered_as_is_proved(tmp_path: Path) -> None:
     with gzip.open(tmp_path / "random_truth.csv.gz", "rt", newline="") as file:
         rows = list(csv.DictReader(file))
     assert {row["proved"] for row in rows} == {"stands", "collapses"}
-    assert {"arch of the map", "wall", "rubble"} < {row["kind"] for row in rows}
+    kinds = {row["kind"] for row in rows}
+    assert {"arch of the map", "rubble"} < kinds
+    assert any(kind.startswith("random") for kind in kinds)
     # What is false, open or not proved would be counted.
     fell, stood = (
         next(row for row in rows if row["proved"] == proved)
