@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import hashlib
 import io
 import os
@@ -44,6 +45,7 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, object]]) -> None:
     Parameters
     ----------
     path : Path
+        Packed where it ends in .gz.
     rows : sequence of mapping
         At least one; all with the same keys. Rows that say what made them keep that.
     """
@@ -53,4 +55,7 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, object]]) -> None:
     table.writeheader()
     table.writerows({**row, **made} for row in rows)
     make_folder(path.parent)
-    write_whole(path, lambda file: file.write(text.getvalue().encode()))
+    written = text.getvalue().encode()
+    # Without a time, the same rows are the same file.
+    whole = gzip.compress(written, mtime=0) if path.suffix == ".gz" else written
+    write_whole(path, lambda file: file.write(whole))

@@ -4,14 +4,15 @@ A quoted number is followed by a comment that names the file of rows and what it
 
     none false of 1,700<!-- no_slip: count(ratio > 0) --> arches
 
-The file is `analysis/figures/NAME.csv`; its columns are arrays of that name. A number must be
-what the rows say, rounded to the digits that are quoted. `python docs/quotes.py` lists those
-that are not.
+The file is `analysis/figures/NAME.csv`, or that packed, `.csv.gz`; its columns are arrays of
+that name. A number must be what the rows say, rounded to the digits that are quoted. `python
+docs/quotes.py` lists those that are not.
 """
 
 from __future__ import annotations
 
 import csv
+import gzip
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -85,7 +86,13 @@ def evaluated(file: str, expression: str) -> float:
 @cache
 def columns(file: str) -> dict[str, np.ndarray]:
     """Return the columns of a file of rows: numbers where all of them are."""
-    with (ROWS / f"{file}.csv").open(encoding="utf-8", newline="") as rows:
+    path = ROWS / f"{file}.csv"
+    packed = path.with_suffix(".csv.gz")
+    with (
+        gzip.open(packed, "rt", encoding="utf-8")
+        if packed.exists()
+        else path.open(encoding="utf-8", newline="") as rows
+    ):
         table = list(csv.DictReader(rows))
     return {name: _column([row[name] for row in table]) for name in table[0]}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import itertools
 import json
 import math
@@ -109,24 +110,36 @@ def test_random_assemblies_fall_at_the_load_of_the_linear_programme(tmp_path: Pa
 
 
 @pytest.mark.long
-def test_random_arches_of_every_kind_fall_where_limit_analysis_says(tmp_path: Path) -> None:
-    module = study("random_kinds")
+def test_random_problems_are_answered_as_is_proved(tmp_path: Path) -> None:
+    module = study("random_truth")
     result = module.main(tmp_path, quick=True)
-    assert (result.arches, result.right, result.false) == (14, 28, 0)
-    assert result.undecided == {}
-    assert min(result.over["thickness"], result.over["load"]) >= 5
-    with (tmp_path / "random_kinds.csv").open(newline="") as file:
+    assert result.problems == len(module.QUICK) == 7
+    assert result.unproved == result.unexpected == 0
+    for method in ("limit", "direct", "pymunk"):
+        told = result.told[method]
+        assert (told.asked, told.right, told.false, told.undecided) == (7, 7, 0, 0)
+    ways = ["after others", "mirrored", "renumbered", "hash seed 1, threads 1", "fresh process"]
+    assert list(result.same) == ways
+    assert all(same == of > 0 for same, of in result.same.values())
+    with gzip.open(tmp_path / "random_truth.csv.gz", "rt", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert {json.loads(row["arch"])["kind"] for row in rows} == set(module.ARCH_KINDS)
-    # The two questions stand on opposite sides, and a false or an open answer would be counted.
-    load, thick = next(
-        (a, b) for a in rows for b in rows if (a["over"], b["over"]) == ("load", "thickness")
+    assert {row["proved"] for row in rows} == {"stands", "collapses"}
+    kinds = {row["kind"] for row in rows}
+    assert {"arch of the map", "rubble"} < kinds
+    assert any(kind.startswith("random") for kind in kinds)
+    # What is false, open or not proved would be counted.
+    fell, stood = (
+        next(row for row in rows if row["proved"] == proved)
+        for proved in ("collapses", "stands")
     )
-    assert (
-        (load["low"], load["high"]) == (thick["high"], thick["low"]) == ("stands", "collapses")
-    )
-    told = module.summary([{**load, "high": "stands"}, {**thick, "high": "undecided"}])
-    assert (told.right, told.false, len(told.undecided)) == (2, 1, 1)
+    bad = [
+        {**fell, "direct": "stands"},
+        {**stood, "direct": "undecided"},
+        {**fell, "proved": ""},
+    ]
+    told = module.summary(bad, [])
+    assert told.unproved == 1
+    assert (told.told["direct"].false, told.told["direct"].undecided) == (1, 1)
 
 
 @pytest.mark.long

@@ -11,6 +11,7 @@ import pytest
 from structure_cases import case, names, scenes
 from threadpoolctl import ThreadpoolController
 
+from analysis.certificates import certificate
 from analysis.structure_cases import ASIDE, MOST, Question, answered, questions
 from blocksim.blocks.assembly import SUPPORT, Assembly, Joint
 from blocksim.blocks.joints import JointState, classify, joint_motion, overlap_share
@@ -24,7 +25,7 @@ from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.files import structure_of as kind_of
+from blocksim.kinds.files import structure_of as structure_of_kind
 
 MOVED = [
     "box2d_arch",
@@ -339,7 +340,7 @@ def test_a_joint_that_is_given_ends_where_it_was_given() -> None:
 
 def falling_wall(courses: int = 8) -> Problem:
     """A wall at 1.3 times the angle at which it can no longer rest (29.725 deg; `limit`)."""
-    wall = kind_of({"kind": "wall", "courses": courses, "length": 3, "friction": 0.7})
+    wall = structure_of_kind({"kind": "wall", "courses": courses, "length": 3, "friction": 0.7})
     return wall.tilted(math.radians(1.3 * 29.725116))
 
 
@@ -440,3 +441,25 @@ def test_the_study_says_what_a_wrong_answer_is() -> None:
     line = answered("trilithon", replace(question, expected=0.26), moving=False)
     assert (line.inside, line.false, line.undecided) == (Verdict.COLLAPSES, 1, 0)
     assert line.error == pytest.approx(0.01 / 0.26)
+
+
+@pytest.mark.parametrize(
+    ("friction", "wall", "push"),
+    [
+        # Its onset needs a guess by friction that is less than none can slip by.
+        ("inf", (1.99988, 2, 0.392257, 0.347258), 2.55175),
+        # Its moving run needs a step in two halves.
+        (1.459, (1.05861, 3, 0.289222, 0.513372), 1.2217),
+    ],
+)
+def test_pushed_walls_are_not_left_open(
+    friction: float | str, wall: tuple[float, int, float, float], push: float
+) -> None:
+    length, courses, height, bond = wall
+    table = {
+        "kind": "wall", "friction": friction, "length": length, "courses": courses,
+        "block_height": height, "bond": bond, "live": [{"body": [1, 0]}],
+    }  # fmt: skip
+    pushed = structure_of_kind(table).with_load(push)
+    assert certificate(pushed).stands is False
+    assert observe(pushed, "direct").verdict is Verdict.COLLAPSES

@@ -38,6 +38,8 @@ EXACT = 1e-18
 """Yield of contacts left in the onset test [g]."""
 PRECISION = 1e-12
 """Yield of contacts left in a moving step [g]."""
+HALVINGS = 3
+"""How often a step that is not solved is halved."""
 PENETRATION = 1e-3
 """Of a collapse until its verdict is certain; falling blocks may do worse on impact."""
 CLOSED = 1e-12
@@ -107,12 +109,30 @@ class Blocks:
             shakes = self._asked.shaking and self._asked.shaking.duration > self._seconds
             count = count if way.max() < SLOW and not shakes else steps
         for _ in range(count):
-            # A step that cannot be solved is the last: the blocks stay, the residual tells.
-            if self._residual <= UNSOLVED:
-                self._move(whole / count)
+            before = vars(self).copy()
+            self._move(whole / count)
+            if count < steps and np.abs(self._poses - before["_poses"]).max() > SLOW:
+                # Blocks move after all: again, in steps of the usual length.
+                vars(self).update(before)
+                short = math.ceil(steps / count)
+                for _ in range(short):
+                    self._move(whole / count / short)
         self._balance.look(self._poses, self._velocities, self._velocities)
 
-    def _move(self, step: float) -> None:
+    def _move(self, step: float, halvings: int = HALVINGS) -> None:
+        """Take a step; in two halves where it is not solved as a whole."""
+        if self._residual > UNSOLVED:
+            # A step that cannot be solved was the last: the blocks stay, the residual tells.
+            return
+        before = vars(self).copy()
+        self._go(step)
+        if halvings and before["_residual"] <= RESIDUAL < self._residual:
+            vars(self).update(before)
+            for _ in range(2):
+                self._move(step / 2, halvings - 1)
+
+    def _go(self, step: float) -> None:
+        """Solve a step's contacts, and take it unless they cannot be solved."""
         self._looked = self._poses + step / 2 * self._velocities
         self._pull()
         self._shake(step)

@@ -54,6 +54,10 @@ class Friction:
         """Take one coefficient for all joints, or one for each."""
         return cls(np.broadcast_to(np.asarray(mu, dtype=np.float64), (joints,))[:, None])
 
+    def at_most(self, most: float) -> Friction:
+        """Return the same without what is above a coefficient."""
+        return Friction(np.minimum(self.mu, most))
+
     @cached_property
     def steep(self) -> NDArray[np.bool_]:
         """Which joints have steep friction, shape (joints, 1)."""

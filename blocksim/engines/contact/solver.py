@@ -15,7 +15,7 @@ What each contact does is guessed, and mended until all forces and velocities ag
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
-- the end of an interior-point method for Coulomb friction;
+- the end of an interior-point method for Coulomb friction, steep one taken to be less;
 - the end of a path that begins at the first of these guesses (`path_following.py`);
 - the end of one that begins with all contacts apart.
 """
@@ -46,6 +46,8 @@ NEAR_REST = 1e-4
 """Accelerations below which an arch is so near its limit that half of the digits say little."""
 SOLVED = 1e-9
 """Residual of a solution."""
+TAME = 10.0, 3.0
+"""Friction that is taken in place of steep one, for guesses of what contacts do."""
 ENOUGH = 3e-8
 """Residual for which no path is followed: of a moving step, because once they have moved joints
 may not close any better; from nothing if contacts are told, as a path tells them no better."""
@@ -178,9 +180,11 @@ class ContactProblem:
         else:
             x = (start.acceleration * self.root).ravel()
             yield Answer(x=x, forces=start.forces, contacts=start.contacts)
-        if not step.friction.some_steep:
-            x, pressed, systems = central_path(step, cones, dilates=False)
-            yield cones.answer(step, x, pressed, systems)
+        for most in TAME if step.friction.some_steep else (math.inf,):
+            tame = replace(step, friction=step.friction.at_most(most))
+            cones = Cones.of(tame)
+            x, pressed, systems = central_path(tame, cones, dilates=False)
+            yield cones.answer(tame, x, pressed, systems)
 
     def _paths(
         self, step: Step, guesses: list[Answer], *, known: bool
