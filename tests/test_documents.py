@@ -308,8 +308,8 @@ def test_numbers_quoted_are_those_of_the_rows() -> None:
 
 def test_a_number_that_the_rows_do_not_say_is_seen() -> None:
     quotes = module("quotes")
-    (right,) = quotes.quotes("0.22 s<!-- no_slip: largest(cpu_s) -->")
-    (wrong,) = quotes.quotes("0.21 s<!-- no_slip: largest(cpu_s) -->")
+    (right,) = quotes.quotes("1.56 s<!-- no_slip: largest(cpu_s) -->")
+    (wrong,) = quotes.quotes("1.55 s<!-- no_slip: largest(cpu_s) -->")
     (whole,) = quotes.quotes("1,701<!-- no_slip: len(ratio) -->")
     assert right.holds
     assert not wrong.holds
