@@ -20,6 +20,6 @@ def one_thread(*, wide: bool) -> AbstractContextManager[Any]:
 @cache
 def _pools() -> Any:
     """Find the libraries loaded, once: it takes as long as a step."""
-    from threadpoolctl import ThreadpoolController
+    from threadpoolctl import ThreadpoolController  # pyright: ignore[reportMissingTypeStubs]
 
     return ThreadpoolController()
