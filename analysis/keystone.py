@@ -164,7 +164,6 @@ class Keystone:
             contacts=contacts,
             residual=0.0,
             iterations=0,
-            paths=0,
         )
 
     @property

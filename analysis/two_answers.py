@@ -212,7 +212,6 @@ def begun(problem: Problem, start: Start) -> Solution:
         contacts=contacts,
         residual=0.0,
         iterations=0,
-        paths=0,
     )
 
 
