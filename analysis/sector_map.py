@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 
 from analysis.command import run
 from blocksim.arch.circular import WEIGHTS, Weight
+from blocksim.arch.limit.halfplanes import Joints
 from blocksim.arch.limit.statics import Bound, admissible, spread_of, thrust_bounds
 from blocksim.arch.theory import landmarks, least_thickness, least_thicknesses, regions
 from blocksim.arch.theory.map import special_angles
@@ -55,7 +56,7 @@ def limit_eta(half_angle: float, mu: float, weight: Weight, zooms: int) -> float
 
 
 def _bounds(joints: Array, eta: float, mu: float, weight: Weight) -> tuple[Bound, Bound]:
-    return thrust_bounds(joints, eta, mu, spread_of(eta, weight))
+    return thrust_bounds(Joints(joints[None]), eta, mu, spread_of(eta, weight))
 
 
 def main(out: Path, quick: bool = False) -> dict[str, float]:

@@ -65,6 +65,17 @@ ARCH = {
 }
 STATIC = {"block": 0.25, "arch": 0.3705338738135736}
 """Acceleration from which on they move at all [g]: width over height, and Oppenheim's."""
+TOLD = (
+    "mu",
+    "method",
+    "amplitude_g",
+    "duration_s",
+    "verdict",
+    "largest_rotation_deg",
+    "first_impact_s",
+    "wall_s",
+)
+"""What rows of the map keep of a sweep's."""
 COLOURS = {"stands": "#2b7bba", "collapses": "#d1495b", "undecided": "#999999"}
 MARKERS = {"stands": "o", "collapses": "x", "undecided": "?"}
 
@@ -231,6 +242,14 @@ def main(out: Path, *, quick: bool = False) -> Result:
     }
     result = Result(tuple(pulses), fall(0.004 if quick else FINE), maps)
     write_rows(out / "shaking.csv", [asdict(row) for row in pulses])
+    write_rows(
+        out / "shaking_map.csv",
+        [
+            {"structure": name, **{key: row[key] for key in TOLD}}
+            for name, rows in maps.items()
+            for row in sorted(rows, key=lambda row: (row["amplitude_g"], row["duration_s"]))
+        ],
+    )
     _figure(result, out / "shaking.png")
     return result
 

@@ -39,6 +39,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "maximum": np.maximum,
     "isin": np.isin,
     "len": len,
+    "says": lambda column, words: np.char.find(column, words) >= 0,
 }
 
 

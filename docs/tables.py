@@ -29,7 +29,7 @@ CANNOT = {
     "limit": "motion, ground that shakes",
     "direct": "gravity out of the plane",
     "pymunk": "gravity out of the plane, supports that move",
-    "pybullet": "shaking, supports that move; slow, and creeps where joints slide",
+    "pybullet": "shaking, supports that move; creeps where joints slide",
     "mujoco": "shaking, supports that move; its contacts are soft",
 }
 """In a few words; `docs/methods/methods.md` has all of it."""

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from hypothesis import settings
 from sweeps import SIMULATED, Rows, design_of, rows_of
+from windows import Windows
 
 from blocksim.many import run, sweep
 
@@ -65,3 +66,15 @@ def browser() -> Iterator[Any]:
         found = engine.chromium.launch(executable_path=chromium, args=arguments)
         yield found
         found.close()
+
+
+@pytest.fixture(scope="module")
+def shared_windows(browser: Any) -> Windows:
+    return Windows(browser)
+
+
+@pytest.fixture
+def windows(shared_windows: Windows) -> Iterator[Windows]:
+    """Windows of the browser, left when the test ends."""
+    yield shared_windows
+    shared_windows.leave()

@@ -1,6 +1,6 @@
 """Wrong lines that the tests must see: each is put into a copy, and the tests beside it run.
 
-    python tests/mutations.py             all, about ten minutes on 2 cores
+    python tests/mutations.py             all, about a quarter of an hour on 2 cores
     python tests/mutations.py legend      those whose name has that word
 
 Tests marked `long` are left out, as in the usual run. A line that is no longer there is an
@@ -144,6 +144,20 @@ MUTATIONS = (
         "test_onset.py test_pymunk.py test_pybullet.py",
     ),
     Mutation(
+        "what lacks friction falls",
+        "evidence/onset.py",
+        "if falls and rougher is not None and _may_hold(rougher, seen.mechanism):",
+        "if False:",
+        "test_capped_friction.py",
+    ),
+    Mutation(
+        "a fall where rest was found is believed",
+        "evidence/motion.py",
+        "motion.overlap > OVERLAP or (rests and motion.verdict is Verdict.COLLAPSES)",
+        "motion.overlap > OVERLAP",
+        "test_motion.py",
+    ),
+    Mutation(
         "a changed recording is read",
         "evidence/recording.py",
         'if header.get("state_hash") != recording.state_hash:',
@@ -165,8 +179,10 @@ MUTATIONS = (
         "test_direct_structures.py",
     ),
     Mutation(
-        "friction a hundredth short", "engines/contact/coulomb.py", "most = mu * pressure",
-        "most = 0.99 * mu * pressure", "test_pivoting.py",
+        "friction a hundredth short", "engines/contact/coulomb.py",
+        "return cls(np.broadcast_to(np.asarray(mu, dtype=np.float64), (joints,))[:, None])",
+        "return cls(np.broadcast_to(0.99 * np.asarray(mu), (joints,))[:, None])",
+        "test_pivoting.py",
     ),
     Mutation(
         "motion where rest is possible", "engines/contact/solver.py",
@@ -239,6 +255,81 @@ MUTATIONS = (
         "a slash at the end is passed over", "cli/arguments.py",
         'if not self._folder and str(value).endswith("/"):', "if False:",
         "test_strange_input.py",
+    ),
+    Mutation(
+        "names in a report are not escaped", "report/environment.py",
+        "autoescape=select_autoescape(),", "autoescape=False,",
+        "test_report.py test_report_browser.py",
+    ),
+    Mutation(
+        "names in a notebook are not escaped", "notebook.py", "html.escape(line) for line",
+        "line for line", "test_notebook.py",
+    ),
+    Mutation(
+        "names of modes stay light in the dark", "report/templates/report.css",
+        "34%, var(--card)", "34%, white", "test_report_browser.py",
+    ),
+    Mutation(
+        "the slider of a report moves nothing", "report/templates/report.js",
+        "show(Number(slider.value));", "", "test_report_browser.py",
+    ),
+    Mutation(
+        "sign of the explorer's friction", "view/explorer/theory.js",
+        "-(thrust * Math.sin(angle) - angle * Math.cos(angle))",
+        "(thrust * Math.sin(angle) - angle * Math.cos(angle))",
+        "explorer/test_explorer_theory.py",
+    ),
+    Mutation(
+        "the explorer moves for who wants it still", "view/explorer/page.js",
+        "let playing = !still.matches;", "let playing = true;",
+        "explorer/test_explorer_page.py",
+    ),
+    Mutation(
+        "levers of contacts where blocks start", "limit/starting.py",
+        "turn = arm[..., 0] * ways[own, :, 1] - arm[..., 1] * ways[own, :, 0]",
+        "turn = arm[..., 0] * ways[own, :, 1] + arm[..., 1] * ways[own, :, 0]",
+        "test_starting.py",
+    ),
+    Mutation(
+        "friction where blocks start", "limit/starting.py",
+        "self._mu, joints = problem.friction,", "self._mu, joints = 0.9 * problem.friction,",
+        "test_starting.py",
+    ),
+    Mutation(
+        "hinges are at the other end", "blocks/joints.py", "if opening[0] < opening[1]:",
+        "if opening[0] > opening[1]:", "test_joints.py test_video.py",
+    ),
+    Mutation(
+        "live loads are dropped", "blocks/problem.py",
+        "((1.0, self.dead), (self.load, self.live))", "((1.0, self.dead),)",
+        "test_structure.py test_structures_cli.py",
+    ),
+    Mutation(
+        "a sheet has another scale than it tells", "view/sheetlayout.py",
+        "return self.scale / 1e3", "return self.scale / 1.01e3", "test_sheet.py",
+    ),
+    Mutation(
+        "what errs more is on the front of the chart", "studies/chart.py",
+        "point.error < best[-1].error", "point.error > best[-1].error",
+        "test_work_precision.py",
+    ),
+    Mutation(
+        "a time after the end is passed over", "view/film.py",
+        "later = at > max(shown, round(shown, _digits(shown)))", "later = False",
+        "test_video.py",
+    ),
+    Mutation(
+        "nobody is asked which name was meant", "common/errors.py",
+        "if len(name) <= LONGEST else []", "if False else []", "test_names.py",
+    ),
+    Mutation(
+        "forces do not say of which size they are", "report/sizes.py",
+        "    if _is_metric(arch, at):\n        return []\n", "    return []\n",
+        "test_dimensions.py",
+    ),
+    Mutation(
+        "a ratio of nothing is divided by", "cli/question.py", "if not least:",
+        "if least is None:", "test_cli.py",
     ),
 )  # fmt: skip
 

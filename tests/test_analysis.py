@@ -23,6 +23,8 @@ from scipy.spatial.transform import Rotation
 import blocksim
 from blocksim import Arch
 from blocksim.arch import limit, theory
+from blocksim.engines.base import Quality
+from blocksim.evidence.simulation import Simulation
 from blocksim.report.chart import read_points
 from blocksim.studies.chart import cases
 from blocksim.view.style import LIVE, MECHANISM, STONE, THRUST
@@ -82,6 +84,10 @@ def test_pulses_overturn_a_block_where_housner_says(tmp_path: Path) -> None:
         "stands",
         "collapses",
     ]
+    with (tmp_path / "shaking_map.csv").open(newline="") as file:
+        told = list(csv.DictReader(file))
+    assert [row["structure"] for row in told] == ["block"] * 4 + ["arch"] * 4
+    assert {len(row["code"]) for row in told} == {12}
     # Below the acceleration of its static limit the arch does not move.
     assert all(arch[0.2, long]["largest_rotation_deg"] < 1e-9 for long in (0.1, 1.0))
     drawn = matplotlib.image.imread(tmp_path / "shaking.png")[:, :, :3].reshape(-1, 3)
@@ -514,6 +520,7 @@ def test_rubble_is_solid_and_gains_no_energy(tmp_path: Path) -> None:
     result = module.main(tmp_path, quick=True, engine="direct")
     assert result.collapses == result.solid == result.tame == 2
     assert result.overlap < module.ALLOWED
+    assert result.thrown == 0.0
     with (tmp_path / "rubble_direct.csv").open(newline="") as file:
         assert [row["kind"] for row in csv.DictReader(file)] == ["arch", "wall"]
 
@@ -530,6 +537,34 @@ def test_overlap_of_rubble_would_be_seen() -> None:
         other[[0, 1, 3]] = turned
         found = module.overlap_of(cube.at(one), cube.at(other), 0.0)
         assert found == pytest.approx(deep, abs=1e-12)
+        reach = module.reach(cube.at(one), cube.at(other))
+        assert reach == pytest.approx(1 - push, abs=1e-12)
+
+
+def test_what_is_thrown_would_be_seen() -> None:
+    """The uppermost block of a stack flies up by v^2/2, and no energy is there for it.
+
+    What it carries with it is not thrown. The energy is seen for both.
+    """
+    module = study("rubble")
+    problem = module.drawn(module.cases(5)[4])
+    centres = problem.assembly.centres / problem.assembly.size
+    start = np.column_stack([centres, np.zeros(len(centres))])
+    order, speed, sinks = np.argsort(-centres[:, 1]), 0.5, 0.1
+    times = np.linspace(0.0, 2 * speed, 101)
+    masses = problem.assembly.masses[:, 0]
+    for blocks, thrown in ((order[:1], speed**2 / 2), (order[:2], 0.0)):
+        poses = np.repeat(start[None], len(times), axis=0)
+        poses[:, blocks, 1] += (speed * times - times**2 / 2)[:, None]
+        # Something has to fall: the lowest sinks into what it stands on.
+        poses[:, order[-1], 1] -= sinks * times
+        recording = Simulation.of(problem, "direct").record(times, poses, Quality())
+        found = module.measured(recording)
+        assert found["thrown"] == pytest.approx(thrown, rel=0.02)
+        assert found["rise"] == pytest.approx(speed**2 / 2, rel=1e-3)
+        low = masses[order[-1]]
+        given = (masses[blocks].sum() * speed**2 + low * sinks**2) / 2
+        assert found["gain"] == pytest.approx(given / (low * sinks * times[-1]), rel=0.02)
 
 
 @pytest.mark.long

@@ -107,6 +107,17 @@ WRONG = {
     "render nothing stands": ("render", "--alpha", "90", "--mu", "0.3", "--out", "x.png"),
     "picture of no height": ("render", "semicircle", "--out", "x.svg", "--height", "480"),
     "eta and ratio": ("check", *ARCH, "--eta", "0.1", "--ratio", "0.99"),
+    "ratio of any": (
+        "check",
+        "--alpha",
+        "60",
+        "--mu",
+        "0.9",
+        "--voussoirs",
+        "3",
+        "--ratio",
+        "1.5",
+    ),
     "ratio of nothing": ("check", "--alpha", "90", "--mu", "0.3", "--ratio", "0.9"),
     "lean in the plane": (
         "simulate",

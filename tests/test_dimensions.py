@@ -319,3 +319,19 @@ def test_structures_take_an_angle_of_friction_and_a_unit_weight(tmp_path: Path) 
     done = inside("check", str(path), "--unit-weight", "20")
     assert done.returncode == 2
     assert "blocks[1].weight = 5: must be left out where a unit weight is given" in done.stderr
+
+
+@pytest.mark.parametrize("more", [(), ("--tilt", "0")])
+def test_without_a_size_lengths_are_in_radii_and_forces_say_of_which(
+    more: tuple[str, ...],
+) -> None:
+    """Each side bears half of the weight, gamma t alpha r = 20 kN/m3 * 0.12 m * pi/2 m."""
+    asked = ("check", "--alpha", "90", "--mu", "0.7", "--eta", "0.12", *more)
+    said = inside(*asked).stdout
+    assert "thickness 0.12 r" in said
+    assert "L = 1 m" not in said
+    assert f"left {20 * 0.12 * math.pi / 2:.4g} kN/m up" in said
+    unit = "  unit    no size was given: forces are those of r = 1 m and "
+    assert f"{unit}20 kN/m3\n" in said
+    assert f"{unit}25 kN/m3\n" in inside(*asked, "--unit-weight", "25").stdout
+    assert "  unit " not in inside("check", *ASKED).stdout

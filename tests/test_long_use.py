@@ -44,15 +44,18 @@ print(json.dumps(rows))
     "method", ["theory", "limit", "direct", "pymunk", "pybullet", "mujoco"]
 )
 def test_memory_and_files_are_flat(method: str) -> None:
-    """Once a fifth is done, less than a kilobyte a check by the line through what follows."""
+    """Once half is done, less than a kilobyte a check by the line through what follows.
+
+    MuJoCo's heap grows until some 4,000 models were built, and then no more.
+    """
     if method in {"pybullet", "mujoco"}:
         pytest.importorskip(method)
     words = [sys.executable, "-c", GROWS, method, str(CHECKS)]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     # pybullet says when it was built.
-    rows = np.array(json.loads(done.stdout.splitlines()[-1]))[1:]
-    checks = CHECKS / 10 * np.arange(2, 11)
+    rows = np.array(json.loads(done.stdout.splitlines()[-1]))[4:]
+    checks = CHECKS / 10 * np.arange(5, 11)
     rise = np.polyfit(checks, rows[:, 0], 1)[0] * 1024
     print(f"\n{method}: {rows[:, 0].round(1)} MB, {rise:.2f} kB a check")  # noqa: T201
     assert set(rows[:, 1]) == {rows[0, 1]}
@@ -90,8 +93,16 @@ def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int,
     "where",
     [
         {"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
-        {"HOME": "/proc/nobody", "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None},
-        {"TMPDIR": "/nowhere", "HOME": "/proc/nobody"},
+        pytest.param(
+            {"HOME": "/proc/nobody", "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None},
+            marks=LONG,
+        ),
+        {
+            "TMPDIR": "/nowhere",
+            "HOME": "/proc/nobody",
+            "XDG_CACHE_HOME": None,
+            "XDG_CONFIG_HOME": None,
+        },
         {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
     ],
     ids=["no home", "home not writable", "no folder for temporary files", "C locale"],

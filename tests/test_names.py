@@ -21,6 +21,7 @@ from blocksim.cli.tables import validation_lines, validation_table
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text
 from blocksim.engines import get_engine
+from blocksim.kinds.files import load_structure
 from blocksim.many import load_design
 from blocksim.report.answers import signed
 from blocksim.studies.validate import unasked
@@ -105,6 +106,31 @@ def test_nothing_asked_is_help() -> None:
     assert (done.returncode, done.stderr) == (0, "")
     assert "scenarios" in done.stdout
     assert blocksim("-h").stdout.split() == blocksim("--help").stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("asked", "meant"),
+    [
+        (("check", "semicirle"), "semicircle"),
+        (("check", "oppenheim_8", "--load", "0.3"), "oppenheim_7"),
+        (("check", "Colum", "--mu", "0.6"), "column"),
+        (("check", "FILE"), "portal"),
+        (("kinds", "portl"), "portal"),
+    ],
+)
+def test_a_name_that_was_nearly_right_is_asked_for(
+    asked: tuple[str, ...], meant: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "portal.json"
+    file.write_text('{"kind": "portl", "friction": 0.6}')
+    done = blocksim(*(str(file) if word == "FILE" else word for word in asked))
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.endswith(f"; did you mean {meant}?\n")
+    far = blocksim("check", "zzz")
+    assert "did you mean" not in far.stderr
+    with pytest.raises(InputError, match=r"did you mean gable\?"):
+        load_structure("gables")
 
 
 def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:

@@ -8,7 +8,9 @@ import re
 import subprocess
 import sys
 import warnings
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -55,12 +57,26 @@ def shown() -> dict[str, Any]:
     }
 
 
+@pytest.fixture(scope="module")
+def formatted(shown: dict[str, Any]) -> Callable[[str], dict[str, str]]:
+    """What IPython makes of each, made once."""
+
+    @cache
+    def of(name: str) -> dict[str, str]:
+        return formatters.DisplayFormatter().format(shown[name])[0]
+
+    return of
+
+
+Formatted = Callable[[str], dict[str, str]]
 NAMES = ("arch", "problem", "arch check", "check", "arch bracket", "bracket", "recording")
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_ipython_shows_words_and_a_drawing(shown: dict[str, Any], name: str) -> None:
-    data, _ = formatters.DisplayFormatter().format(shown[name])
+def test_ipython_shows_words_and_a_drawing(
+    shown: dict[str, Any], formatted: Formatted, name: str
+) -> None:
+    data = formatted(name)
     assert {"text/plain", "text/html", "image/svg+xml"} <= set(data)
     said = data["text/plain"]
     assert len(said) < 200
@@ -89,9 +105,9 @@ def test_ipython_shows_words_and_a_drawing(shown: dict[str, Any], name: str) -> 
     ],
 )
 def test_the_words_are_those_of_the_command_line(
-    shown: dict[str, Any], name: str, words: list[str]
+    formatted: Formatted, name: str, words: list[str]
 ) -> None:
-    said = shown[name]._repr_html_()
+    said = formatted(name)["text/html"]
     for each in words:
         assert each in said
 
@@ -106,20 +122,20 @@ def test_the_words_are_those_of_the_command_line(
     ],
 )
 def test_a_drawing_has_what_there_is(
-    shown: dict[str, Any], name: str, kinds: dict[str, int]
+    formatted: Formatted, name: str, kinds: dict[str, int]
 ) -> None:
-    drawing = shown[name]._repr_svg_()
+    drawing = formatted(name)["image/svg+xml"]
     for kind, count in kinds.items():
         assert len(re.findall(f'id="{kind}(?:-[0-9]+)?"', drawing)) == count
 
 
-def test_drawings_of_arches_tell_their_mode(shown: dict[str, Any]) -> None:
+def test_drawings_of_arches_tell_their_mode(formatted: Formatted) -> None:
     """Of a check the arch itself, of a bracket the one of least thickness."""
     assert re.search(
         r"collapses, mode rrr: .* = 90°, μ = 0.7 \(φ = 35.0°\), η = 0.1 ",
-        shown["arch check"]._repr_svg_(),
+        formatted("arch check")["image/svg+xml"],
     )
-    assert "η = 0.1067" in shown["arch bracket"]._repr_svg_()
+    assert "η = 0.1067" in formatted("arch bracket")["image/svg+xml"]
     theory = blocksim.bracket(half_angle=ARCH.half_angle, mu=0.7, voussoirs=27, method="theory")
     assert "purely rotational [rrr]" in theory._repr_svg_()
     none = blocksim.bracket(half_angle=ARCH.half_angle, mu=0.3, voussoirs=27, method="limit")

@@ -20,6 +20,7 @@ from analysis.certificates import (
 from analysis.random_problems import GROUPS, Case, drawn, mirrored, renumbered
 from blocksim import Problem, collapse, structure_of
 from blocksim.ask.check import check
+from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.evidence.verdict import Verdict
 
 CHANGES = ("", "mirrored", "renumbered")
@@ -119,3 +120,56 @@ def test_problems_are_drawn_alike_whatever_was_drawn_before() -> None:
     ratios = [drawn(Case(index, 12)).ratio for index in range(0, 200, 10)]
     assert all(0.5 <= ratio <= 2 and abs(ratio - 1) > 0.999e-3 for ratio in ratios)
     assert min(ratios) < 1 < max(ratios)
+
+
+@pytest.mark.parametrize(
+    "index",
+    [
+        pytest.param(9014, id="two slides without pressure say the same, a singular system"),
+        pytest.param(
+            272, id="blocks turn as one, and a step leaves gaps that cannot all close"
+        ),
+        pytest.param(130, id="bed joints part, which held friction that dilates"),
+        pytest.param(3970, id="faces of rubble that fit to a millionth"),
+        pytest.param(2091, id="drums that do not quite fit, and turn fast for that"),
+        pytest.param(3683, id="a load of thirty times the weight, far beyond all in one step"),
+    ],
+)
+def test_what_was_open_once_is_decided(index: int) -> None:
+    """And as statics prove; each was undecided, or a traceback, for another reason."""
+    asked = drawn(random_truth.case(index))
+    assert certificate(asked.problem).stands is False
+    assert check(asked.problem, method="direct").verdict is Verdict.COLLAPSES
+
+
+def test_blocks_that_turn_as_one_keep_their_contacts() -> None:
+    """A stack without slip tips about its foot: none of its other joints has to give way."""
+    problem = drawn(random_truth.case(272)).problem
+    world = Blocks(problem, ENGINE.rule(problem.assembly))
+    world.hold(1)
+    for _ in range(8):
+        world.advance(20)
+    quality = world.quality()
+    assert quality.residual is not None
+    assert quality.residual < 1e-9
+    turned = world.poses()[:, 2]
+    assert np.ptp(turned) < 1e-9 < 1e-5 < abs(turned[0])
+
+
+def test_what_gives_way_and_swings_about_another_place_is_said_to() -> None:
+    """Statics prove that an arch cannot rest as built; moved by 1 in 1,700 it can."""
+    problem = drawn(random_truth.case(5177)).problem
+    assert certificate(problem).stands is False
+    found = check(problem, method="direct")
+    assert found.verdict is Verdict.UNDECIDED
+    assert "gave way and swings about another place" in found.reason
+    world = Blocks(problem, ENGINE.rule(problem.assembly))
+    built = world.poses()
+    world.hold(1)
+    moved, speed = list[float](), list[float]()
+    for _ in range(40):
+        world.advance(100)
+        moved.append(float(np.abs(world.poses() - built).max()))
+        speed.append(float(np.abs(world.velocities).max()))
+    assert 1e-4 < moved[-1] < 0.8 * max(moved) < 1e-3
+    assert speed[-1] < 1e-2 * max(speed)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
 from dataclasses import replace
 
 import pytest
 from matplotlib.colors import to_rgb
 from report_rows import ROW, rows
+from windows import Windows
 
 from blocksim.arch.modes import Mode
 from blocksim.kinds.known import load_known
@@ -39,28 +39,11 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture
-def complaints() -> list[str]:
-    return []
+def page(windows: Windows, address: str):
+    return windows.open(address, 1280, 900, reduced_motion="no-preference")
 
 
-@pytest.fixture
-def page(browser, address: str, complaints: list[str]) -> Generator:
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
-    page = context.new_page()
-    page.on("console", lambda message: complaints.append(message.text))
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on(
-        "request",
-        lambda request: (
-            request.url.startswith(("file:", "data:")) or complaints.append(request.url)
-        ),
-    )
-    page.goto(address)
-    yield page
-    context.close()
-
-
-def test_the_slider_moves_the_blocks(page, complaints: list[str]) -> None:
+def test_the_slider_moves_the_blocks(page, windows: Windows) -> None:
     figure = page.locator(".motion").first
     piece = figure.locator(".piece").nth(5)
     moved = piece.get_attribute("transform")
@@ -73,10 +56,10 @@ def test_the_slider_moves_the_blocks(page, complaints: list[str]) -> None:
     # Half of the way is half of the motion, which is straight down here.
     slider.fill("0.5")
     assert piece.get_attribute("transform").startswith("translate(0 6.5) rotate(0 ")
-    assert complaints == []
+    assert windows.wrong("file:") == []
 
 
-def test_it_plays_to_the_end_and_can_be_stopped(page, complaints: list[str]) -> None:
+def test_it_plays_to_the_end_and_can_be_stopped(page, windows: Windows) -> None:
     figure = page.locator(".motion").first
     button, slider = figure.locator("button"), figure.locator("input")
     button.focus()
@@ -91,7 +74,7 @@ def test_it_plays_to_the_end_and_can_be_stopped(page, complaints: list[str]) -> 
     page.keyboard.press("Enter")
     playwright.expect(slider).to_have_value("1", timeout=10_000)
     playwright.expect(button).to_have_text("Play")
-    assert complaints == []
+    assert windows.wrong("file:") == []
 
 
 @pytest.mark.parametrize(
@@ -120,7 +103,7 @@ def test_it_fits_the_window(page, width: int, scheme: str) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_structure_moves_and_can_be_seen(page, scheme: str, complaints: list[str]) -> None:
+def test_a_structure_moves_and_can_be_seen(page, scheme: str, windows: Windows) -> None:
     page.emulate_media(color_scheme=scheme)
     figure = page.locator("#structure-1 .motion")
     piece = figure.locator(".piece").nth(5)
@@ -144,7 +127,7 @@ def test_a_structure_moves_and_can_be_seen(page, scheme: str, complaints: list[s
         return box.left < frame.left || box.right > frame.right
           || box.top < frame.top || box.bottom > frame.bottom; }).length; }""")
     assert over == 0
-    assert complaints == []
+    assert windows.wrong("file:") == []
 
 
 def test_it_is_light_on_paper(page) -> None:
@@ -245,14 +228,14 @@ def test_names_are_written_as_they_are(page) -> None:
         assert item.inner_text().startswith(("semicircle", "second<script>", "fig17"))
 
 
-def test_points_of_the_map_lead_to_their_rows(page, complaints: list[str]) -> None:
+def test_points_of_the_map_lead_to_their_rows(page, windows: Windows) -> None:
     page.locator('.map a[href="#row-3"]').last.click()
     assert page.url.endswith("report.html#row-3")
     assert len(page.context.pages) == 1
     row = page.locator("#row-3")
     assert "fig17_low_sliding_rotational_125" in row.inner_text()
     playwright.expect(row).to_be_in_viewport()
-    assert complaints == []
+    assert windows.wrong("file:") == []
 
 
 def test_the_line_of_thrust_is_gone_when_blocks_have_moved(page) -> None:

@@ -241,19 +241,13 @@ def test_words_make_way_for_others() -> None:
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_scale_that_is_told_is_true_on_paper(name: str) -> None:
-    """Measured in the svg, and the page of the pdf: corners of a block in points."""
+    """Measured in the svg: corners of a block in points."""
     sheet, figure = drawn(name)
     (note,) = [each for each in texts(figure) if "true where printed" in each]
     match = re.match(r"1:([\d.]+) on A4", note)
     assert match is not None
     scale = float(match[1])
     assert round(scale / 10 ** math.floor(math.log10(scale)), 9) in {1, 2, 2.5, 5, 7.5}
-    pdf = io.BytesIO()
-    save_figure(figure, pdf, "pdf")
-    page = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+)", pdf.getvalue())
-    assert page is not None
-    sides = sorted(float(each) / 72 * 25.4 for each in page.groups())
-    assert sides == pytest.approx([210.0, 297.0], abs=0.05)
     svg = io.BytesIO()
     save_figure(figure, svg, "svg")
     root = ET.fromstring(svg.getvalue())  # noqa: S314 - ours
@@ -266,6 +260,18 @@ def test_the_scale_that_is_told_is_true_on_paper(name: str) -> None:
     assert np.hypot(*(on_paper[1] - on_paper[0])) * scale / 1e3 == pytest.approx(true, rel=1e-4)
     (bar,) = lines(figure, "scale")
     assert f"{np.ptp(bar[:, 0]):g} m" in texts(figure)
+
+
+def test_a_page_is_a4_upright_or_across() -> None:
+    pages = []
+    for name in ("column", "wall"):
+        pdf = io.BytesIO()
+        save_figure(drawn(name)[1], pdf, "pdf")
+        page = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+)", pdf.getvalue())
+        assert page is not None
+        pages.append([float(each) / 72 * 25.4 for each in page.groups()])
+    assert pages[0] == pytest.approx([210.0, 297.0], abs=0.05)
+    assert pages[1] == pytest.approx([297.0, 210.0], abs=0.05)
 
 
 def test_usual_scales() -> None:

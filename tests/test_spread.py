@@ -18,6 +18,8 @@ from blocksim.ask.spread import Spreading
 from blocksim.blocks.joints import JointState, joint_motion
 from blocksim.blocks.structure import structure_record
 from blocksim.common.errors import InputError
+from blocksim.engines.direct import ENGINE
+from blocksim.engines.moving import OnMovingSupports
 from blocksim.evidence.recording import read_recording
 from blocksim.kinds.files import structure_of
 from blocksim.limit.spreading import follow
@@ -131,6 +133,22 @@ def test_mirrored_and_scaled_supports_move_alike() -> None:
     ]
     alone = [Spreading(structure_of({**table, "move": move})).exact for move in ways]
     assert alone == [pytest.approx(one, rel=1e-7)] * 2
+
+
+def test_a_load_at_a_point_acts_while_supports_move() -> None:
+    """At the centre of a block that hardly turns it does what a force on the block does."""
+    table = semicircle(0.13, voussoirs=8)
+    x, y = structure_of(table).assembly.blocks[4].centre
+    after = list[Any]()
+    for point in ({}, {"point": [x, y]}):
+        load = {"block": 5, "force": [0.0, -500.0], **point}
+        problem = structure_of({**table, "dead": [load]})
+        world = OnMovingSupports(problem, ENGINE.rule(problem.assembly), 1e-3)
+        for _ in range(10):
+            world.advance_once()
+        after.append(world.poses())
+    assert np.abs(after[1] - after[0]).max() < 1e-9
+    assert np.abs(after[0][:, 2]).max() > 1e-6
 
 
 def test_supports_that_settle() -> None:

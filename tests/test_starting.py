@@ -42,11 +42,11 @@ def between_walls(lean: float, mu: float) -> Problem:
     )
 
 
-def arch(mu: float, times: float) -> Problem:
-    """A wide arch of seven voussoirs, of so many times its least thickness."""
-    eta = least_thickness(HALF_ANGLE, mu, 7).eta
+def arch(mu: float, times: float, voussoirs: int = 3) -> Problem:
+    """A wide arch of so many times its least thickness."""
+    eta = least_thickness(HALF_ANGLE, mu, voussoirs).eta
     assert eta is not None
-    return Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=7).problem(mu)
+    return Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=voussoirs).problem(mu)
 
 
 def wrong(problem: Problem, start: Start) -> float:
@@ -91,7 +91,7 @@ def test_a_block_in_a_wedge_must_rest(mu: float) -> None:
 
 def test_a_wide_arch_of_seven_may_move_up_to_a_third_above_its_least_thickness() -> None:
     # The ends of the band by another method are in analysis/two_answers.py.
-    within, above = arch(3.0, 1.38), arch(3.0, 1.39)
+    within, above = arch(3.0, 1.38, 7), arch(3.0, 1.39, 7)
     assert equilibrium(within).exists
     start = may_start(within)
     assert start.moves
@@ -109,14 +109,22 @@ def test_its_motion_is_none_with_other_friction() -> None:
 def test_of_another_size_it_is_the_same() -> None:
     powers = [
         may_start(
-            Arch(eta=1.286, radius=radius, half_angle=HALF_ANGLE, voussoirs=7).problem(3.0)
+            Arch(eta=1.286, radius=radius, half_angle=HALF_ANGLE, voussoirs=3).problem(3.0)
         ).power
         for radius in (1.0, 250.0)
     ]
     assert powers[1] == pytest.approx(powers[0], rel=1e-6)
 
 
-@pytest.mark.parametrize(("alpha", "mu"), [(90, 0.35), (90, 0.6), (115, 0.7), (140, 1.6)])
+@pytest.mark.parametrize(
+    ("alpha", "mu"),
+    [
+        (90, 0.35),
+        (140, 1.6),
+        pytest.param(90, 0.6, marks=pytest.mark.long),
+        pytest.param(115, 0.7, marks=pytest.mark.long),
+    ],
+)
 def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
     half_angle = math.radians(alpha)
     eta = least_thickness(half_angle, mu, 7).eta
@@ -133,12 +141,10 @@ def test_below_the_least_thickness_it_moves() -> None:
 
 
 def test_check_says_which_of_the_three() -> None:
-    said = [
-        check(arch(3.0, times), method="limit", must_rest=True).rest
-        for times in (0.98, 1.05, 1.5)
-    ]
+    problems = [between_walls(lean, 0.5) for lean in (-0.6, -0.4, 0.3)]
+    said = [check(each, method="limit", must_rest=True).rest for each in problems]
     assert said == ["cannot", "can", "must"]
-    assert check(arch(3.0, 1.5), method="limit").rest is None
+    assert check(problems[2], method="limit").rest is None
 
 
 def test_unbounded_friction_is_refused() -> None:
@@ -147,10 +153,12 @@ def test_unbounded_friction_is_refused() -> None:
 
 
 def test_the_command_says_it() -> None:
-    options = ("check", "--alpha", "155", "--mu", "3", "--voussoirs", "7", "--method", "limit")
-    words = blocksim(*options, "--ratio", "1.05", "--must-rest").stdout
+    asked = ("--method", "limit", "--must-rest")
+    wide = ("--alpha", "155", "--mu", "3", "--voussoirs", "3")
+    narrow = ("--alpha", "60", "--mu", "0.9", "--voussoirs", "4")
+    words = blocksim("check", *wide, "--ratio", "1.05", *asked).stdout
     assert "  rest    it can rest, and friction may let it move as well\n" in words
-    found = json.loads(blocksim(*options, "--ratio", "1.5", "--must-rest", "--json").stdout)
+    found = json.loads(blocksim("check", *narrow, "--ratio", "1.5", *asked, "--json").stdout)
     assert found["rest"] == "must"
 
 

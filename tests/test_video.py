@@ -379,10 +379,26 @@ def test_command_films_recordings(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     with Image.open(tmp_path / "a.png") as picture:
         assert picture.size == (1280, 720)
+    # 1.6 sqrt(r/g) in metres are 0.72 s: the blocks at the crown are on the ground by then.
+    late = inside(
+        "render", run, "--height", "180", "--time", "99", "--out", f"{tmp_path}/c.png"
+    )
+    end = Film([falling()]).seconds
+    said = re.search(r": 99 is after the end, so it shows the end, ([\d.]+) s$", late.stdout)
+    assert said is not None
+    assert float(said[1]) == pytest.approx(end, abs=6e-4)
+    as_shown = ("--time", said[1], "--out", f"{tmp_path}/c.png")
+    done = inside("render", run, "--height", "180", *as_shown)
+    assert done.stdout == f"wrote {tmp_path}/c.png\n"
     small = ("--beside", run, "--height", "180", "--slow", "1")
     done = inside("render", run, *small, "--out", f"{tmp_path}/b.gif")
     assert (done.returncode, done.stderr) == (0, "")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "b.gif", "run.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "a.png",
+        "b.gif",
+        "c.png",
+        "run.npz",
+    ]
 
 
 def test_command_films_a_scenario(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 
 from blocksim import Arch
 from blocksim.arch import limit, theory
@@ -19,6 +20,7 @@ from blocksim.engines import ENGINES
 from blocksim.evidence.motion import QUIET
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.report import chart
 from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.studies import refinement
 from blocksim.studies.chart import ChartArch, Point, front, gain, measure, on_front
@@ -176,6 +178,18 @@ def test_a_moving_run_alone_is_right_when_fine_and_wrong_when_coarse() -> None:
         assert below.verdict is Verdict.COLLAPSES
 
 
+@pytest.fixture
+def laid_out_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures are drawn, but not as pictures, which take long and have been tested above."""
+
+    def laid_out(name: str, figure: Figure) -> dict[str, bytes]:
+        figure.draw_without_rendering()
+        return {f"{name}.png": b""}
+
+    monkeypatch.setattr(chart, "pictures", laid_out)
+
+
+@pytest.mark.usefixtures("laid_out_only")
 def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
     points = [
         point("pymunk", error, 1.0, 2.0, 3.0, knob=knob)
@@ -195,6 +209,7 @@ def test_each_knob_is_drawn_and_what_has_no_bracket_too(tmp_path: Path) -> None:
     assert list(chart_table(points).columns[4].cells) == ["none", "1.0e-02"] * len(REFINEMENTS)
 
 
+@pytest.mark.usefixtures("laid_out_only")
 def test_points_of_another_program_are_drawn_beside(tmp_path: Path) -> None:
     foreign = [point("elsewhere", 1e-3, 2.0), point("elsewhere", math.inf, 1.0)]
     path = tmp_path / "points.json"

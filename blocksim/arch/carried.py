@@ -9,7 +9,7 @@ import numpy as np
 from blocksim.arch.circular import Arch, arch_of
 from blocksim.arch.limit.statics import (
     Bound,
-    half_joints,
+    joints_of,
     least_friction,
     least_thickness,
     slack,
@@ -117,6 +117,5 @@ def joint_forces(arch: Arch, thrust: float, share: float = 1.0) -> Array:
 
 
 def _bounds(arch: Arch, mu: float, share: float) -> tuple[Bound, Bound]:
-    angles = half_joints(arch.half_angle, arch.voussoirs)
     spread = spread_of(arch.eta, arch.weight)
-    return thrust_bounds(angles, share * arch.eta, share * mu, spread)
+    return thrust_bounds(joints_of(arch), share * arch.eta, share * mu, spread)

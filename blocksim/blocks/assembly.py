@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from blocksim.common.checks import COORDINATE, INERTIA, LENGTH, MASS, require
+from blocksim.common.checks import COORDINATE, INERTIA, LENGTH, MASS
 from blocksim.common.errors import InputError
 
 Array = NDArray[np.float64]
@@ -73,11 +73,12 @@ class Block:
     def __post_init__(self) -> None:
         """Check the numbers, make the arrays read-only and corners counter-clockwise."""
         for field, known in (("mass", MASS), ("inertia", INERTIA), ("depth", LENGTH)):
-            known.require(self._called(field), getattr(self, field))
+            if not known.has(value := getattr(self, field)):
+                raise InputError(self._called(field), value, known.words)
         vertices = frozen(self.vertices, (-1, 2))
         corners = vertices.tolist()
-        near = all(COORDINATE.has(x) and COORDINATE.has(y) for x, y in corners)
-        require(near, self._called("vertices"), corners, COORDINATE.words)
+        if not all(abs(x) <= COORDINATE.high and abs(y) <= COORDINATE.high for x, y in corners):
+            raise InputError(self._called("vertices"), corners, COORDINATE.words)
         area, folds = _outline(corners)
         if area == 0 or folds:
             allowed = "three corners or more around a convex area"
@@ -346,10 +347,11 @@ class Assembly:
     @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
-        return frozen(
-            [np.hypot(*(block.vertices - block.centre).T).max() for block in self.blocks],
-            (-1,),
-        )
+        corners = [len(block.vertices) for block in self.blocks]
+        away = np.concatenate([block.vertices for block in self.blocks])
+        away -= np.repeat(self.centres, corners, axis=0)
+        first = np.cumsum([0, *corners[:-1]])
+        return frozen(np.maximum.reduceat(np.hypot(*away.T), first), (-1,))
 
     @cached_property
     def joint_arrays(self) -> JointArrays:
@@ -357,8 +359,8 @@ class Assembly:
         joints = self.joints
         sides = [(joint.before, joint.after) for joint in joints]
         before, after = np.array(sides, dtype=np.int64).reshape(-1, 2).T
-        ends = np.array([(j.inner, j.outer) for j in joints], dtype=np.float64)
-        ends = ends.reshape(-1, 2, 2)
+        ends = np.array([each for joint in joints for each in (joint.inner, joint.outer)])
+        ends = ends.astype(np.float64, copy=False).reshape(-1, 2, 2)
         own = [np.nan if j.friction is None else j.friction for j in joints]
         faces = np.repeat(ends[:, None], 2, axis=1)
         is_corner = np.array([joint.is_corner for joint in joints], dtype=np.bool_)

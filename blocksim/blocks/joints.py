@@ -109,10 +109,13 @@ def overlap_share(assembly: Assembly, poses: Array) -> float:
 
 
 def slip_share(assembly: Assembly, poses: Array) -> float:
-    """Largest slip of a joint in the plane, as a share of the largest motion of a joint."""
+    """Largest slip of a joint, in the plane or across, as a share of the largest motion."""
     motion = joint_motion(assembly, poses)
     moved = _largest(assembly, motion, poses)
-    return float(np.abs(motion.slip).max()) / moved if moved > 0 else 0.0
+    slip = np.abs(motion.slip)
+    if poses.shape[1] == SPATIAL:
+        slip = np.maximum(slip, _beyond_the_plane(assembly, poses)[1])
+    return float(slip.max()) / moved if moved > 0 else 0.0
 
 
 def _largest(assembly: Assembly, motion: JointMotion, poses: Array) -> float:

@@ -166,6 +166,11 @@ class Problem(Shown):
         return bool(self.dead or (self.live and self.load))
 
     @property
+    def turns_pull(self) -> bool:
+        """Whether what acts on blocks changes as they turn: forces at points of them do."""
+        return any(load.point is not None for load in self.dead + self.live)
+
+    @property
     def is_planar(self) -> bool:
         """Whether nothing pulls out of the plane."""
         return bool(self.gravity[2] == 0)

@@ -132,7 +132,10 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
             progress=report,
         )
     if out.suffix.removeprefix(".") in STILLS:
-        say(f"wrote {out}")
+        asked = 0.0 if options.time is None else options.time
+        end = made.ends_before(asked)
+        later = f": {asked:g} is after the end, so it shows the end, {end}"
+        say(f"wrote {out}{later if end else ''}")
         return
     why = ", until a block reaches the ground or a footing" if made.on_ground else ""
     radius = "" if made.metric else " (if r = 1 m)"

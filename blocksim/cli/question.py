@@ -19,7 +19,8 @@ from blocksim.arch.limit import least_thickness
 from blocksim.ask.search import ETA_MAX
 from blocksim.cli.options import Given, named_options, option_of, require_given
 from blocksim.common.checks import FRICTION, is_number, require
-from blocksim.common.errors import MISSING, InputError
+from blocksim.common.errors import MISSING, InputError, perhaps
+from blocksim.kinds import KINDS
 
 NO_SCENARIO = Scenario(
     name="",
@@ -104,9 +105,16 @@ def question(
 
 def _scenario(scene: str) -> Scenario:
     # Files are read with libraries that options do not need.
-    from blocksim.arch.scenario import load_scenario
+    from blocksim.arch.scenario import load_scenario, shipped
+    from blocksim.kinds.files import shipped_structures
 
-    return load_scenario(scene)
+    try:
+        return load_scenario(scene)
+    except InputError as error:
+        if error.field != "scenario":
+            raise
+        near = perhaps(scene, [*shipped(), *shipped_structures(), *KINDS])
+        raise InputError(error.field, error.value, error.allowed + near) from None
 
 
 IN_METRES = " (or --span, --rise and --thickness, in m)"
@@ -189,11 +197,12 @@ def arch_of(asked: Scenario, ratio: float | None) -> Arch:
         asked.arch(1.0)
         arch = asked.half_angle, asked.mu, asked.voussoirs, asked.weight
         least = least_thickness(*arch).eta
-        if least is None:
+        if not least:
+            why = "no thickness up to 2 stands" if least is None else "any thickness stands"
             field = "--eta" if ratio is None else "--ratio"
             value = MISSING if ratio is None else ratio
             allowed = "given" if ratio is None else "left out for --eta"
-            raise InputError(field, value, f"{allowed}: no thickness up to 2 stands here")
+            raise InputError(field, value, f"{allowed}: {why} here")
         eta = (ratio or ASIDE) * least
         if ratio is not None:
             require(eta <= ETA_MAX, "--ratio", ratio, f"at most {ETA_MAX / least:.6g}, eta = 2")

@@ -5,6 +5,7 @@ Outcomes (stands, collapses, undecided) are values and never exceptions.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from reprlib import Repr
 
 LONGEST = 200
@@ -35,6 +36,22 @@ def in_line(text: str, most: int = LONGEST) -> str:
     half = most // 2
     cut = text if len(text) <= most else f"{text[:half]}...{text[3 - half :]}"
     return "".join(each if each.isprintable() else "?" for each in cut)
+
+
+def perhaps(name: str, known: Iterable[str]) -> str:
+    """Ask whether a known name was meant, to be added to what is allowed; "" if none is near.
+
+    Parameters
+    ----------
+    name : str
+        As it was given.
+    known : iterable of str
+    """
+    from difflib import get_close_matches
+
+    # Longer ones are no slip of the hand, and take long to compare.
+    near = get_close_matches(name.lower(), known, 1) if len(name) <= LONGEST else []
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 MISSING = object()

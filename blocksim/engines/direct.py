@@ -22,6 +22,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.version import __version__
 from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
+from blocksim.engines.contact.coulomb import OPEN
 from blocksim.engines.energy import Balance, energy
 
 STEP = 0.01
@@ -44,6 +45,10 @@ PENETRATION = 1e-3
 """Of a collapse until its verdict is certain; falling blocks may do worse on impact."""
 CLOSED = 1e-12
 """Gap that counts as none: round-off of the corners' places."""
+BENT = 1e-7
+"""Most of a gap that counts as none at a contact that was closed. A step goes straight where
+blocks turn, which leaves gaps as large as the square of its way. Those of blocks that turn as
+one contradict each other: no contact forces close them all in the next step."""
 
 
 def rule(assembly: Assembly) -> Settings:  # noqa: ARG001 - a rule is given one
@@ -78,16 +83,15 @@ class Blocks:
         self._neighbours = Neighbours(assembly)
         self._keys = self._neighbours.keys
         self._joints = len(assembly.joints)
-        self._problem = self._new_problem()
         self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
-        self._velocities = np.zeros_like(self._poses)
-        loads = problem.dead + problem.live
-        self._turning = any(load.point is not None for load in loads)
+        self._problem = self._new_problem()
+        self._looked, self._velocities = self._poses, np.zeros_like(self._poses)
+        self._turning = problem.turns_pull
         self._free = self._still = problem.pull() / self._mass
         self._time = 0.0
         self._solution: Solution | None = None
         self._balance = Balance(problem, self._poses)
-        self._residual = self._penetration = 0.0
+        self._residual = self._penetration = self._way = 0.0
 
     def hold(self, sweeps: int) -> Array:  # noqa: ARG002 - the protocol's
         """Solve the contacts of a step from rest; the blocks stay."""
@@ -140,12 +144,20 @@ class Blocks:
         rates = self._rates(touch.rows)
         gap = touch.gap - step / 2 * rates[:, :2]
         self._penetration = max(self._penetration, -float(gap.min(initial=0.0)))
-        rates[:, :2] += np.where(gap > CLOSED, gap, 0.0) / step
+        rates[:, :2] += np.where(gap > self._closed(touch), gap, 0.0) / step
         solution = self._solve(touch, rates / step, PRECISION)
         if not solution.residual <= UNSOLVED:
             return
         self._velocities = self._velocities + step * solution.acceleration
         self._poses = self._poses + step * self._velocities
+        self._way = max(self._way, step * float(np.abs(self._velocities).max()))
+
+    def _closed(self, touch: Touch) -> Array:
+        """Return gaps that count as none, shape (joints, 2)."""
+        none = np.full(touch.gap.shape, CLOSED)
+        if self._solution is not None:
+            none[self._solution.contacts != OPEN] += min(self._way**2, BENT)
+        return none
 
     def _pull(self) -> None:
         """Find the accelerations without contact, which change as blocks with loads turn."""
@@ -207,22 +219,28 @@ class Blocks:
     def start_from(self, other: Blocks) -> None:
         """Take poses, velocities and contact forces from the same blocks in another world."""
         self._poses, self._velocities = other._poses.copy(), other._velocities.copy()
+        self._way = other._way
         self._solution = other._solution and other._solution.carried(other._keys, self._keys)
 
     def _touch(self, poses: Array, step: float) -> Touch:
         """Find the contacts; what is known of those that stay is kept."""
-        turning = np.abs(self._velocities[:, 2]) * self._reach
-        speed = float((np.hypot(*self._velocities[:, :2].T) + turning).max())
-        fastest = max(1.0, float(np.abs(self._free[:, :2]).max()))
-        touch = self._neighbours.touch(poses, step * (speed + step * fastest))
+
+        def reach() -> float:
+            turning = np.abs(self._velocities[:, 2]) * self._reach
+            speed = float((np.hypot(*self._velocities[:, :2].T) + turning).max())
+            fastest = max(1.0, float(np.abs(self._free[:, :2]).max()))
+            return step * (speed + step * fastest)
+
+        touch = self._neighbours.touch(poses, reach)
         keys = self._neighbours.keys
-        if not np.array_equal(keys, self._keys):
+        if keys is not self._keys and not np.array_equal(keys, self._keys):
             if self._solution is not None:
                 self._solution = self._solution.carried(self._keys, keys)
             self._keys = keys
             self._problem = self._new_problem()
         # Friction never sees a slip that is not in the rows.
-        touch.rows[self._smooth, 2:] = 0.0
+        if len(self._smooth):
+            touch.rows[self._smooth, 2:] = 0.0
         return touch
 
     def _new_problem(self) -> ContactProblem:
@@ -232,7 +250,7 @@ class Blocks:
         friction = np.full(len(self._keys), self._mu)
         friction[held] = self._friction[self._keys[held]]
         self._smooth = np.flatnonzero(friction == 0)
-        return ContactProblem(before, after, self._mass, friction)
+        return ContactProblem(before, after, self._mass, friction, self._poses[:, :2])
 
     def _rates(self, rows: Array) -> Array:
         padded = np.vstack([self._velocities, np.zeros(3)])

@@ -41,6 +41,8 @@ def _potential(problem: Problem, poses: Array) -> float:
     potential = -float((pull[:, :2] * poses[:, :2]).sum())
     if poses.shape[1] == SPATIAL:
         potential -= float((pull[:, PLANAR] * poses[:, PLANAR]).sum())
+    if not problem.turns_pull:
+        return potential
     # A force at a point does what its moment does about a block turned by a right angle.
     quarter = np.zeros(poses.shape[1])
     quarter[2] = math.pi / 2
@@ -59,7 +61,7 @@ class Balance:
 
     def __init__(self, problem: Problem, poses: Array) -> None:
         self._problem = problem
-        self._first = self._lowest = energy(problem, poses, np.zeros_like(poses))
+        self._first = self._lowest = _potential(problem, poses)
         self._gain = 0.0
 
     def look(self, poses: Array, before: Array, after: Array) -> None:
@@ -68,9 +70,9 @@ class Balance:
         Engines of impulses move by velocities that are those halfway between two places.
         At a place it is their mean, with which a block that falls keeps its energy.
         """
-        moving = (before + after) / 2
-        self._gain = max(self._gain, energy(self._problem, poses, moving) - self._first)
-        still = energy(self._problem, poses, np.zeros_like(poses))
+        still = _potential(self._problem, poses)
+        moving = still + _kinetic(self._problem, poses, (before + after) / 2)
+        self._gain = max(self._gain, moving - self._first)
         self._lowest = min(self._lowest, still)
 
     @property

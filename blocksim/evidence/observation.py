@@ -46,8 +46,15 @@ class Held:
 
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
         """Let the blocks go; see `moving_run`."""
-        repeat = self.onset.repeat
-        return moving_run(self.simulation, self.world, repeat, until=until, progress=progress)
+        first = self.onset
+        return moving_run(
+            self.simulation,
+            self.world,
+            first.repeat,
+            rests=first.verdict is Verdict.STANDS and not first.may_slide,
+            until=until,
+            progress=progress,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -156,6 +163,7 @@ def hold(
             simulation.settings,
             progress,
             asked=reduction.asked(simulation.taken) if reduction else None,
+            rougher=simulation.rougher,
             forces=reduction.forces if reduction else None,
         )
         if reduction and not first.too_far:
@@ -225,7 +233,7 @@ def _asides(held: Held, motion: Motion | None) -> str:
         said.append(f"moved {way} out of its plane")
     if motion and simulation.unsure:
         said.append(simulation.unsure)
-    if simulation.problem.mu > simulation.engine.most_friction:
+    if simulation.rougher is not None:
         said.append(
             f"{simulation.engine.name} took {simulation.engine.most_friction:g} as friction"
         )

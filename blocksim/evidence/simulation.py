@@ -194,6 +194,12 @@ class Simulation:
             return self.taken
         return self.reduction.of_problem(self.taken)
 
+    @cached_property
+    def rougher(self) -> Problem | None:
+        """The problem with the friction asked for, where the engine takes less of it."""
+        least = (self.problem.friction <= self.engine.most_friction).all()
+        return None if least else self.problem
+
     @property
     def length(self) -> str:
         """What the unit of length is called: the radius of an arch, or the size of others."""

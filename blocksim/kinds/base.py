@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal, Self, cast
 from blocksim.blocks.given import GivenJoint
 from blocksim.blocks.polygons import Body
 from blocksim.common.checks import LENGTH, is_number, require
-from blocksim.common.errors import InputError
+from blocksim.common.errors import InputError, perhaps
 
 Array = Any
 Stands = Literal["low", "high"]
@@ -277,7 +277,8 @@ def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Kind]], path: str =
     known = {each.name: each for each in kinds}
     allowed = f"one of {', '.join(known)}"
     if not isinstance(named, str) or named not in known:
-        raise InputError(f"{path}kind", named, allowed)
+        near = perhaps(named, known) if isinstance(named, str) else ""
+        raise InputError(f"{path}kind", named, allowed + near)
     chosen = known[named]
     given = {key: value for key, value in written.items() if key != "kind"}
     return cast(Kind, _table_of(chosen, given, kinds, path, f"a {named} has"))

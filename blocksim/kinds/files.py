@@ -29,7 +29,7 @@ from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.blocks.road import on_road
 from blocksim.common.checks import require
-from blocksim.common.errors import InputError
+from blocksim.common.errors import InputError, perhaps
 from blocksim.common.files import AnyPath, json_of, read_file, shipped_files, toml_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import Kind, kind_of, parameters_of
@@ -111,13 +111,15 @@ def named_file(path: AnyPath, unit: float | None = None) -> Generator[object]:
         In one line, also what is raised while it is used.
     """
     # As it was given: a name that ends in a slash is no file.
-    path = os.fspath(path)
+    path, near = os.fspath(path), ""
     ending = Path(path).suffix.lower()
     if ending not in WRITTEN and ending not in DRAWN:
-        path = str(shipped_structures().get(path, path))
+        known = shipped_structures()
+        near = perhaps(path, known)
+        path = str(known.get(path, path))
         ending = Path(path).suffix
     endings = ".json, .toml, .dxf or .svg"
-    allowed = f"an existing structure file, {endings}, or a shipped structure"
+    allowed = f"an existing structure file, {endings}, or a shipped structure{near}"
     require(ending in WRITTEN or ending in DRAWN, "structure", str(path), allowed)
     text = b""
     if ending in WRITTEN:

@@ -11,7 +11,7 @@ from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.version import __version__
 from blocksim.report.carried import carried_lines, carried_record
-from blocksim.report.sizes import size_lines, size_record
+from blocksim.report.sizes import size_lines, size_record, unit_lines
 
 if TYPE_CHECKING:
     from blocksim.arch.bracket import Bracket
@@ -125,6 +125,7 @@ def check_lines(
         f"  because {answer.reason}",
         _exact("least  ", answer),
         *carried_lines(carried, joint_names_of(arch)),
+        *(unit_lines(arch, at) if carried else []),
     ]
     if answer.method == "theory":
         of = "of the continuous arch at its least thickness"

@@ -19,6 +19,7 @@ from blocksim.common.version import __version__
 from blocksim.common.words import counted
 from blocksim.kinds.files import kind_behind
 from blocksim.report.carried import carried_lines, carried_record
+from blocksim.report.sizes import unit_lines
 from blocksim.report.structuresizes import problem_size_lines, problem_size_record
 
 SHOWN = 8
@@ -97,6 +98,7 @@ def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[st
         at = f", asked at {problem.load:g}" if problem.load else ""
         lines.append(f"  load    factor at collapse {_number(answer.load_factor)}{at}")
     lines += carried_lines(carried, joint_names(problem.assembly))
+    lines += unit_lines(arch) if carried and (arch := arch_of(problem)) else []
     if carried is None and len(problem.assembly.joints) > SOUGHT:
         lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
     if rest := rest_words(answer.rest, asked=answer.asked_rest):
@@ -268,7 +270,8 @@ def described(problem: Problem) -> str:
         )
     if problem.shaking is not None:
         said.append(problem.shaking.words)
-    said.append(f"L = {assembly.size:g} m")
+    arch = arch_of(problem)
+    said.append("L = r" if arch and unit_lines(arch) else f"L = {assembly.size:g} m")
     return ", ".join(said)
 
 

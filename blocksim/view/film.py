@@ -141,6 +141,12 @@ class Film:
         self._canvas.keep(*self._still(states, thrust=True))
         self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
 
+    def ends_before(self, at: float) -> str:
+        """Say when it ends, as the clock shows it, if that is before a time; else ""."""
+        shown = self.seconds / self._tick
+        later = at > max(shown, round(shown, _digits(shown)))
+        return self._clock(self.seconds).removeprefix("t = ") if later else ""
+
     def frame(self, number: int) -> NDArray[np.uint8]:
         """Draw a frame, shape (height, width, 4): red, green, blue, opacity."""
         self._draw((number / self.rate - BEFORE) / self.slow)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from windows import Windows
 
 from blocksim.view.explorer import explorer_page, read_results
 
@@ -35,40 +36,23 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 Open = Callable[..., Any]
 
 
-def opened(browser: Any, address: str) -> Iterator[Open]:
-    """Open the page in windows of their own; whatever it complains about fails the test.
-
-    Still, if nothing else is asked for: else the browser draws all the time.
-    """
-    contexts, complaints = [], []
+@pytest.fixture
+def open_page(windows: Windows, address: str) -> Iterator[Open]:
+    """Open the page in windows; whatever it complains about fails the test."""
 
     def open_it(width: int = 1280, height: int = 800, **options: object) -> Any:
-        options = {"reduced_motion": "reduce", **options}
-        context = browser.new_context(viewport={"width": width, "height": height}, **options)
-        contexts.append(context)
-        page = context.new_page()
-        page.on("console", lambda message: complaints.append(message.text))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: complaints.append(request.url))
-        page.goto(address)
-        return page
+        return windows.open(address, width, height, **options)
 
     yield open_it
-    for context in contexts:
-        context.close()
-    assert [line for line in complaints if line not in {address, "data:,"}] == []
-
-
-@pytest.fixture
-def open_page(browser: Any, address: str) -> Iterator[Open]:
-    yield from opened(browser, address)
+    assert windows.wrong(address) == []
 
 
 @pytest.fixture(scope="module")
 def one_page(browser: Any, address: str) -> Iterator[Any]:
     """One for all tests of a file, which only ask what its functions return."""
-    for open_it in opened(browser, address):
-        yield open_it()
+    windows = Windows(browser)
+    yield windows.open(address, 1280, 800)
+    assert windows.wrong(address) == []
 
 
 @pytest.fixture

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from blocksim.arch.circular import WEIGHTS, Weight
-from blocksim.arch.limit.halfplanes import sliding, turning
+from blocksim.arch.limit.halfplanes import Joints, sliding, turning
 from blocksim.arch.limit.statics import ETA_MAX
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require
 
-WORKING_SET = 40_000
+WORKING_SET = 25_000
 """Pairs of joints held at once; their temporaries stay in the cache."""
 HALVINGS = 52
 
@@ -104,16 +104,17 @@ def short_intervals(angles: Array, depth: Array, mu: Array, spread: Array) -> In
     -------
     Intervals
     """
-    turns = turning(angles, depth, spread)
-    most = turns.most().min(axis=(1, 2))
-    least = turns.least().max(axis=(1, 2))
+    turns = turning(Joints(angles), depth, spread)
+    highest, lowest = turns.ends()
+    most, least = highest.min(axis=(1, 2)), lowest.max(axis=(1, 2))
     # Parallel half-planes leave nothing where the upper one is below the lower one.
     most[turns.broken().any(axis=(1, 2))] = -np.inf
     held = np.flatnonzero(np.isfinite(mu))
+    joints = Joints(angles[held])
     for sign in (1.0, -1.0):
-        slides = sliding(angles[held], mu[held], sign)
-        most[held] = np.minimum(most[held], slides.most().min(axis=1))
-        least[held] = np.maximum(least[held], slides.least().max(axis=1))
+        highest, lowest = sliding(joints, mu[held], sign).ends()
+        most[held] = np.minimum(most[held], highest.min(axis=1))
+        least[held] = np.maximum(least[held], lowest.max(axis=1))
     return Intervals(most, least)
 
 

@@ -35,13 +35,12 @@ class Bounds(NamedTuple):
     level: Array
     level_h: Array
 
-    def most(self) -> Array:
-        """Largest 1 - h of each condition, inf where it sets none."""
-        return np.where(self.rate > 0, self._crossing(), np.inf)
-
-    def least(self) -> Array:
-        """Smallest 1 - h of each condition, -inf where it sets none."""
-        return np.where(self.rate < 0, self._crossing(), -np.inf)
+    def ends(self) -> tuple[Array, Array]:
+        """Largest and smallest 1 - h of each condition, inf and -inf where it sets none."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            crossing = self.level / self.rate
+        most = np.where(self.rate > 0, crossing, np.inf)
+        return most, np.where(self.rate < 0, crossing, -np.inf)
 
     def thrust(self, place: tuple[int, ...]) -> float:
         """Thrust h at which one condition is met exactly."""
@@ -51,20 +50,35 @@ class Bounds(NamedTuple):
         """Whether a condition no thrust can change is not met."""
         return (self.rate == 0) & (self.level < 0)
 
-    def _crossing(self) -> Array:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return self.level / self.rate
+
+class Joints:
+    """Joints of one half of each arch, and what bounds take from their angles alone.
+
+    Parameters
+    ----------
+    angles : (k, j) float
+        [rad]
+    """
+
+    def __init__(self, angles: Array) -> None:
+        self.angles, square = angles, angles**2
+        self.sine, self.cosine = np.sin(angles), np.cos(angles)
+        self.lift = 2 * np.sin(angles / 2) ** 2
+        self.vertical = angles * self.sine
+        self.force = self.cosine + self.vertical
+        # x sin x - 2 (1 - cos x), of the weight's lever
+        self.bow = -(square**2) * p_series(square)
+        self.lag = angles**3 * lag_series(square)
 
 
-def turning(angles: Array, depth: Array, spread: Array) -> Bounds:
+def turning(joints: Joints, depth: Array, spread: Array) -> Bounds:
     """Pairs of joints where the line of thrust touches extrados (i) and intrados (j).
 
     No tension asks |M| <= (eta/2) N of both; between them m is eliminated.
 
     Parameters
     ----------
-    angles : (k, j) float
-        Joints of one half of each arch [rad].
+    joints : Joints
     depth : (k,) float
         Thickness over radius that the line of thrust may use.
     spread : (k,) float
@@ -76,24 +90,19 @@ def turning(angles: Array, depth: Array, spread: Array) -> Bounds:
         Shape (k, j, j).
     """
     half, extra = depth[:, None, None] / 2, spread[:, None]
-    cosine, lift = np.cos(angles), 2 * np.sin(angles / 2) ** 2
-    vertical, square = angles * np.sin(angles), angles**2
-    # x sin x - 2 (1 - cos x) and the rest of the weight's lever
-    bow = -(square**2) * p_series(square) - extra * lift
-    force = cosine + vertical
-    rate = _less(-lift) + half * _sum(cosine)
-    level = _less(bow) + half * _sum(force)
-    level_h = -(_less(vertical - (1 + extra) * lift) + half * _sum(vertical))
-    return Bounds(rate, level, level_h)
+    bow = joints.bow - extra * joints.lift
+    rate = _less(-joints.lift) + half * _sum(joints.cosine)
+    level = _less(bow) + half * _sum(joints.force)
+    lever = joints.vertical - (1 + extra) * joints.lift
+    return Bounds(rate, level, -(_less(lever) + half * _sum(joints.vertical)))
 
 
-def sliding(angles: Array, mu: Array, sign: float) -> Bounds:
+def sliding(joints: Joints, mu: Array, sign: float) -> Bounds:
     """Joints of which friction asks sign T <= mu N.
 
     Parameters
     ----------
-    angles : (k, j) float
-        Joints of one half of each arch [rad].
+    joints : Joints
     mu : (k,) float
         Friction coefficients, finite.
     sign : float
@@ -104,13 +113,10 @@ def sliding(angles: Array, mu: Array, sign: float) -> Bounds:
     Bounds
         Shape (k, j).
     """
-    grip = mu[:, None]
-    sine, cosine = np.sin(angles), np.cos(angles)
-    force = cosine + angles * sine
-    lag = angles**3 * lag_series(angles**2)
+    grip, sine, cosine = mu[:, None], joints.sine, joints.cosine
     rate = grip * cosine - sign * sine
-    level_h = -angles * (sign * cosine + grip * sine)
-    return Bounds(rate, grip * force - sign * lag, level_h)
+    level_h = -joints.angles * (sign * cosine + grip * sine)
+    return Bounds(rate, grip * joints.force - sign * joints.lag, level_h)
 
 
 def _less(values: Array) -> Array:

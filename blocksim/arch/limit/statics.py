@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.arch.circular import Arch, Weight, crown_width
-from blocksim.arch.limit.halfplanes import Bounds, sliding, turning
+from blocksim.arch.limit.halfplanes import Bounds, Joints, sliding, turning
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require_friction
@@ -82,46 +82,76 @@ def half_joints(half_angle: float, voussoirs: int) -> Array:
     return half_angle * (2.0 * np.arange(count) + first) / voussoirs
 
 
+def joints_of(arch: Arch) -> Joints:
+    """Return the joints of one half of an arch."""
+    return Joints(half_joints(arch.half_angle, arch.voussoirs)[None])
+
+
 def spread_of(eta: float, weight: Weight) -> float:
     """Radius of the distributed weight over the mean radius, less 1."""
     return 0.0 if weight == "centreline" else eta**2 / 12
 
 
-def thrust_bounds(angles: Array, depth: float, mu: float, spread: float) -> tuple[Bound, Bound]:
+def thrust_bounds(
+    joints: Joints,
+    depth: float,
+    mu: float,
+    spread: float,
+    slides: tuple[Bound, Bound] | None = None,
+) -> tuple[Bound, Bound]:
     """Interval of thrusts in equilibrium with strength at every joint.
 
     Parameters
     ----------
-    angles : (k,) float
-        Joints of one half [rad].
+    joints : Joints
+        Of one half of one arch.
     depth : float
         Thickness over radius that the line of thrust may use.
     mu : float
         Friction coefficient, inf allowed.
     spread : float
         Radius of the distributed weight over the mean radius, less 1.
+    slides : (Bound, Bound), optional
+        What `friction_bounds` says, which is the same for every thickness.
 
     Returns
     -------
     lower, upper : Bound
         Empty where ``lower.short < upper.short``.
     """
-    joints = angles[None]
     turns = turning(joints, np.array([depth]), np.array([spread]))
     if turns.broken().any():
         return Bound(-math.inf, math.inf), Bound(math.inf, -math.inf)
+    low, high = slides or friction_bounds(joints, mu)
+    lower, upper = _tightest(turns)
+    return (
+        low if low.short < lower.short else lower,
+        high if high.short > upper.short else upper,
+    )
+
+
+def friction_bounds(joints: Joints, mu: float) -> tuple[Bound, Bound]:
+    """Interval of thrusts with which no joint slides, whatever the thickness."""
     lower, upper = Bound(math.inf, -math.inf), Bound(-math.inf, math.inf)
-    conditions = [turns]
-    if math.isfinite(mu):
-        conditions += [sliding(joints, np.array([mu]), sign) for sign in (1.0, -1.0)]
-    for bounds in conditions:
-        most, least = bounds.most(), bounds.least()
-        low = np.unravel_index(int(np.argmin(most)), most.shape)
-        high = np.unravel_index(int(np.argmax(least)), least.shape)
-        if most[low] < lower.short:
-            lower = _bound(bounds, float(most[low]), low)
-        if least[high] > upper.short:
-            upper = _bound(bounds, float(least[high]), high)
+    if not math.isfinite(mu):
+        return lower, upper
+    up, down = (_tightest(sliding(joints, np.array([mu]), sign)) for sign in (1.0, -1.0))
+    return (
+        down[0] if down[0].short < up[0].short else up[0],
+        down[1] if down[1].short > up[1].short else up[1],
+    )
+
+
+def _tightest(bounds: Bounds) -> tuple[Bound, Bound]:
+    """Smallest interval that conditions leave."""
+    lower, upper = Bound(math.inf, -math.inf), Bound(-math.inf, math.inf)
+    most, least = bounds.ends()
+    low = np.unravel_index(int(np.argmin(most)), most.shape)
+    high = np.unravel_index(int(np.argmax(least)), least.shape)
+    if most[low] < lower.short:
+        lower = _bound(bounds, float(most[low]), low)
+    if least[high] > upper.short:
+        upper = _bound(bounds, float(least[high]), high)
     return lower, upper
 
 
@@ -147,9 +177,9 @@ def _gap(bounds: tuple[Bound, Bound]) -> float:
 
 def stands(arch: Arch, mu: float) -> bool:
     """Tell whether the arch has an equilibrium within strength (static theorem)."""
-    angles = half_joints(arch.half_angle, arch.voussoirs)
+    joints = joints_of(arch)
     spread = spread_of(arch.eta, arch.weight)
-    return admissible(thrust_bounds(angles, arch.eta, mu, spread))
+    return admissible(thrust_bounds(joints, arch.eta, mu, spread))
 
 
 def slack(arch: Arch, mu: float) -> float:
@@ -181,11 +211,11 @@ def least_friction(arch: Arch) -> float | None:
     float or None
         None where no friction suffices.
     """
-    angles = half_joints(arch.half_angle, arch.voussoirs)
+    joints = joints_of(arch)
     spread = spread_of(arch.eta, arch.weight)
 
     def gap(mu: float) -> float:
-        return _gap(thrust_bounds(angles, arch.eta, mu, spread))
+        return _gap(thrust_bounds(joints, arch.eta, mu, spread))
 
     if gap(math.inf) < 0:
         return None
@@ -220,11 +250,11 @@ def weakest_joints(arch: Arch, mu: float) -> tuple[int, ...]:
 
 def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[Bound, Bound]]:
     """Return the least share of thickness and friction with which an arch stands."""
-    angles = half_joints(arch.half_angle, arch.voussoirs)
+    joints = joints_of(arch)
     spread = spread_of(arch.eta, arch.weight)
 
     def bounds(share: float) -> tuple[Bound, Bound]:
-        return thrust_bounds(angles, share * arch.eta, share * mu, spread)
+        return thrust_bounds(joints, share * arch.eta, share * mu, spread)
 
     def gap(share: float) -> float:
         return _gap(bounds(share))
@@ -264,9 +294,11 @@ def least_thickness(
     Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
     require_friction(mu)
     angles = half_joints(half_angle, voussoirs)
+    joints = Joints(angles[None])
+    slides = friction_bounds(joints, mu)
 
     def bounds(eta: float) -> tuple[Bound, Bound]:
-        return thrust_bounds(angles, eta, mu, spread_of(eta, weight))
+        return thrust_bounds(joints, eta, mu, spread_of(eta, weight), slides)
 
     def gap(eta: float) -> float:
         return _gap(bounds(eta))
@@ -277,14 +309,14 @@ def least_thickness(
     lower, upper = bounds(ETA_MAX if eta is None else eta)
     extrados = _places(angles, lower.extrados, upper.extrados)
     intrados = _places(angles, lower.intrados, upper.intrados)
-    slides = _places(angles, lower.slides, upper.slides)
+    sliding_at = _places(angles, lower.slides, upper.slides)
     if eta == 0:
         # Both ends of the joints are touched at once, and nothing is about to move.
-        extrados, intrados, slides = (), (), ()
+        extrados, intrados, sliding_at = (), (), ()
     active = [
         *(ActiveJoint(angle, slides=False) for angle in extrados),
         *(ActiveJoint(angle, slides=False, intrados=True) for angle in intrados),
-        *(ActiveJoint(angle, slides=True) for angle in slides),
+        *(ActiveJoint(angle, slides=True) for angle in sliding_at),
     ]
     return LimitState(
         eta=eta,
@@ -292,7 +324,7 @@ def least_thickness(
         thrust=lower.thrust if eta is not None else None,
         hinges_intrados=intrados,
         hinges_extrados=extrados,
-        slides=slides,
+        slides=sliding_at,
     )
 
 

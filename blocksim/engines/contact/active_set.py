@@ -16,9 +16,16 @@ from dataclasses import replace
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS, Contacts
+from blocksim.engines.contact.coulomb import (
+    OPEN,
+    SLIDES_DOWN,
+    SLIDES_UP,
+    STICKS,
+    Contacts,
+    Doing,
+)
 from blocksim.engines.contact.springs import stiffness_at
-from blocksim.engines.contact.step import Answer, Step
+from blocksim.engines.contact.step import Answer, Linear, Step
 
 MOST_SYSTEMS = 24
 ROUND_OFF = 1e-14
@@ -29,7 +36,8 @@ UNSURE = 0.1
 SLOW, DRIFT = 0.1, 0.9
 """What is left of a yield after a system, from which it is slow, and without end."""
 RIGID = 1e-7
-"""Yield without end, over the accelerations, that is round-off: faces that do not quite fit."""
+"""Yield without end that is round-off, over accelerations, or velocities over the step: faces
+that do not quite fit."""
 FARTHEST = 1e9
 """Repetitions of a change of forces at once."""
 MORE, FEW = 4, 16
@@ -48,34 +56,36 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
     precision : float
         Yield of contacts at which it counts as solved [g].
     """
-    friction, x, contacts = step.friction, guess.x, guess.contacts
-    stiffness = stiffness_at(friction, x)
+    x, contacts = guess.x, guess.contacts
+    stiffness = stiffness_at(step.friction, x, precision)
+    linear = Linear(step, contacts, stiffness)
     held = np.abs(guess.forces[:, 2:])
-    preload = friction.as_said(guess.forces, contacts, held)
-    best, systems = guess, 0
+    preload = linear.doing.forces(guess.forces, held)
+    tried, systems = [guess], 0
     last, allowed = math.inf, preload.size
     seen, careful = set[bytes](), False
     rates = step.velocities(x)
-    for systems in range(1, MOST_SYSTEMS + 1):  # noqa: B007
-        glued = preload - stiffness * rates
-        way, more = step.way(contacts, x, glued, held, stiffness)
+    fastest = float(np.abs(step.rates).max(initial=0.0))
+    for systems in range(1, MOST_SYSTEMS + 1):
+        way, more = linear.way(x, preload - stiffness * rates, held)
         if not np.isfinite(way).all():
             break
         x, held = x + way, held + more
         rates = step.velocities(x)
-        forces = friction.as_said(preload - stiffness * rates, contacts, held)
+        forces = linear.doing.forces(preload - stiffness * rates, held)
         change = forces - preload
         most = float(np.abs(change).max(initial=0.0))
         unsure = UNSURE * most
-        mended = _mended(step, contacts, forces, rates, unsure, unsure / stiffness)
-        changes = int(np.count_nonzero(mended != contacts))
-        residual = step.residual(x, forces, rates)
-        found = Answer(x=x, forces=forces, contacts=contacts, residual=residual)
-        best = found if residual < best.residual else best
+        mended = _mended(step, linear.doing, forces, rates, unsure, unsure / stiffness)
+        changes = 0 if mended is contacts else int(np.count_nonzero(mended != contacts))
+        found = Answer(x=x, forces=forces, contacts=contacts)
         largest = float(np.abs(x).max())
-        if changes and best.residual <= RELATIVE * float(np.abs(best.x).max()):
-            best = replace(best, is_settled=True)
-            break
+        if changes and -float(forces[:, :2].min()) <= RELATIVE * largest * max(1.0, largest):
+            # Nothing pulls; so it may be that nothing is wrong but round-off.
+            found = replace(found, residual=step.residual(x, forces, rates))
+            if found.residual <= RELATIVE * largest:
+                return replace(found, systems=guess.systems + systems, is_settled=True)
+        tried.append(found)
         if changes > allowed:
             break
         allowed = min(allowed, MORE * changes + FEW)
@@ -89,21 +99,29 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
             if careful:
                 mended = _first(contacts, mended)
             contacts, last = mended, math.inf
+            linear = Linear(step, contacts, stiffness)
             continue
         yields = most / stiffness
         nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
-        if yields <= nothing:
-            best = replace(found, is_settled=True)
-            break
         ratio, last = yields / last, yields
-        if ratio > DRIFT and yields <= RIGID * largest:
-            best = replace(found, is_settled=True)
-            break
+        if yields <= nothing or (ratio > DRIFT and yields <= RIGID * max(largest, fastest)):
+            residual, spent = step.residual(x, forces, rates), guess.systems + systems
+            return replace(found, residual=residual, systems=spent, is_settled=True)
         if ratio > SLOW:
             # It goes on to change, less each time, or until a contact gives way.
             ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
-            preload = forces + min(ahead, _reach(step, forces, change)) * change
+            ahead = min(ahead, _reach(step, forces, change))
+            if ahead == FARTHEST:
+                # Contacts contradict each other, and none ever gives way.
+                break
+            preload = forces + ahead * change
+    known = [each if each.residual < math.inf else _known(step, each) for each in tried[1:]]
+    best = min([guess, *known], key=lambda each: each.residual)
     return replace(best, systems=guess.systems + systems)
+
+
+def _known(step: Step, answer: Answer) -> Answer:
+    return replace(answer, residual=step.residual(answer.x, answer.forces))
 
 
 def _first(contacts: Contacts, mended: Contacts) -> Contacts:
@@ -129,19 +147,21 @@ def _reach(step: Step, forces: Array, change: Array) -> float:
 
 
 def _mended(
-    step: Step, contacts: Contacts, forces: Array, rates: Array, unsure: float, yields: float
+    step: Step, doing: Doing, forces: Array, rates: Array, unsure: float, yields: float
 ) -> Contacts:
     """Return what contacts do in place of what they cannot."""
     pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
     nothing = ROUND_OFF * max(1.0, float(np.abs(forces).max(initial=0.0)))
-    a, b = step.friction.room
-    found = contacts.copy()
-    sticks = contacts == STICKS
     no_force, no_rate = nothing + unsure, nothing + yields
-    found[sticks & (b * friction > a * pressure + no_force)] = SLIDES_UP
-    found[sticks & (b * friction < -a * pressure - no_force)] = SLIDES_DOWN
-    found[(contacts == SLIDES_UP) & (slip > no_rate)] = STICKS
-    found[(contacts == SLIDES_DOWN) & (slip < -no_rate)] = STICKS
-    found[(contacts == OPEN) & (rates[:, :2] < -no_rate)] = STICKS
-    found[(contacts != OPEN) & (pressure < -no_force)] = OPEN
+    a, b = step.friction.room
+    beyond = doing.sticks & (b * np.abs(friction) - a * pressure > no_force)
+    back = doing.side * slip > no_rate
+    passes = doing.is_open & (rates[:, :2] < -no_rate)
+    pulls = pressure < -no_force
+    if not (beyond | back | passes | pulls).any():
+        return doing.contacts
+    found = doing.contacts.copy()
+    found[beyond] = np.where(friction[beyond] > 0, SLIDES_UP, SLIDES_DOWN)
+    found[back | passes] = STICKS
+    found[pulls & ~doing.is_open] = OPEN
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,10 @@ from blocksim.blocks.assembly import Array
 
 BLOCKED = 32
 """Width from which LAPACK does."""
+EVEN = 6
+"""Digits to which places are told apart."""
+MOST_CHANGES, NO_RANK = 32, 1e-13
+"""Rank of the changes after which a wide system is factored anew, and what is none of it."""
 
 
 class Bands:
@@ -30,22 +35,25 @@ class Bands:
     before, after : (joints,) int
         Blocks on both sides of each joint, -1 for the ground.
     blocks : int
+    points : (blocks, 2) float, optional
+        Where the blocks are: numbered along an axis, those of a wall that touch are near.
     """
 
     def __init__(
-        self, before: NDArray[np.int64], after: NDArray[np.int64], blocks: int
+        self,
+        before: NDArray[np.int64],
+        after: NDArray[np.int64],
+        blocks: int,
+        points: Array | None = None,
     ) -> None:
         self.size = 3 * blocks
         self.place = self._places(before, after)
         self._order, place = None, self.place
         inner = (before >= 0) & (after >= 0)
-        if np.abs(before - after)[inner].max(initial=0) > 1:
-            # Blocks that are no chain: numbered so that those that touch are near.
-            ones = np.ones(inner.sum())
-            graph = csr_array((ones, (before[inner], after[inner])), shape=(blocks, blocks))
-            order = reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
+        order = _order(before[inner], after[inner], blocks, points)
+        if order is not None:
             rank = np.append(np.argsort(order), -1)
-            self._order = (3 * order[:, None].astype(np.int64) + np.arange(3)).ravel()
+            self._order = (3 * order[:, None] + np.arange(3)).ravel()
             place = self._places(rank[before], rank[after])
         row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
         inside = (row < self.size) & (column < self.size)
@@ -93,18 +101,9 @@ class Bands:
 
         Where `seen` is not given it is `rows`, and the matrix symmetric.
         """
-        width = self._width
         if seen is not None:
-            band = self._matrix(self.band(rows, weight, seen))
-            factors, pivots, failed = dgbtrf(band, width, width, overwrite_ab=1)
-            return (
-                None
-                if failed
-                else lambda right: self._natural(
-                    dgbtrs(factors, width, width, self._ordered(right), pivots)[0]
-                )
-            )
-        count = width + 1
+            return self.factored_band(self.band(rows, weight, seen))
+        count = self._width + 1
         products = self._products(rows, weight, rows)
         band = np.bincount(self._lower, products, count * self.size + 1)[:-1]
         band = band.reshape(self.size, count).T
@@ -116,9 +115,17 @@ class Bands:
             else lambda right: self._natural(dpbtrs(factors, self._ordered(right), lower=1)[0])
         )
 
-    def solve(self, rows: Array, weight: ArrayLike, seen: Array, right: Array) -> Array:
-        """Solve (1 + rows^T weight seen) x = right, for one right side or its columns."""
-        return self.solve_band(self.band(rows, weight, seen), right)
+    def factored_band(self, band: Array) -> Callable[[Array], Array] | None:
+        """Return what solves (1 + matrix) x = right, the matrix as from `band`, used up."""
+        width = self._width
+        factors, pivots, failed = dgbtrf(self._matrix(band), width, width, overwrite_ab=1)
+        return (
+            None
+            if failed
+            else lambda right: self._natural(
+                dgbtrs(factors, width, width, self._ordered(right), pivots)[0]
+            )
+        )
 
     def band(self, rows: Array, weight: ArrayLike, seen: Array) -> Array:
         """Return rows^T weight seen in LAPACK's storage, and a place for what is dropped."""
@@ -154,8 +161,34 @@ class Bands:
         return np.matmul(weighted, seen).ravel()
 
 
+def _order(
+    before: NDArray[np.int64], after: NDArray[np.int64], blocks: int, points: Array | None
+) -> NDArray[np.int64] | None:
+    """Return an order in which blocks that touch are near; None for that which there is."""
+    apart = int(np.abs(before - after).max(initial=0))
+    if apart <= 1:
+        return None
+    ones = np.ones(len(before))
+    graph = csr_array((ones, (before, after)), shape=(blocks, blocks))
+    orders = [reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)]
+    if points is not None:
+        # Blocks above each other are so to round-off only.
+        x, y = np.round(points, EVEN).T
+        orders += [np.lexsort((y, x)), np.lexsort((x, y))]
+    best = None
+    for order in orders:
+        rank = np.argsort(order)
+        found = int(np.abs(rank[before] - rank[after]).max())
+        if found < apart:
+            best, apart = order.astype(np.int64), found
+    return best
+
+
 class System:
     """A system (1 + matrix) x = right that changes joint by joint.
+
+    Wide ones are factored once in a while only: what has changed since is of low rank, and is
+    taken into account by the formula of Sherman, Morrison and Woodbury.
 
     Parameters
     ----------
@@ -168,15 +201,75 @@ class System:
     def __init__(self, bands: Bands, band: Array, right: Array) -> None:
         self._bands, self._band = bands, band
         self._right = np.append(right, 0.0)
+        self._factored: _Factored | None = None
 
     def add(self, joint: int, matrix: Array, right: Array) -> None:
-        """Add a joint's matrix (6, 6) and right side (6,)."""
+        """Add to a joint's matrix (6, 6) and right side (6,)."""
+        place = self._bands.place[joint]
         self._band[self._bands.whole[joint]] += matrix.ravel()
-        self._right[self._bands.place[joint]] += right
+        self._right[place] += right
+        if self._factored and not self._factored.add(place, matrix, right):
+            self._factored = None
 
     def solve(self, besides: Array | None = None) -> Array:
         """Return x, or with other right sides in columns the solutions of all, x first."""
         right = self._right[:-1]
+        if self._bands.is_wide:
+            if self._factored is None:
+                solve = self._bands.factored_band(self._band.copy())
+                self._factored = solve and _Factored(solve, right)
+            if self._factored:
+                return self._factored.solve(besides)
         if besides is not None:
             right = np.column_stack([right, besides])
         return self._bands.solve_band(self._band.copy(), right)
+
+
+class _Factored:
+    """A system that was factored, and its changes since: 1 + matrix + columns rows.
+
+    Parameters
+    ----------
+    solve : callable
+        Solves what was factored.
+    right : (3 blocks,) float
+    """
+
+    def __init__(self, solve: Callable[[Array], Array], right: Array) -> None:
+        self._solve, self._bare = solve, solve(right)
+        self._count, size = 0, len(right) + 1
+        # Solutions for the columns; rows by the six places where they are not 0.
+        self._answers = np.zeros((size, MOST_CHANGES), order="F")
+        self._places = np.zeros((MOST_CHANGES, 6), dtype=np.int64)
+        self._rows = np.zeros((MOST_CHANGES, 6))
+
+    def add(self, place: NDArray[np.int64], matrix: Array, right: Array) -> bool:
+        """Add at a joint's places; False where that is too much by now."""
+        parts = [each / (np.abs(each).max() or 1.0) for each in (matrix, right[:, None])]
+        ways, sizes, _ = np.linalg.svd(np.concatenate(parts, axis=1))
+        ways = ways[:, sizes > NO_RANK * sizes[0]]
+        old, new = self._count, self._count + ways.shape[1]
+        if new > MOST_CHANGES:
+            return False
+        columns = np.zeros((len(self._answers), new - old))
+        columns[place] = ways
+        answers = self._solve(columns[:-1])
+        self._bare = self._bare + answers @ (ways.T @ right)
+        self._answers[:-1, old:new] = answers
+        self._places[old:new], self._rows[old:new] = place, ways.T @ matrix
+        self._count = new
+        return True
+
+    def solve(self, besides: Array | None) -> Array:
+        """Solve as `System` does."""
+        count, bare = self._count, self._bare[:, None]
+        if besides is not None:
+            bare = np.column_stack([bare, self._solve(besides)])
+        rows, places = self._rows[:count, :, None], self._places[:count]
+        small = np.eye(count) + (rows * self._answers[places, :count]).sum(axis=1)
+        seen: Array = (rows * np.vstack([bare, np.zeros(bare.shape[1])])[places]).sum(axis=1)
+        shares = np.full(seen.shape, np.nan)
+        with suppress(np.linalg.LinAlgError):
+            shares[:] = np.linalg.solve(small, seen)
+        x: Array = bare - self._answers[:-1, :count] @ shares
+        return x[:, 0] if besides is None else x

@@ -162,14 +162,57 @@ class Friction:
 
         Parameters are those of `unfold`.
         """
-        pressure = np.where(contacts != OPEN, glued[:, :2], 0.0)
-        slides = self.lean * LEAN[contacts] * pressure
-        if self.some_steep:
-            own = self.own(contacts)
-            pressure = np.where(own, self.flat * held, pressure)
-            slides = np.where(own, LEAN[contacts] * held, slides)
-        friction = np.where(contacts == STICKS, glued[:, 2:], slides)
-        return np.concatenate([pressure, friction], axis=1)
+        return Doing(self, contacts).forces(glued, held)
+
+
+class Doing:
+    """Contacts that do as said: what makes forces of those of springs.
+
+    Parameters
+    ----------
+    friction : Friction
+    contacts : (joints, 2) int
+
+    Attributes
+    ----------
+    side : (joints, 2) float
+        1 and -1 where contacts slide, up and down.
+    slope : (joints, 2) float
+        Friction per pressure where that is known and a contact slides.
+    own : (joints, 2) bool or None
+        Contacts whose friction is an unknown of its own, if there are any.
+    springs : (joints, 4) float
+        1 where a force is that of its spring, else 0.
+    """
+
+    def __init__(self, friction: Friction, contacts: Contacts) -> None:
+        self.contacts, self._flat = contacts, friction.flat
+        self.side = LEAN[contacts]
+        self.slope = friction.lean * self.side
+        own = friction.own(contacts) if friction.some_steep else None
+        self.own = own if own is not None and own.any() else None
+        self.is_open, self.sticks = contacts == OPEN, contacts == STICKS
+        self.springs = np.empty((len(contacts), 4))
+        self.springs[:, :2] = ~self.is_open if self.own is None else ~(self.is_open | self.own)
+        self.springs[:, 2:] = self.sticks
+
+    def forces(self, glued: Array, held: Array) -> Array:
+        """Return the forces of contacts.
+
+        Parameters
+        ----------
+        glued : (joints, 4) float
+            Normal forces of both contacts if glued, then tangential ones.
+        held : (joints, 2) float
+            Size of friction; looked at where it is an unknown of its own.
+        """
+        forces: Array = self.springs * glued
+        forces[:, 2:] += self.slope * forces[:, :2]
+        if self.own is not None:
+            size = np.where(self.own, held, 0.0)
+            forces[:, :2] += self._flat * size
+            forces[:, 2:] += self.side * size
+        return forces
 
 
 def cut(glued: Array, mu: Array | float) -> tuple[Array, Contacts]:
@@ -197,19 +240,20 @@ def cut(glued: Array, mu: Array | float) -> tuple[Array, Contacts]:
     return np.concatenate([pressure, friction], axis=1), contacts.astype(np.int8)
 
 
-def leaning(rows: Array, contacts: Contacts, lean: Array) -> Array:
+def leaning(rows: Array, slope: Array) -> Array:
     """Return rows with pressure's turned to act with its friction where a contact slides.
 
     Parameters
     ----------
     rows : (..., 4, 6) float
         Normal velocities of the two contacts, then the tangential ones.
-    contacts : (..., 2) int
-    lean : (..., 1) float
-        `Friction.lean`.
+    slope : (..., 2) float
+        As of `Doing`.
     """
+    if not slope.any():
+        return rows
     acting = rows.copy()
-    acting[..., :2, :] += (lean * LEAN[contacts])[..., None] * rows[..., 2:, :]
+    acting[..., :2, :] += slope[..., None] * rows[..., 2:, :]
     return acting
 
 

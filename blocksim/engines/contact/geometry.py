@@ -25,6 +25,8 @@ DEEPEST = 0.05
 WIDEST = 0.98
 """Cosine of the angle between two faces from which they no longer form a joint: other faces
 of the blocks may then touch first."""
+INWARDS = np.array([1.0, -1.0])
+"""Along a joint, from its inner and from its outer end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,14 +57,17 @@ class Geometry:
         centres = np.vstack([assembly.centres / size, np.zeros(2)])
         self._sides = np.concatenate([self.before, self.after])
         faces = faces_at_joints(assembly)
-        self._arms = np.concatenate([faces[:, 0], faces[:, 1]]) - centres[self._sides][:, None]
-        self._axes = np.concatenate([joints.tangent, joints.tangent])
+        arms = np.concatenate([faces[:, 0], faces[:, 1]]) - centres[self._sides][:, None]
+        # Both corners of each face, then its direction, all of which a block turns alike.
+        axes = np.concatenate([joints.tangent, joints.tangent])[:, None]
+        self._turned: Array = np.moveaxis(np.concatenate([arms, axes], axis=1), 2, 0).copy()
         lengths = ((faces[:, :, 1] - faces[:, :, 0]) * joints.tangent[:, None]).sum(axis=-1)
         self._length = lengths[:, 0]
         shorter, longer = lengths.min(axis=1), lengths.max(axis=1)
         self._deepest: Array = DEEPEST * np.where(joints.is_corner, longer, shorter)
-        self._moves = (self._sides != SUPPORT).astype(np.float64)[:, None, None]
-        self._signs = np.repeat([-1.0, 1.0], count)[:, None, None]
+        # Of `before` less, of `after` more, of the ground nothing.
+        moves = np.where(self._sides == SUPPORT, 0.0, np.repeat([-1.0, 1.0], count))
+        self._moves = np.repeat(moves.reshape(2, count).T, 3, axis=1)[:, None]
         self._corners = np.flatnonzero(joints.is_corner)
         self._carried_by_after = joints.carrier[self._corners, None] == 1
         self._turns = np.array(
@@ -84,55 +89,63 @@ class Geometry:
         """
         count = len(self._length)
         placed = np.vstack([poses, np.zeros(3)])[self._sides]
-        cos, sin = np.cos(placed[:, 2])[:, None], np.sin(placed[:, 2])[:, None]
-        corners = np.empty((2 * count, 2, 2))
-        corners[:, :, 0] = cos * self._arms[:, :, 0] - sin * self._arms[:, :, 1]
-        corners[:, :, 1] = sin * self._arms[:, :, 0] + cos * self._arms[:, :, 1]
-        corners += placed[:, None, :2]
-        x, y = self._axes.T
-        tangents = np.stack(
-            [cos[:, 0] * x - sin[:, 0] * y, sin[:, 0] * x + cos[:, 0] * y], axis=-1
-        )
-        first, second = corners[:count], corners[count:]
-        apart = second - first
-        along = np.matmul(apart, tangents[:count, :, None])[:, :, 0]
+        cos, sin = np.cos(placed[:, 2:]), np.sin(placed[:, 2:])
+        x: Array
+        y: Array
+        x, y = self._turned
+        x, y = cos * x - sin * y, sin * x + cos * y
+        one = x[:count, 2:], y[:count, 2:]
+        two = x[count:, 2:], y[count:, 2:]
+        x, y = x[:, :2] + placed[:, :1], y[:, :2] + placed[:, 1:2]
+        apart = x[count:] - x[:count], y[count:] - y[:count]
+        along = apart[0] * one[0] + apart[1] * one[1]
         overlapping = self._length - np.maximum(along[:, 0], 0) + np.minimum(along[:, 1], 0)
-        holds = overlapping > 0
         # Over the face of `before` lies the corner of `after` that is nearer to its middle.
-        after_over = along * np.array([1.0, -1.0]) >= 0
-        holds &= (tangents[:count] * tangents[count:]).sum(axis=-1) > WIDEST
+        after_over = along * INWARDS >= 0
+        holds = (overlapping > 0) & ((one[0] * two[0] + one[1] * two[1])[:, 0] > WIDEST)
         if len(self._corners):
-            holds[self._corners] = self._on_face(tangents, apart)
+            holds[self._corners] = self._on_face(one, two, apart)
             after_over[self._corners] = ~self._carried_by_after
-        tangent = np.where(
-            after_over[:, :, None], tangents[:count, None], tangents[count:, None]
-        )
-        normal = np.stack([tangent[:, :, 1], -tangent[:, :, 0]], axis=-1)
-        gap = (apart * normal).sum(axis=-1)
+        over_x: Array = np.where(after_over, one[0], two[0])
+        over_y: Array = np.where(after_over, one[1], two[1])
+        over = over_x, over_y
+        gap: Array = apart[0] * over[1] - apart[1] * over[0]
         holds &= gap.min(axis=1) > -self._deepest
-        point = np.where(after_over[:, :, None], second, first)
-        arm = np.concatenate([point, point]) - placed[:, None, :2]
-
-        def rates(axis: Array) -> Array:
-            both = np.concatenate([axis, axis])
-            turn = arm[:, :, :1] * both[:, :, 1:] - arm[:, :, 1:] * both[:, :, :1]
-            parts = np.concatenate([both, turn], axis=-1) * self._signs * self._moves
-            return np.concatenate([parts[:count], parts[count:]], axis=-1)
-
-        rows = np.concatenate([rates(normal), rates(tangent)], axis=1)
+        x_at: Array = np.where(after_over, x[count:], x[:count])
+        y_at: Array = np.where(after_over, y[count:], y[:count])
+        # Normals (y, -x) of the two contacts, then tangents (x, y), and their moments.
+        rows = np.empty((count, 4, 6))
+        for column, centre in ((0, placed[:count]), (3, placed[count:])):
+            arm = x_at - centre[:, :1], y_at - centre[:, 1:2]
+            rows[:, :2, column], rows[:, :2, column + 1] = over[1], -over[0]
+            rows[:, :2, column + 2] = -(arm[0] * over[0] + arm[1] * over[1])
+            rows[:, 2:, column], rows[:, 2:, column + 1] = over
+            rows[:, 2:, column + 2] = arm[0] * over[1] - arm[1] * over[0]
+        rows *= self._moves
         return Touch(gap=gap, rows=rows), holds
 
-    def _on_face(self, tangents: Array, apart: Array) -> NDArray[np.bool_]:
-        """Tell which corners are on their faces still, and touch them with nothing else."""
-        count, chosen = len(self._length), self._corners
-        one, two = tangents[chosen], tangents[count + chosen]
-        face = np.where(self._carried_by_after, two, one)
-        along = np.matmul(apart[chosen], face[:, :, None])[:, :, 0]
-        inwards = np.where(self._carried_by_after, -1.0, 1.0) * np.array([1.0, -1.0])
-        turned = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
+    def _on_face(
+        self, one: tuple[Array, Array], two: tuple[Array, Array], apart: tuple[Array, Array]
+    ) -> NDArray[np.bool_]:
+        """Tell which corners are on their faces still, and touch them with nothing else.
+
+        Parameters
+        ----------
+        one, two : x and y, (joints, 1) float
+            Directions of the faces of `before` and `after`.
+        apart : x and y, (joints, 2) float
+            From the corners of `before` to those of `after`.
+        """
+        chosen = self._corners
+        (x, y), (u, v) = ((x[chosen], y[chosen]) for x, y in (one, two))
+        after = self._carried_by_after
+        x_apart, y_apart = (each[chosen] for each in apart)
+        along = x_apart * np.where(after, u, x) + y_apart * np.where(after, v, y)
+        inwards = np.where(after, -1.0, 1.0) * INWARDS
+        alike, turned = (x * u + y * v)[:, 0], (x * v - y * u)[:, 0]
         return (
             (along * inwards >= 0).all(axis=1)
-            & ((one * two).sum(axis=1) > WIDEST)
+            & (alike > WIDEST)
             & (turned > -self._turns[:, 0])
             & (turned < self._turns[:, 1])
         )
@@ -145,6 +158,8 @@ def faces_at_joints(assembly: Assembly) -> Array:
     that is given and not found, both faces end with it.
     """
     joints = assembly.joint_arrays
+    if (joints.faces == joints.ends[:, None]).all() and not joints.is_corner.any():
+        return joints.faces
     start, along = joints.ends[:, None, :1], joints.tangent[:, None, None]
     as_built = np.stack([np.zeros_like(joints.length), joints.length], axis=1)[:, None]
     where = ((joints.faces - start) * along).sum(axis=-1)

@@ -69,10 +69,12 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
     count = 0
     for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size
+        if product < CLOSE:
+            break
         weight: Array = forces / room
         short: Array = apart - room
         solve = bands.factored(edges, weight, turned)
-        if product < CLOSE or solve is None:
+        if solve is None:
             break
         seen, left = edges if turned is None else turned, free - x
 

@@ -45,6 +45,10 @@ class Polygons:
             length[body, face] = length[body, face - 1]
         self._normals = normal / length[..., None]
         self._rest = np.zeros((len(fixed), 3))
+        self._last: tuple[Array | None, tuple[Array, Array]] = (
+            None,
+            (self._corners, self._normals),
+        )
 
     def near(self, poses: Array, margin: float) -> NDArray[np.bool_]:
         """Tell which polygons' bounding boxes are within a margin, shape (moving, all)."""
@@ -102,15 +106,21 @@ class Polygons:
         return np.maximum(*gaps)
 
     def _placed(self, poses: Array) -> tuple[Array, Array]:
-        """Corners and normals of all polygons where they are."""
+        """Corners and normals of all polygons where they are; known of the place asked last."""
+        if poses is self._last[0]:
+            return self._last[1]
         every = np.vstack([poses, self._rest])
         cos, sin = np.cos(every[:, 2])[:, None], np.sin(every[:, 2])[:, None]
 
         def turned(vectors: Array) -> Array:
             x, y = vectors[..., 0], vectors[..., 1]
-            return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+            found = np.empty_like(vectors)
+            found[..., 0], found[..., 1] = cos * x - sin * y, sin * x + cos * y
+            return found
 
-        return turned(self._corners) + every[:, None, :2], turned(self._normals)
+        placed = turned(self._corners) + every[:, None, :2], turned(self._normals)
+        self._last = poses, placed
+        return placed
 
     def _rows(
         self,

@@ -9,7 +9,7 @@ are then two like any others. A block of several polygons meets others by each o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -48,8 +48,9 @@ class Neighbours:
     def __init__(self, assembly: Assembly) -> None:
         size = assembly.size
         self._joints = Geometry(assembly)
-        self._start = assembly.centres / size
-        self._reach = assembly.reach / size
+        self._start = np.column_stack([assembly.centres / size, np.zeros(len(assembly.blocks))])
+        self._arms = np.ones_like(self._start)
+        self._arms[:, 2] = assembly.reach / size
         self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._loose = False
@@ -60,15 +61,15 @@ class Neighbours:
         self._meet = (none, none)
         self._list()
 
-    def touch(self, poses: Array, reach: float) -> Touch:
+    def touch(self, poses: Array, fastest: Callable[[], float]) -> Touch:
         """Find the contacts of all pairs, and which pairs there are.
 
         Parameters
         ----------
         poses : (blocks, 3) float
             Centres of mass x, y and rotations, scaled.
-        reach : float
-            How far any corner may go in a step.
+        fastest : callable
+            Tells how far any corner may go in a step.
 
         Returns
         -------
@@ -76,13 +77,13 @@ class Neighbours:
             In the order of `before` and `after`, which may have changed.
         """
         touch, holds = self._joints.touch(poses)
-        moved = poses.copy()
-        moved[:, :2] -= self._start
-        moved[:, 2] *= self._reach
-        way = float(np.abs(moved).max())
-        self._loose = self._loose or (way > TIGHT and way > self.free)
         if not self._loose:
-            return touch
+            moved = poses * self._arms - self._start
+            way = float(np.abs(moved).max())
+            self._loose = way > TIGHT and way > self.free
+            if not self._loose:
+                return touch
+        reach = fastest()
         self._holds &= holds
         poses = poses[self.owner]
         near = self._polygons.near(poses, NEAR + 2 * reach) & ~self._same
@@ -147,7 +148,7 @@ class Neighbours:
         """Motion up to which nothing can touch but what shares a joint."""
         if not self._assembly.supports:
             return LOOSE
-        poses = np.column_stack([self._start, np.zeros(self._count)])[self.owner]
+        poses = self._start[self.owner]
         near = self._polygons.near(poses, 4 * LOOSE) & ~self._same
         _, first, second = self.sides
         near[first, second] = False

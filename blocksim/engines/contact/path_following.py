@@ -31,6 +31,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.banded import System
 from blocksim.engines.contact.coulomb import (
     FLATTEST,
+    LEAN,
     OPEN,
     SLIDES_DOWN,
     SLIDES_UP,
@@ -41,7 +42,7 @@ from blocksim.engines.contact.coulomb import (
     leaning,
 )
 from blocksim.engines.contact.slides import Slides
-from blocksim.engines.contact.step import Answer, Step
+from blocksim.engines.contact.step import Answer, Linear, Step
 
 STIFF = 1e8
 """Stiffness of the springs: what they yield then is mended in a few systems."""
@@ -49,8 +50,9 @@ MOST_PIECES = 20_000
 STEEP_PIECES = 40
 """The same for each joint with steep friction: longer ways are round-off going in circles."""
 
-NEAR_PIECES = 3
-"""The same for each joint from a guess: all apart is then as near."""
+NEAREST_PIECES, NEAR_PIECES = 2, 3
+"""The same for each joint from a guess: the best one leads there soon or hardly ever, and from
+others all apart is then as near."""
 
 
 def come_together(step: Step, preload: Array | None = None) -> Answer:
@@ -76,12 +78,13 @@ def come_together(step: Step, preload: Array | None = None) -> Answer:
     return _end(step, start, preload, most)
 
 
-def put_right(step: Step, guess: Answer) -> Answer:
+def put_right(step: Step, guess: Answer, most: int = NEAR_PIECES) -> Answer:
     """Balance stiff springs, from what a guess says.
 
     Velocities that its contacts may not have and forces that do not balance are taken for
     given, and fall to nothing along the path. It is the shorter the better the guess, a tenth
-    of that from all apart. Nothing tells that it arrives. Steep friction is not asked.
+    of that from all apart. Nothing tells that it arrives: after so many systems a joint it is
+    given up. Steep friction is not asked.
     """
     x, contacts, velocities = guess.x, guess.contacts.copy(), step.velocities(guess.x)
     held = np.abs(guess.forces[:, 2:])
@@ -103,7 +106,7 @@ def put_right(step: Step, guess: Answer) -> Answer:
         pull=-step.imbalance(x, forces),
         left=1.0,
     )
-    return _end(step, start, forces, NEAR_PIECES * len(forces))
+    return _end(step, start, forces, most * len(forces))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -138,8 +141,12 @@ def _end(step: Step, start: _Start, preload: Array, most: int) -> Answer:
     if found is None:
         return Answer.of_nothing(step)
     x, held, pieces = found
-    glued = preload - STIFF * step.velocities(x)
-    forces = step.friction.as_said(glued, start.contacts, held)
+    # What has been summed up over the pieces is off by round-off; what contacts do is not.
+    linear = Linear(step, start.contacts, STIFF)
+    way, more = linear.way(x, preload - STIFF * step.velocities(x), held)
+    if np.isfinite(way).all():
+        x, held = x + way, held + more
+    forces = linear.doing.forces(preload - STIFF * step.velocities(x), held)
     return Answer(x=x, forces=forces, contacts=start.contacts, systems=pieces)
 
 
@@ -201,14 +208,11 @@ def _follow(step: Step, start: _Start, most: int) -> tuple[Array, Array, int] | 
         left -= sign * length
         was = int(contacts[joint, end])
         now, back = beyond(was, edge, float(forces[joint, 2 + end]))
-        for part, does in ((-1.0, was), (1.0, now)):
-            contacts[joint, end] = does
-            own[joint] = friction.steep[joint] & (contacts[joint] >= SLIDES_UP)
-            acting, weight = _acting(
-                rows[joint], contacts[joint], friction.lean[joint], own[joint]
-            )
-            matrix = np.matmul(acting.T * weight, rows[joint])
-            system.add(joint, part * matrix, part * ((push[joint] * (weight > 0)) @ acting))
+        gone = _of_joint(step, joint, contacts, own, push)
+        contacts[joint, end] = now
+        own[joint] = friction.steep[joint] & (contacts[joint] >= SLIDES_UP)
+        here = _of_joint(step, joint, contacts, own, push)
+        system.add(joint, here[0] - gone[0], here[1] - gone[1])
         if friction.steep[joint]:
             size = abs(forces[joint, 2 + end])
             closed = size if own[joint, end] else flat[joint, 0] * size
@@ -220,6 +224,15 @@ def _follow(step: Step, start: _Start, most: int) -> tuple[Array, Array, int] | 
         rising = normal[crossed] * turn[joint, end] + tangential[crossed] * turn[joint, 2 + end]
         sign = 1.0 if rising > 0 else -1.0
     return None
+
+
+def _of_joint(
+    step: Step, joint: int, contacts: Contacts, own: NDArray[np.bool_], push: Array
+) -> tuple[Array, Array]:
+    """Return what a joint adds to the system: a matrix (6, 6), and a right side (6,)."""
+    rows, lean = step.rows[joint], step.friction.lean[joint]
+    acting, weight = _acting(rows, contacts[joint], lean, own[joint])
+    return np.matmul(acting.T * weight, rows), (push[joint] * (weight > 0)) @ acting
 
 
 def _acting(
@@ -237,4 +250,4 @@ def _acting(
     """
     closed = (contacts != OPEN) & ~own
     weight = STIFF * np.concatenate([closed, contacts == STICKS], axis=-1)
-    return leaning(rows, contacts, lean), weight
+    return leaning(rows, lean * LEAN[contacts]), weight

@@ -66,7 +66,7 @@ class Slides:
         -------
         x : (3 blocks,) float
         held : (joints, 2) float
-            Friction of these contacts, 0 elsewhere.
+            Friction of these contacts, 0 elsewhere. All is nan where the system is singular.
         """
         count, place = len(self._joint), self._bands.place[self._joint]
         columns = np.zeros((self._bands.size + 1, count))
@@ -76,8 +76,8 @@ class Slides:
         seen = (self._seen[:, :, None] * padded[place]).sum(axis=1)
         small = seen[:, 1:] + np.diag(self._flat / stiffness)
         held = np.zeros(self._own.shape)
-        if np.isfinite(small).all() and np.isfinite(seen[:, 0]).all():
+        try:
             held[self._own] = np.linalg.solve(small, target[self._own] - seen[:, 0])
-        else:
+        except np.linalg.LinAlgError:
             held[self._own] = np.nan
         return found[:, 0] + found[:, 1:] @ held[self._own], held

@@ -16,7 +16,8 @@ What each contact does is guessed, and mended until all forces and velocities ag
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction, steep one taken to be less;
-- the end of a path that begins at the first of these guesses (`path_following.py`);
+- the end of a path that begins at the last of these guesses, if it is short, or at the first
+  (`path_following.py`);
 - the end of one that begins with all contacts apart.
 """
 
@@ -36,18 +37,24 @@ from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
 from blocksim.engines.contact.interior import central_path
-from blocksim.engines.contact.path_following import come_together, put_right
+from blocksim.engines.contact.path_following import NEAREST_PIECES, come_together, put_right
 from blocksim.engines.contact.step import Answer, Step
 from blocksim.engines.contact.threads import one_thread
 
 EXACT = 1e-16
 """Yield of a contact that is round-off, with accelerations of 1 [g]."""
+SURE = 1e-6
+"""Residual over the accelerations at which blocks surely move: faces that do not quite fit keep
+what contacts do from being told."""
 NEAR_REST = 1e-4
 """Accelerations below which an arch is so near its limit that half of the digits say little."""
 SOLVED = 1e-9
 """Residual of a solution."""
 TAME = 10.0, 3.0
 """Friction that is taken in place of steep one, for guesses of what contacts do."""
+MOST_PARTINGS, PARTED = 5, 1e-8
+"""How often steep friction is taken from joints that part; what counts as parting [g], and as
+friction [mean weights]."""
 ENOUGH = 3e-8
 """Residual for which no path is followed: of a moving step, because once they have moved joints
 may not close any better; from nothing if contacts are told, as a path tells them no better."""
@@ -96,14 +103,21 @@ class ContactProblem:
         Mass, mass and moment of inertia, in mean masses.
     mu : float or (joints,) float
         Friction coefficient of all joints, or of each; 0 and inf allowed.
+    points : (blocks, 2) float, optional
+        Where the blocks are, about; it makes no difference but in time.
     """
 
     def __init__(
-        self, before: NDArray[np.int64], after: NDArray[np.int64], mass: Array, mu: ArrayLike
+        self,
+        before: NDArray[np.int64],
+        after: NDArray[np.int64],
+        mass: Array,
+        mu: ArrayLike,
+        points: Array | None = None,
     ) -> None:
         self.friction = Friction.of(mu, len(before))
         self.root = np.sqrt(mass)
-        self.bands = Bands(before, after, len(mass))
+        self.bands = Bands(before, after, len(mass), points)
         self.scale = self.bands.of_joints(1 / self.root.ravel())[:, None, :]
 
     def solve(
@@ -159,7 +173,8 @@ class ContactProblem:
                     break
                 best = best.or_better(settle(step, path(), precision))
         # From nothing an answer close by may be that of another arch.
-        sure = best.is_settled or start is not None
+        close = SURE * min(1.0, float(np.abs(best.x).max()))
+        sure = best.is_settled or start is not None or best.residual <= close
         return Solution(
             acceleration=best.x.reshape(-1, 3) / self.root,
             forces=best.forces,
@@ -170,13 +185,15 @@ class ContactProblem:
 
     def _guesses(self, step: Step, start: Solution | None) -> Iterator[Answer]:
         """Give what contacts may do, the likeliest and cheapest first."""
-        cones = Cones.of(step)
         if start is None:
+            cones = Cones.of(step)
             x, pressed, systems = central_path(step, cones, dilates=True)
             yield cones.answer(step, x, pressed, systems)
             if step.friction.some_steep or float(np.abs(x).max()) < NEAR_REST:
                 x, pressed, systems = minimised(step, cones, x, pressed)
-                yield cones.answer(step, x, pressed, systems)
+                answer = cones.answer(step, x, pressed, systems)
+                yield answer
+                yield from _parted(step, answer)
         else:
             x = (start.acceleration * self.root).ravel()
             yield Answer(x=x, forces=start.forces, contacts=start.contacts)
@@ -191,5 +208,27 @@ class ContactProblem:
     ) -> Iterator[Callable[[], Answer]]:
         """Give what follows a path, the shorter one first."""
         if not step.friction.some_steep:
+            if not known:
+                yield lambda: put_right(step, guesses[-1], NEAREST_PIECES)
             yield lambda: put_right(step, guesses[0])
         yield lambda: come_together(step, None if known else guesses[-1].forces)
+
+
+def _parted(step: Step, answer: Answer) -> Iterator[Answer]:
+    """Take friction from joints that hold it across a gap, until none does.
+
+    Steep friction that dilates needs no pressure. So it goes on where joints part, which
+    Coulomb's may not.
+    """
+    for _ in range(MOST_PARTINGS):
+        least = step.velocities(answer.x)[:, :2].min(axis=1, keepdims=True)
+        rubs = np.abs(answer.forces[:, 2:]).max(axis=1, keepdims=True)
+        parts = step.friction.steep & (np.minimum(least, rubs) > PARTED)
+        if not parts.any():
+            return
+        step = replace(step, friction=Friction(np.where(parts, 0.0, step.friction.mu)))
+        cones = Cones.of(step)
+        x, pressed, systems = central_path(step, cones, dilates=True)
+        x, pressed, more = minimised(step, cones, x, pressed)
+        answer = cones.answer(step, x, pressed, systems + more)
+        yield answer

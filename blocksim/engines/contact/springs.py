@@ -15,13 +15,19 @@ SOFT, STIFF = 1e3, 1e9
 """Least and largest stiffness."""
 STIFFNESS = 1e4
 """Stiffness times accelerations, limited by round-off."""
+MOVING, ROUGH = 4e5, 1e-12
+"""The same where no contact has to yield by less than that: forces are asked for 1e-10 only."""
 STEEPEST = 3.0
 """Friction above which springs are softer: friction multiplies their forces."""
 
 
-def stiffness_at(friction: Friction, x: Array) -> float:
-    """Return the stiffness that round-off allows at accelerations x."""
+def stiffness_at(friction: Friction, x: Array, precision: float = 0.0) -> float:
+    """Return the stiffness that round-off allows at accelerations x.
+
+    The stiffer springs are, the fewer systems they take; yields are wanted to a precision [g].
+    """
+    rough = precision >= ROUGH and not friction.some_steep
     # Steep friction multiplies nothing: it is an unknown of its own.
     softer = max(1.0, float(friction.lean.max(initial=0.0)) / STEEPEST)
     largest = max(float(np.abs(x).max()), 1e-9)
-    return float(np.clip(STIFFNESS / softer / largest, SOFT, STIFF))
+    return float(np.clip((MOVING if rough else STIFFNESS) / softer / largest, SOFT, STIFF))

@@ -15,6 +15,7 @@ from blocksim.engines.contact.coulomb import (
     SLIDES_UP,
     STICKS,
     Contacts,
+    Doing,
     Friction,
     leaning,
 )
@@ -88,49 +89,31 @@ class Step:
         """Return what is left of each block's acceleration times mass."""
         return x - self.free - self.bands.pull(self.rows, forces)
 
-    def way(
-        self, contacts: Contacts, x: Array, glued: Array, held: Array, stiffness: float
-    ) -> tuple[Array, Array]:
-        """Return the change of x that balances the springs if each contact does as said.
-
-        And that of `held`, the friction of contacts that slide with steep friction.
-        """
-        friction = self.friction
-        forces = friction.as_said(glued, contacts, held)
-        right = -self.imbalance(x, forces)
-        own = friction.own(contacts)
-        closed = (contacts != OPEN) & ~own
-        weight = stiffness * np.concatenate([closed, contacts == STICKS], axis=-1)
-        acting = leaning(self.rows, contacts, friction.lean)
-        if not own.any():
-            return self.bands.solve(acting, weight, self.rows, right), np.zeros(own.shape)
-        slides = Slides(self.bands, self.rows, contacts, own, friction.flattest)
-
-        def solve(besides: Array) -> Array:
-            both = np.column_stack([right, besides])
-            return self.bands.solve(acting, weight, self.rows, both)
-
-        return slides.solve(solve, (glued[:, :2] - forces[:, :2]) / stiffness, stiffness)
-
     def residual(self, x: Array, forces: Array, rates: Array | None = None) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
-        imbalance = np.abs(self.imbalance(x, forces)).max()
+        worst = float(np.abs(self.imbalance(x, forces)).max())
         rates = self.velocities(x) if rates is None else rates
-        pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
-        unilateral = np.abs(np.minimum(pressure, rates[:, :2])).max(initial=0.0)
+        normal, slip = rates[:, :2], rates[:, 2:]
+        pressure, friction = forces[:, :2], forces[:, 2:]
         # Friction in the cone; at its edge, against the slip, or no slip.
         a, b = self.friction.room
-        beyond = (b * np.abs(friction) - a * pressure).max(initial=0.0)
-        against = a * pressure + b * np.sign(slip) * friction
-        coulomb = max(beyond, np.minimum(against, np.abs(slip)).max(initial=0.0))
+        most, size, way = a * pressure, b * np.abs(friction), np.abs(slip)
+        helping = np.sign(slip) * friction
+        wrongs = [
+            np.abs(np.minimum(pressure, normal)),
+            size - most,
+            np.minimum(most + b * helping, way),
+        ]
         if self.friction.some_steep:
             # Nor does friction help the slip, or act across a gap.
-            for wrong in (
-                np.minimum(np.sign(slip) * friction, np.abs(slip)),
-                np.minimum(np.abs(friction), rates[:, :2]),
-            ):
-                coulomb = max(coulomb, float(np.where(self.friction.steep, wrong, 0.0).max()))
-        return float(max(imbalance, unilateral, coulomb)) / max(1.0, float(np.abs(x).max()))
+            wrongs += [
+                np.where(self.friction.steep, wrong, 0.0)
+                for wrong in (np.minimum(helping, way), np.minimum(np.abs(friction), normal))
+            ]
+        for wrong in wrongs:
+            # Unlike max, this keeps nan.
+            worst = np.maximum(worst, wrong.max(initial=0.0))
+        return float(worst) / max(1.0, float(np.abs(x).max()))
 
     def told(self, x: Array, forces: Array) -> Contacts:
         """Tell what contacts do where what is about 0 is still more than nothing."""
@@ -141,3 +124,50 @@ class Step:
         contacts[a * pressure - b * np.abs(along) > np.abs(rates[:, 2:])] = STICKS
         contacts[pressure <= rates[:, :2]] = OPEN
         return contacts
+
+
+class Linear:
+    """A step while its contacts do as said, with springs: one banded system, factored once.
+
+    Parameters
+    ----------
+    step : Step
+    contacts : (joints, 2) int
+    stiffness : float
+        Of the springs.
+    """
+
+    def __init__(self, step: Step, contacts: Contacts, stiffness: float) -> None:
+        self._step, self._stiffness = step, stiffness
+        self.doing = doing = Doing(step.friction, contacts)
+        acting = leaning(step.rows, doing.slope)
+        self._solve = step.bands.factored(acting, stiffness * doing.springs, step.rows)
+        self._slides = None
+        if doing.own is not None:
+            flattest = step.friction.flattest
+            self._slides = Slides(step.bands, step.rows, contacts, doing.own, flattest)
+
+    def way(self, x: Array, glued: Array, held: Array) -> tuple[Array, Array]:
+        """Return the change of x that balances the springs, nan where there is none.
+
+        And that of `held`, the friction of contacts that slide with steep friction.
+
+        Parameters
+        ----------
+        x : (3 blocks,) float
+        glued : (joints, 4) float
+            Forces of the springs at x.
+        held : (joints, 2) float
+        """
+        solve, nothing = self._solve, np.zeros_like(held)
+        if solve is None:
+            return np.full_like(x, np.nan), nothing
+        forces = self.doing.forces(glued, held)
+        right = -self._step.imbalance(x, forces)
+        if self._slides is None:
+            return solve(right), nothing
+        return self._slides.solve(
+            lambda besides: solve(np.column_stack([right, besides])),
+            (glued[:, :2] - forces[:, :2]) / self._stiffness,
+            self._stiffness,
+        )
