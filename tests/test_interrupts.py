@@ -18,7 +18,7 @@ import pytest
 from running import PROGRAM, alive, children, until
 from sweeps import SIMULATED, written
 
-ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "301", "--method", "pymunk", "--no-reduce")
+ARCH = "--alpha 90 --mu 0.7 --voussoirs 301 --method pymunk --no-reduce".split()
 LINE = b"blocksim: interrupted\n"
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143}
 

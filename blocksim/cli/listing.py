@@ -11,8 +11,7 @@ from blocksim.arch.scenario import load_scenario, shipped
 from blocksim.cli.arguments import Argument
 from blocksim.cli.output import say
 from blocksim.cli.terminal import show
-from blocksim.common.checks import require
-from blocksim.common.errors import perhaps
+from blocksim.common.errors import InputError, perhaps
 from blocksim.kinds import KINDS
 from blocksim.kinds.base import parameters_of
 from blocksim.studies.structures import structures
@@ -61,7 +60,8 @@ def list_kinds(
             table.add_row(kind.name, kind.about, ", ".join(parameters_of(kind)))
         show(table)
         return
-    require(name in KINDS, "kind", name, f"one of {', '.join(KINDS)}{perhaps(name, KINDS)}")
+    if name not in KINDS:
+        raise InputError("kind", name, f"one of {', '.join(KINDS)}{perhaps(name, KINDS)}")
     for heading in ("parameter", "if left out", "may be", "what it is", "--over"):
         table.add_column(heading)
     usual = KINDS[name]()

@@ -157,16 +157,14 @@ def _released(
         poses.append(world.poses())
         moved.append(_moved(assembly, poses))
         # What goes far at once is no longer the mechanism: the engine tells of its overlaps.
-        told = world.quality().penetration is not None and moved[-1] > FAR
+        told = moved[-1] > FAR and world.quality().penetration is not None
         if moved[-1] > simulation.settings.noise and moved[-2] < EARLY and not told:
             overlap = max(overlap, overlap_share(assembly, poses[-1]))
         if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
             break
-        if until is not None and moved[-1] > MOVED:
-            if rests and not last:
-                break
-            if lie_still(assembly, poses):
-                break
+        fallen = until is not None and moved[-1] > MOVED
+        if fallen and ((rests and not last) or lie_still(assembly, poses)):
+            break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
     reason = _reason(verdict, times, moved, overlap, simulation.length)

@@ -115,7 +115,7 @@ def named_file(path: AnyPath, unit: float | None = None) -> Generator[object]:
     ending = Path(path).suffix.lower()
     if ending not in WRITTEN and ending not in DRAWN:
         known = shipped_structures()
-        near = perhaps(path, known)
+        near = "" if path in known else perhaps(path, known)
         path = str(known.get(path, path))
         ending = Path(path).suffix
     endings = ".json, .toml, .dxf or .svg"

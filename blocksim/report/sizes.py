@@ -41,7 +41,7 @@ def size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -> lis
         The line that was measured; the intrados if none was. An arch with a radius of 1
         of which none was measured is told in radii.
     """
-    metric = _is_metric(arch, at)
+    metric = is_metric(arch, at)
     unit, at = ("m" if metric else "r"), at or "intrados"
     said: list[str] = []
     if arch.eta < 2 or at != "intrados":
@@ -58,13 +58,14 @@ def size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -> lis
 
 def unit_lines(arch: Arch, at: At | None = None) -> list[str]:
     """Return of which size forces are, in words, where an arch is told in radii."""
-    if _is_metric(arch, at):
+    if is_metric(arch, at):
         return []
     heavy = arch.specific_weight / 1000
     return [f"  unit    no size was given: forces are those of r = 1 m and {heavy:.6g} kN/m3"]
 
 
-def _is_metric(arch: Arch, at: At | None) -> bool:
+def is_metric(arch: Arch, at: At | None = None) -> bool:
+    """Tell whether an arch has a size: a line of it was measured, or its radius is given."""
     return at is not None or arch.radius != 1
 
 

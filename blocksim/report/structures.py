@@ -19,7 +19,7 @@ from blocksim.common.version import __version__
 from blocksim.common.words import counted
 from blocksim.kinds.files import kind_behind
 from blocksim.report.carried import carried_lines, carried_record
-from blocksim.report.sizes import unit_lines
+from blocksim.report.sizes import is_metric, unit_lines
 from blocksim.report.structuresizes import problem_size_lines, problem_size_record
 
 SHOWN = 8
@@ -271,7 +271,7 @@ def described(problem: Problem) -> str:
     if problem.shaking is not None:
         said.append(problem.shaking.words)
     arch = arch_of(problem)
-    said.append("L = r" if arch and unit_lines(arch) else f"L = {assembly.size:g} m")
+    said.append(f"L = {assembly.size:g} m" if not arch or is_metric(arch) else "L = r")
     return ", ".join(said)
 
 

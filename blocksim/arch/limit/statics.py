@@ -122,23 +122,22 @@ def thrust_bounds(
     turns = turning(joints, np.array([depth]), np.array([spread]))
     if turns.broken().any():
         return Bound(-math.inf, math.inf), Bound(math.inf, -math.inf)
-    low, high = slides or friction_bounds(joints, mu)
-    lower, upper = _tightest(turns)
-    return (
-        low if low.short < lower.short else lower,
-        high if high.short > upper.short else upper,
-    )
+    return _within(_tightest(turns), slides or friction_bounds(joints, mu))
 
 
 def friction_bounds(joints: Joints, mu: float) -> tuple[Bound, Bound]:
     """Interval of thrusts with which no joint slides, whatever the thickness."""
-    lower, upper = Bound(math.inf, -math.inf), Bound(-math.inf, math.inf)
     if not math.isfinite(mu):
-        return lower, upper
+        return Bound(math.inf, -math.inf), Bound(-math.inf, math.inf)
     up, down = (_tightest(sliding(joints, np.array([mu]), sign)) for sign in (1.0, -1.0))
+    return _within(up, down)
+
+
+def _within(first: tuple[Bound, Bound], second: tuple[Bound, Bound]) -> tuple[Bound, Bound]:
+    """Return what two intervals share."""
     return (
-        down[0] if down[0].short < up[0].short else up[0],
-        down[1] if down[1].short > up[1].short else up[1],
+        second[0] if second[0].short < first[0].short else first[0],
+        second[1] if second[1].short > first[1].short else first[1],
     )
 
 
