@@ -18,7 +18,8 @@ import pytest
 from running import PROGRAM, alive, children, until
 from sweeps import SIMULATED, written
 
-ARCH = "--alpha 90 --mu 0.7 --voussoirs 301 --method pymunk --no-reduce".split()
+ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "301")
+SLOW = ("--method", "pymunk", "--no-reduce", "--tol", "1e-4")
 LINE = b"blocksim: interrupted\n"
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
@@ -59,7 +60,7 @@ def interrupted(
     ],
 )
 def test_while_it_starts(delay: float, sent: signal.Signals) -> None:
-    interrupted(imports, delay, sent, "bracket", *ARCH, "--tol", "1e-4")
+    interrupted(imports, delay, sent, "bracket", *ARCH, *SLOW)
 
 
 MOMENT = ("sweep", 0.5, signal.SIGINT)
