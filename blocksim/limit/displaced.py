@@ -28,6 +28,8 @@ OFF = 1e-9
 """How far closed contacts may be apart; the blocks cannot follow where it is more [size]."""
 ROUNDS = 50
 """Most corrections of places; a few are the rule."""
+HALVINGS = 10
+"""How often one is halved until it leads nearer."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -206,9 +208,11 @@ class Displaced:
 
     def margin(self, frame: Frame) -> float:
         """Say how well forces of equilibrium fit into the closed contacts."""
-        if len(left := self._apart(frame)[0]) and np.abs(left).max() > OFF:
-            return -1.0
-        return max(equilibrium(self.problem(frame)).margin, -1.0)
+        return max(equilibrium(self.problem(frame)).margin, -1.0) if self.fit(frame) else -1.0
+
+    def fit(self, frame: Frame) -> bool:
+        """Tell whether contacts that are closed are so in fact: the blocks could follow."""
+        return bool(np.abs(self._apart(frame)[0]).max(initial=0.0) <= OFF)
 
     def opened(
         self, frame: Frame, rates: Array, value_rate: float
@@ -250,12 +254,23 @@ class Displaced:
         return self.opened(frame, rates, 1.0)
 
     def carried(self, frame: Frame, value: float, poses: Array | None = None) -> Frame:
-        """Carry the blocks to another position of the supports, contacts closed as they are."""
+        """Carry the blocks to another position of the supports, contacts closed as they are.
+
+        As near to that as they come: where hinges get into line the blocks cannot follow.
+        """
         now = replace(frame, value=value, poses=frame.poses if poses is None else poses)
+        left, rows = self._apart(now)
         for _ in range(ROUNDS):
-            left, rows = self._apart(now)
-            change = np.linalg.lstsq(rows, -left, rcond=1e-12)[0]
-            now = replace(now, poses=now.poses + change.reshape(-1, PLANAR))
+            change = np.linalg.lstsq(rows, -left, rcond=1e-12)[0].reshape(-1, PLANAR)
+            # A whole step from near such a line may lead anywhere.
+            for part in 0.5 ** np.arange(HALVINGS):
+                ahead = replace(now, poses=now.poses + part * change)
+                still, there = self._apart(ahead)
+                if still @ still < left @ left:
+                    break
+            else:
+                break
+            now, left, rows = ahead, still, there
             if np.abs(change).max(initial=0.0) < 1e-14:
                 break
         return now

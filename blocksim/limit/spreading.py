@@ -155,11 +155,12 @@ def _where(
     blocks: Displaced, measure: Callable[[Frame], float], frame: Frame, ahead: Frame
 ) -> Frame:
     """Find the position at which a measure falls to nothing."""
+    # Where blocks cannot follow, their places say nothing of those on the way.
+    way = ahead.poses - frame.poses if blocks.fit(ahead) else 0.0
 
     def at(share: float) -> Frame:
         value = frame.value + share * (ahead.value - frame.value)
-        poses = frame.poses + share * (ahead.poses - frame.poses)
-        return blocks.carried(frame, value, poses)
+        return blocks.carried(frame, value, frame.poses + share * way)
 
     if measure(at(0.0)) <= 0:
         return at(0.0)
@@ -181,6 +182,9 @@ def _falls(blocks: Displaced, frame: Frame) -> tuple[Frame | None, Frame | None,
     now, first = frame, None
     for push in PUSH:
         now = blocks.carried(frame, frame.value + push * blocks.size)
+        if not blocks.fit(now):
+            # Hinges have got into line: the blocks cannot follow, and come apart.
+            return None, None, None
         if blocks.margin(now) < -10 * ENOUGH:
             break
     way = 0.0
