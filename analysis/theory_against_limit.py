@@ -26,6 +26,7 @@ from blocksim.arch.limit.bulk import (
     short_intervals,
     spreads,
 )
+from blocksim.arch.limit.halfplanes import Joints
 from blocksim.arch.theory import CriticalArrays, least_thicknesses
 from blocksim.blocks.assembly import Array
 
@@ -51,7 +52,7 @@ def limit_of_many(half_angle: Array, mu: Array, weight: Weight) -> tuple[Array, 
         eta = least_thickness_of_joints(joints, mu, weight)
         known = np.nan_to_num(eta, nan=2.0)
         spread = spreads(known, weight)
-        most, least = short_intervals(joints, known, mu, spread)
+        most, least = short_intervals(Joints(joints), known, mu, spread)
         ends = np.clip(1 - (most + least) / 2, -1e3, 1e3)
         thrust = np.where(np.isnan(eta), np.nan, ends)
         h, factor, depth = ends[:, None], 1 + spread[:, None], known[:, None] / 2

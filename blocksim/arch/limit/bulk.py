@@ -69,7 +69,8 @@ def which_stand(
     for start in range(0, alpha.size, size):
         part = slice(start, start + size)
         a, e, m = (values[part] for values in flat)
-        most, least = short_intervals(joints_of(a, voussoirs), e, m, spreads(e, weight))
+        joints = Joints(joints_of(a, voussoirs))
+        most, least = short_intervals(joints, e, m, spreads(e, weight))
         found[part] = most >= least
     return found.reshape(alpha.shape)
 
@@ -90,13 +91,13 @@ def spreads(eta: Array, weight: Weight) -> Array:
     return np.zeros_like(eta) if weight == "centreline" else eta**2 / 12
 
 
-def short_intervals(angles: Array, depth: Array, mu: Array, spread: Array) -> Intervals:
+def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> Intervals:
     """Intervals of thrusts in equilibrium with strength at every joint.
 
     Parameters
     ----------
-    angles : (k, j) float
-        Joints of one half of each arch [rad].
+    joints : Joints
+        Of one half of each arch.
     depth, mu, spread : (k,) float
         As in `thrust_bounds`.
 
@@ -104,13 +105,14 @@ def short_intervals(angles: Array, depth: Array, mu: Array, spread: Array) -> In
     -------
     Intervals
     """
-    turns = turning(Joints(angles), depth, spread)
+    turns = turning(joints, depth, spread)
     highest, lowest = turns.ends()
     most, least = highest.min(axis=(1, 2)), lowest.max(axis=(1, 2))
     # Parallel half-planes leave nothing where the upper one is below the lower one.
     most[turns.broken().any(axis=(1, 2))] = -np.inf
     held = np.flatnonzero(np.isfinite(mu))
-    joints = Joints(angles[held])
+    if len(held) < len(mu):
+        joints = Joints(joints.angles[held])
     for sign in (1.0, -1.0):
         highest, lowest = sliding(joints, mu[held], sign).ends()
         most[held] = np.minimum(most[held], highest.min(axis=1))
@@ -138,7 +140,7 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
     size = chunk_size(angles.shape[1])
     for start in range(0, mu.size, size):
         part = slice(start, start + size)
-        joints, friction = angles[part], mu[part]
+        joints, friction = Joints(angles[part]), mu[part]
         low, high = np.zeros(friction.size), np.full(friction.size, ETA_MAX)
         never = _empty(joints, high, friction, weight)
         for _ in range(HALVINGS):
@@ -150,8 +152,8 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
     return found
 
 
-def _empty(angles: Array, eta: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
-    most, least = short_intervals(angles, eta, mu, spreads(eta, weight))
+def _empty(joints: Joints, eta: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
+    most, least = short_intervals(joints, eta, mu, spreads(eta, weight))
     return most < least
 
 

@@ -14,6 +14,8 @@ of `blocksim.common.series`, nothing cancels.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -27,13 +29,15 @@ class Bounds(NamedTuple):
 
     Parameters
     ----------
-    rate, level, level_h : float
+    rate, level : float
         Arrays of one shape.
+    level_h : callable
+        Place in them to what the other form has there.
     """
 
     rate: Array
     level: Array
-    level_h: Array
+    level_h: Callable[[tuple[int, ...]], float]
 
     def ends(self) -> tuple[Array, Array]:
         """Largest and smallest 1 - h of each condition, inf and -inf where it sets none."""
@@ -44,7 +48,7 @@ class Bounds(NamedTuple):
 
     def thrust(self, place: tuple[int, ...]) -> float:
         """Thrust h at which one condition is met exactly."""
-        return float(self.level_h[place] / self.rate[place])
+        return self.level_h(place) / float(self.rate[place])
 
     def broken(self) -> Array:
         """Whether a condition no thrust can change is not met."""
@@ -70,6 +74,25 @@ class Joints:
         self.bow = -(square**2) * p_series(square)
         self.lag = angles**3 * lag_series(square)
 
+    @cached_property
+    def pairs(self) -> Pairs:
+        """What `turning` takes from all pairs of them, (k, j, j) each."""
+        return Pairs(
+            lift=_less(self.lift),
+            cosine=_sum(self.cosine),
+            bow=_less(self.bow),
+            force=_sum(self.force),
+        )
+
+
+class Pairs(NamedTuple):
+    """Differences and sums over pairs of joints, of the values of the same names."""
+
+    lift: Array
+    cosine: Array
+    bow: Array
+    force: Array
+
 
 def turning(joints: Joints, depth: Array, spread: Array) -> Bounds:
     """Pairs of joints where the line of thrust touches extrados (i) and intrados (j).
@@ -89,12 +112,20 @@ def turning(joints: Joints, depth: Array, spread: Array) -> Bounds:
     Bounds
         Shape (k, j, j).
     """
-    half, extra = depth[:, None, None] / 2, spread[:, None]
-    bow = joints.bow - extra * joints.lift
-    rate = _less(-joints.lift) + half * _sum(joints.cosine)
-    level = _less(bow) + half * _sum(joints.force)
-    lever = joints.vertical - (1 + extra) * joints.lift
-    return Bounds(rate, level, -(_less(lever) + half * _sum(joints.vertical)))
+    pairs = joints.pairs
+    half, extra = depth[:, None, None] / 2, spread[:, None, None]
+    level = pairs.bow + half * pairs.force
+    if extra.any():
+        level -= extra * pairs.lift
+
+    def level_h(place: tuple[int, ...]) -> float:
+        arch, i, j = place
+        vertical = joints.vertical[arch]
+        lever = vertical - (1 + spread[arch]) * joints.lift[arch]
+        reach = depth[arch] / 2 * (vertical[i] + vertical[j])
+        return float(-(lever[i] - lever[j] + reach))
+
+    return Bounds(half * pairs.cosine - pairs.lift, level, level_h)
 
 
 def sliding(joints: Joints, mu: Array, sign: float) -> Bounds:
@@ -115,8 +146,13 @@ def sliding(joints: Joints, mu: Array, sign: float) -> Bounds:
     """
     grip, sine, cosine = mu[:, None], joints.sine, joints.cosine
     rate = grip * cosine - sign * sine
-    level_h = -joints.angles * (sign * cosine + grip * sine)
-    return Bounds(rate, grip * joints.force - sign * joints.lag, level_h)
+    level = grip * joints.force - sign * joints.lag
+
+    def level_h(place: tuple[int, ...]) -> float:
+        turned = sign * cosine[place] + mu[place[0]] * sine[place]
+        return float(-joints.angles[place] * turned)
+
+    return Bounds(rate, level, level_h)
 
 
 def _less(values: Array) -> Array:
