@@ -386,6 +386,18 @@ class Assembly:
             carrier=(is_corner & ~has_length).astype(np.int64),
         )
 
+    @cached_property
+    def joint_arms(self) -> Array:
+        """From the centres of the blocks before and after joints to their ends.
+
+        Shape (2 sides, joints, 2 ends, 2), in units of the size; from the origin for the
+        ground.
+        """
+        joints = self.joint_arrays
+        centres = np.vstack([self.centres / self.size, np.zeros(2)])
+        arms = joints.ends - centres[[joints.before, joints.after]][:, :, None]
+        return frozen(arms, (2, -1, 2, 2))
+
     def _faces(self, joint: Joint) -> Array:
         """Return the faces of `before` and `after` that meet in a joint [m]."""
         given = joint.faces

@@ -57,39 +57,35 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     JointMotion
         Lengths in units of the assembly's size.
     """
-    size, joints = assembly.size, assembly.joint_arrays
-    before, after, ends, normal, tangent, *_ = joints
+    joints, arms = assembly.joint_arrays, assembly.joint_arms
     # The support is appended as a block that stays where it is, index -1.
-    start = np.vstack([assembly.centres / size, np.zeros(2)])
-    moved = np.vstack([poses[:, :PLANAR], np.zeros(PLANAR)])
-
-    def carried(block: NDArray[np.int64]) -> Array:
-        """Where the block has taken the two ends of the joint, less where they were."""
-        arm = ends - start[block][:, None]
-        angle = moved[block, 2][:, None, None]
-        # cos - 1 = -2 sin^2(angle/2): no cancellation for small rotations.
-        versine = 2 * np.sin(angle / 2) ** 2
-        spun = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) * np.sin(angle) - arm * versine
-        return spun + (moved[block, :2] - start[block])[:, None]
-
-    apart = carried(after) - carried(before)
-    mean: Array = (moved[after, 2] + moved[before, 2]) / 2
+    moved = np.zeros((len(poses) + 1, PLANAR))
+    moved[:-1] = poses[:, :PLANAR]
+    moved[:-1, :2] -= assembly.centres / assembly.size
+    sides = moved[[joints.before, joints.after]]
+    turns: Array = sides[..., 2]
+    # cos - 1 = -2 sin^2(angle/2): no cancellation for small rotations.
+    sine, versine = np.sin(turns)[..., None], 2 * np.sin(turns / 2)[..., None] ** 2
+    x, y = arms[..., 0], arms[..., 1]
+    # Where blocks have taken the two ends of the joints, less where they were.
+    x, y = (
+        sides[..., :1] - y * sine - x * versine,
+        sides[..., 1:2] + x * sine - y * versine,
+    )
+    x, y = x[1] - x[0], y[1] - y[0]
+    mean: Array = (turns[1] + turns[0]) / 2
     if joints.is_corner.any():
         # The face that carries a corner says which way it opens.
-        own = moved[np.where(joints.carrier == 1, after, before), 2]
+        own: Array = turns[joints.carrier, np.arange(len(mean))]
         mean = np.where(joints.is_corner, own, mean)
-    cos, sin = np.cos(mean)[:, None], np.sin(mean)[:, None]
-
-    def along(axis: Array) -> Array:
-        turned = np.stack(
-            [axis[:, :1] * cos - axis[:, 1:] * sin, axis[:, :1] * sin + axis[:, 1:] * cos], -1
-        )
-        return np.einsum("jek,jk->je", apart, turned[:, 0])
-
+    cos, sin = np.cos(mean), np.sin(mean)
+    right, up = joints.normal.T
+    right, up = (right * cos - up * sin)[:, None], (right * sin + up * cos)[:, None]
+    # The tangent is the normal turned by a right angle.
     return JointMotion(
-        gap=along(normal),
-        slip=along(tangent).mean(axis=1),
-        turn=moved[after, 2] - moved[before, 2],
+        gap=x * right + y * up,
+        slip=(y * right - x * up).mean(axis=1),
+        turn=turns[1] - turns[0],
     )
 
 
