@@ -26,11 +26,14 @@ from blocksim.blocks.assembly import Array
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.step import Step
 
-CLOSE = 1e-14
+CLOSE = 1e-12
 """Mean product of force and velocity at the edges at which the contacts tell what they do."""
 MOST_STEPS = 80
 BOLD = 0.995
-"""Share of the way to the bounds that a step goes."""
+"""Least share of the way to the bounds that a step goes."""
+START, STEEP_START = (0.1, 3.0), (1.0, 1.0)
+"""Least room [g] and forces [mean weights] to begin with, at rest. The first are about those of
+what stands, and save a third of the systems; steep friction would be wedged by them."""
 SHORTEST = 1e-4
 """Least part of a step that counts as progress."""
 SMOOTH = 0.01
@@ -60,12 +63,13 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
     """
     edges, offset = cones.edges, cones.offset
     bands, free = step.bands, step.free
-    x, lift, turned = free, 0.0, None
+    x, lift, turned = np.zeros_like(free), 0.0, None
     if not dilates:
         lift, turned = _lift(step, x, cones, SMOOTH)
     apart = bands.along(edges, x) + offset + lift
-    room: Array = np.maximum(np.abs(apart), 1.0)
-    forces: Array = np.ones_like(apart)
+    least, pressed = STEEP_START if step.friction.some_steep else START
+    room: Array = np.maximum(np.abs(apart), least)
+    forces: Array = np.full_like(apart, pressed)
     count = 0
     for count in range(MOST_STEPS):  # noqa: B007
         product = float(np.vdot(room, forces)) / room.size
@@ -91,7 +95,9 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
         after = float(np.vdot(room + ahead * wider, forces + ahead * more)) / room.size
         aim = max((after / product) ** 3, 0.0 if dilates else CAREFUL) * product
         way, wider, more = toward((aim - wider * more) / room)
-        length = min(1.0, BOLD * _length(room, wider, forces, more))
+        # Near its end the path is straight.
+        bold = max(BOLD, 1 - product)
+        length = min(1.0, bold * _length(room, wider, forces, more))
         if not length >= SHORTEST:
             break
         x = x + length * way
