@@ -52,7 +52,7 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run, "processes", lambda _: ThreadPoolExecutor(1))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """Chromium, where it is installed."""
     playwright = pytest.importorskip("playwright.sync_api")
@@ -68,7 +68,7 @@ def browser() -> Iterator[Any]:
         found.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def shared_windows(browser: Any) -> Windows:
     return Windows(browser)
 

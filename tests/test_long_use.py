@@ -92,7 +92,10 @@ def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int,
 @pytest.mark.parametrize(
     "where",
     [
-        {"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
+        pytest.param(
+            {"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
+            marks=LONG,
+        ),
         pytest.param(
             {"HOME": "/proc/nobody", "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None},
             marks=LONG,
@@ -103,9 +106,12 @@ def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int,
             "XDG_CACHE_HOME": None,
             "XDG_CONFIG_HOME": None,
         },
-        {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+        {
+            **{"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+            **{"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
+        },
     ],
-    ids=["no home", "home not writable", "no folder for temporary files", "C locale"],
+    ids=["no home", "home not writable", "nothing can be written", "C locale, no home"],
 )
 def test_surroundings_that_lack_something(
     words: tuple[str, ...], where: dict[str, str | None], tmp_path: Path
