@@ -308,7 +308,7 @@ def written(mu: float) -> float | str:
     return "inf" if math.isinf(mu) else mu
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(anyarch, frictions, st.floats(0.03, 0.25), st.floats(0.3, 0.9), sizes)
 def test_scaled_is_the_same(
     name: str, mu: float, thick: float, rise: float, size: float
@@ -334,7 +334,7 @@ def test_scaled_is_the_same(
     assert margin(size) == pytest.approx(margin(1.0), rel=1e-7, abs=1e-9)
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(
     frictions,
     st.floats(0.05, 0.4),

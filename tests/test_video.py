@@ -215,7 +215,7 @@ def entry(start: Array, way: Array, low: Array, high: Array) -> float:
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_what_is_painted_later_is_nearer_along_every_ray(seed: int) -> None:
     """Boxes in cells of a grid that do not meet, against rays cast through them."""
     random = np.random.default_rng(seed)
