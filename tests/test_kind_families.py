@@ -88,9 +88,7 @@ def test_other_parameters() -> None:
     column = structure_of({"kind": "column", "friction": 0.7}).tilted(math.radians(10))
     assert exact(column, "width") == pytest.approx(3.6 * math.tan(math.radians(10)), rel=1e-9)
     ring = {"kind": "circular-arch", "voussoirs": 9}
-    portal = structure_of(
-        {"kind": "portal", "friction": 0.7, "pier_width": 1.0, "arch": ring}
-    )
+    portal = structure_of({"kind": "portal", "friction": 0.7, "pier_width": 1.0, "arch": ring})
     thin = exact(portal, "arch.thickness")
     assert thin is not None
     for share, verdict in ((0.9999, Verdict.COLLAPSES), (1.0001, Verdict.STANDS)):

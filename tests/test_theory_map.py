@@ -96,7 +96,7 @@ def test_modes_follow_one_another_from_right_to_left(degrees: float, weight: str
         True: [Mode.RRR, Mode.RRS, Mode.RSR, Mode.RS, Mode.SS],
     }
     seen: list[Mode] = []
-    for mu in np.geomspace(20, 0.02, 120):
+    for mu in np.geomspace(20, 0.02, 60):
         mode = theory.least_thickness(alpha, float(mu), weight).mode
         if not seen or seen[-1] is not mode:
             seen.append(mode)
