@@ -168,7 +168,7 @@ def test_what_is_no_number_is_named(given: tuple[str, str]) -> None:
 QUESTION = ("check", *ARCH, "--eta", "0.12")
 
 
-@pytest.mark.parametrize("asked", [QUESTION, ("doctor",)])
+@pytest.mark.parametrize("asked", [QUESTION, pytest.param(("doctor",), marks=pytest.mark.long)])
 def test_a_reader_that_has_gone_hears_no_verdict(asked: tuple[str, ...]) -> None:
     with subprocess.Popen([*PROGRAM, *asked], stdout=-1, stderr=-1) as process:
         process.stdout.close()
