@@ -404,7 +404,7 @@ def test_command_films_recordings(tmp_path: Path) -> None:
 def test_command_films_a_scenario(tmp_path: Path) -> None:
     """1 % below the least thickness it falls onto the ground, and the film ends at rest."""
     out = tmp_path / "film.mp4"
-    asked = ("semicircle", "--voussoirs", "9", "--method", "pymunk")
+    asked = ("semicircle", "--voussoirs", "5", "--method", "pymunk")
     small = ("--height", "180", "--slow", "1")
     done = inside("render", *asked, *small, "--out", str(out))
     assert (done.returncode, done.stderr) == (0, "")
