@@ -324,7 +324,7 @@ MUTATIONS = (
     ),
     Mutation(
         "forces do not say of which size they are", "report/sizes.py",
-        "    if _is_metric(arch, at):\n        return []\n", "    return []\n",
+        "    if is_metric(arch, at):\n        return []\n", "    return []\n",
         "test_dimensions.py",
     ),
     Mutation(
