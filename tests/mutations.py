@@ -341,6 +341,20 @@ MUTATIONS = (
         "np.ones_like(s), -bend * s)", "test_kinds.py",
     ),
     Mutation(
+        "a joint is written without its own friction", "blocks/structure.py",
+        "if joint.friction is not None:\n            entry", "if False:\n            entry",
+        "test_structure.py",
+    ),
+    Mutation(
+        "faces of a joint are written in another order", "blocks/structure.py",
+        'entry["faces"] = joint.faces.tolist()', 'entry["faces"] = joint.faces[::-1].tolist()',
+        "test_structure.py",
+    ),
+    Mutation(
+        "millimetres are centimetres", "reading/dxf.py", '4: "mm", 5: "cm"',
+        '4: "cm", 5: "mm"', "test_reading.py",
+    ),
+    Mutation(
         "only the ends of faces meet", "blocks/touching.py",
         "apart = np.maximum(np.abs(gap(low)), np.abs(gap(high)))",
         "apart = np.minimum(np.abs(gap(low)), np.abs(gap(high)))", "test_polygons.py",
