@@ -19,7 +19,7 @@ from blocksim.many import run, sweep
 # The same examples in every run, time not asserted; tests of numbers that cost little ask
 # for more.
 settings.register_profile(
-    "blocksim", deadline=None, derandomize=True, database=None, max_examples=30
+    "blocksim", deadline=None, derandomize=True, database=None, max_examples=15
 )
 settings.load_profile("blocksim")
 
@@ -32,6 +32,7 @@ gc.disable()
 def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
+    gc.set_threshold(20_000, 20, 20)
 
 
 @pytest.fixture(scope="session")
@@ -52,7 +53,7 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run, "processes", lambda _: ThreadPoolExecutor(1))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """Chromium, where it is installed."""
     playwright = pytest.importorskip("playwright.sync_api")
@@ -68,7 +69,7 @@ def browser() -> Iterator[Any]:
         found.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def shared_windows(browser: Any) -> Windows:
     return Windows(browser)
 

@@ -12,6 +12,7 @@ import gc
 import json
 import os
 import resource
+import select
 import shutil
 import signal
 import subprocess
@@ -166,27 +167,21 @@ def _watched(asked: dict[str, Any]) -> dict[str, Any] | None:
         _become(asked, place, temporary)
         return None
     started = time.monotonic()
-    ended = usage = None
-    while ended is None:
-        pid, status, usage = os.wait4(child, os.WNOHANG)
-        if pid:
-            ended = os.waitstatus_to_exitcode(status)
-        elif _hangs(time.monotonic() - started, _spent(child)):
+    end = os.pidfd_open(child)
+    while not select.select([end], [], [], 0.1)[0]:
+        if _hangs(time.monotonic() - started, _spent(child)):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(child, signal.SIGKILL)
-            _, status, usage = os.wait4(child, 0)
-            ended = os.waitstatus_to_exitcode(status)
-        else:
-            time.sleep(0.002)
+    os.close(end)
+    _, status, usage = os.wait4(child, 0)
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)
     clock = time.monotonic() - started
-    assert usage is not None
     spent = usage.ru_utime + usage.ru_stime
     left = sorted(str(path.relative_to(temporary)) for path in temporary.rglob("*"))
     shutil.rmtree(temporary, ignore_errors=True)
     return {
-        "code": ended,
+        "code": os.waitstatus_to_exitcode(status),
         "seconds": clock if clock > WAITS and _hangs(clock, spent) else spent,
         "memory": usage.ru_maxrss * 1024,
         "left": left,

@@ -48,6 +48,15 @@ def test_mode_that_is_not_possible() -> None:
         collapse_of_mode(Mode.SRR, 0.3, 0.01, 0.9, beta_r=0.2)
 
 
+def test_what_moves_and_what_bears_is_within_the_picture() -> None:
+    falls = picture_of_arch(Arch(half_angle=2.18, eta=0.35, voussoirs=14), 0.9)
+    (axes,) = arch_figure([falls]).axes
+    drawn = np.concatenate([each.get_xy() for each in axes.patches])
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    assert (drawn > [left, low]).all()
+    assert (drawn < [right, high]).all()
+
+
 @pytest.mark.parametrize("kind", [pytest.param("png", marks=pytest.mark.long), "svg"])
 def test_figure_is_reproducible(kind: str) -> None:
     files = []

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from structure_cases import case, names, scenes
+from structure_cases import case, first, names, of_each_kind
 from threadpoolctl import ThreadpoolController
 
 from analysis.certificates import certificate
@@ -46,7 +46,7 @@ ASKED = [
     name
     for name in names()
     if case(name)["question"] in {"load_factor", "tilt_deg", "stands", "least_mu"}
-    and len(scenes(name)[0]["blocks"]) <= MOST
+    and len(first(name)["blocks"]) <= MOST
 ]
 
 
@@ -71,7 +71,7 @@ def test_nearly_all_cases_are_asked() -> None:
     assert len(ASKED) == 101
 
 
-@pytest.mark.parametrize("name", ASKED)
+@pytest.mark.parametrize("name", of_each_kind(ASKED))
 def test_a_thousandth_of_a_known_value_decides(name: str) -> None:
     for question in questions(name):
         for problem, true in ends(question):

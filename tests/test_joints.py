@@ -145,7 +145,7 @@ def test_overlap_share() -> None:
     assert overlap_share(lone, pressed) == pytest.approx(1, rel=1e-3)
 
 
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(st.floats(-3, 3), st.floats(-3, 3), st.floats(-0.05, 0.05), st.floats(-0.05, 0.05))
 def test_a_joint_does_not_see_a_common_motion(
     x: float, y: float, angle: float, more: float

@@ -117,7 +117,7 @@ def test_against_the_whole_arch(
     assert found.eta == pytest.approx(eta, rel=1e-9)
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(degrees, friction, st.integers(4, 20), weights)
 def test_against_the_whole_arch_anywhere(
     angle: float, mu: float, count: int, weight: str
@@ -330,7 +330,7 @@ def test_second_order_in_the_number_of_voussoirs(angle: float, mu: float, weight
     assert 1.75 < order < 2.25
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(st.floats(0.1, 1.8), st.integers(20, 120), weights, st.floats(0.01, 0.1), st.booleans())
 def test_no_wrong_none(mu: float, count: int, weight: str, aside: float, stands: bool) -> None:
     """Off the divide by a percent or more, voussoirs and closed form agree on None.

@@ -92,7 +92,10 @@ def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int,
 @pytest.mark.parametrize(
     "where",
     [
-        {"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
+        pytest.param(
+            {"HOME": None, "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None, "USER": None},
+            marks=LONG,
+        ),
         pytest.param(
             {"HOME": "/proc/nobody", "XDG_CACHE_HOME": None, "XDG_CONFIG_HOME": None},
             marks=LONG,
@@ -102,10 +105,14 @@ def run(*words: str, cwd: Path | None = None, **where: str | None) -> tuple[int,
             "HOME": "/proc/nobody",
             "XDG_CACHE_HOME": None,
             "XDG_CONFIG_HOME": None,
+            "USER": None,
+            "LC_ALL": "C",
+            "LANG": "C",
+            "PYTHONUTF8": "0",
+            "PYTHONCOERCECLOCALE": "0",
         },
-        {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
     ],
-    ids=["no home", "home not writable", "no folder for temporary files", "C locale"],
+    ids=["no home", "home not writable", "nothing writable, C locale"],
 )
 def test_surroundings_that_lack_something(
     words: tuple[str, ...], where: dict[str, str | None], tmp_path: Path

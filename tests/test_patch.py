@@ -41,7 +41,7 @@ def test_a_narrow_patch_is_a_point_load(name: str) -> None:
     assert found == pytest.approx(case(name)["expected"]["value"], rel=1e-9)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=12)
 @given(st.floats(-0.9, 0.8), st.floats(0.05, 0.9), st.floats(-2, 2), st.floats(-5, -0.1))
 def test_a_patch_comes_to_its_force_at_its_middle(
     low: float, width: float, across: float, down: float

@@ -11,7 +11,7 @@ import pytest
 from arches import arch_at
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from structure_cases import case, names, scenes
+from structure_cases import case, names, of_each_kind, scenes
 
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
@@ -212,7 +212,7 @@ def test_nothing_limits_a_block_pressed_down() -> None:
     assert collapse(lifted).load_factor is None
 
 
-@pytest.mark.parametrize("name", asked("load_factor"))
+@pytest.mark.parametrize("name", of_each_kind(asked("load_factor")))
 def test_published_load_factors(name: str) -> None:
     (scene,) = scenes(name)
     assert factor(scene) == pytest.approx(case(name)["expected"]["value"], rel=1e-6)
@@ -248,7 +248,7 @@ def test_published_tilts(name: str) -> None:
             assert equilibrium(tilted).exists == rests
 
 
-@pytest.mark.parametrize("name", asked("stands"))
+@pytest.mark.parametrize("name", of_each_kind(asked("stands")))
 def test_published_structures_stand_or_fall(name: str) -> None:
     read = case(name)
     for scene, told in zip(scenes(name), read.get("scenes") or [read["scene"]], strict=True):
@@ -312,7 +312,7 @@ def test_a_rough_block_tips_as_it_must(slope: float, width: float, height: float
     assert found.accelerations[0] == pytest.approx(want, abs=1e-8)
 
 
-@pytest.mark.parametrize("name", asked("load_factor")[:8])
+@pytest.mark.parametrize("name", of_each_kind(asked("load_factor")[:8]))
 def test_least_motion_is_none_where_forces_of_equilibrium_exist(name: str) -> None:
     (scene,) = scenes(name)
     problem, limit = structure_of(scene), case(name)["expected"]["value"]

@@ -305,7 +305,7 @@ def test_a_block_on_nothing_falls_freely() -> None:
     assert found[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(st.floats(2, 50), st.floats(0.05, 0.95), st.floats(0.3, 3.0))
 def test_a_block_slides_on_a_slope(degrees: float, share: float, width: float) -> None:
     """Closed form: g (sin phi - mu cos phi), downhill, without turning."""
@@ -319,7 +319,7 @@ def test_a_block_slides_on_a_slope(degrees: float, share: float, width: float) -
     assert found[2] == pytest.approx(0, abs=1e-6)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(st.floats(1, 50), st.floats(1.0 + 1e-6, 5.0), st.floats(0.3, 3.0))
 def test_a_block_rests_on_a_slope(degrees: float, share: float, width: float) -> None:
     angle = math.radians(degrees)
@@ -340,7 +340,7 @@ def test_friction_threshold_on_a_slope(degrees: float) -> None:
     assert np.hypot(*start[0, :2]) == pytest.approx(share * math.sin(angle), rel=0.02)
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(st.floats(10, 40), st.floats(1.05, 3.0))
 def test_a_slender_block_tips(degrees: float, slenderness: float) -> None:
     """Closed form: moment of the weight about the lower corner over the inertia there."""

@@ -330,7 +330,7 @@ def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight)
         assert seen.blocks <= 6
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=20)
 @given(
     st.floats(30, 155),
     st.floats(0.35, 3.0),

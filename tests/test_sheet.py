@@ -80,6 +80,11 @@ CASES = {
 }
 
 
+ALONE = {"five", "many", "flat", "stack", "pointed", "flat-arch"}
+"""Cases that are drawn for how words and scale come out on them, and like others there."""
+SEEN = [pytest.param(each, marks=[pytest.mark.long] * (each in ALONE)) for each in CASES]
+
+
 @cache
 def drawn(name: str) -> tuple[Sheet, Figure]:
     problem = CASES[name]()
@@ -206,7 +211,7 @@ def test_reactions_bear_the_weight_and_the_thrust() -> None:
     assert float(high) == pytest.approx(sheet.carried.greatest.thrust * unit, rel=2e-4)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", SEEN)
 def test_no_words_cover_others_or_leave_the_page(name: str) -> None:
     _, figure = drawn(name)
     figure.draw_without_rendering()
@@ -239,7 +244,7 @@ def test_words_make_way_for_others() -> None:
     assert boxes[2].y0 - boxes[1].y1 < boxes[0].height
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", SEEN)
 def test_the_scale_that_is_told_is_true_on_paper(name: str) -> None:
     """Measured in the svg: corners of a block in points."""
     sheet, figure = drawn(name)

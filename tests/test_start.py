@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
@@ -35,13 +36,14 @@ RUN = (
 )
 
 
-def loaded(arguments: str, code: int = 0) -> set[str]:
-    """Modules of a process that has run a command."""
+def loaded(arguments: str, code: int = 0, **where: str) -> tuple[set[str], str]:
+    """Modules of a process that has run a command, and what it said."""
     words = [sys.executable, "-c", RUN, *arguments.split()]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    given = os.environ | where
+    done = subprocess.run(words, capture_output=True, text=True, check=False, env=given)
     assert done.returncode == code, done.stderr
     assert done.stdout
-    return set(done.stderr.split())
+    return set(done.stderr.split()), done.stdout
 
 
 @pytest.mark.parametrize(
@@ -55,13 +57,24 @@ def loaded(arguments: str, code: int = 0) -> set[str]:
     ],
 )
 def test_no_command_waits_for_what_it_does_not_need(arguments: str, besides: set[str]) -> None:
-    assert not loaded(arguments) & (SLOW | besides)
+    assert not loaded(arguments)[0] & (SLOW | besides)
 
 
 def test_an_arch_that_falls_is_told_by_the_solver_alone() -> None:
-    found = loaded(f"check {ARCH} --eta 0.1 --method limit", code=1)
+    found, _ = loaded(f"check {ARCH} --eta 0.1 --method limit", code=1)
     assert "highspy" in found
     assert not found & (SLOW - {"highspy", "scipy"} | {"scipy.optimize", "pymunk"})
+
+
+def test_a_shell_completes_commands_and_options() -> None:
+    for line, names in (
+        ("blocksim c", {"check", "chart", "convert", "cite"}),
+        ("blocksim --v", {"--version"}),
+    ):
+        asked = {"_BLOCKSIM_COMPLETE": "bash_complete", "COMP_WORDS": line, "COMP_CWORD": "1"}
+        found, said = loaded("", **asked)
+        assert {each.removeprefix("plain,") for each in said.split()} == names
+        assert not found & (SLOW | {"numpy"})
 
 
 def test_help_lists_every_command_with_the_first_line_of_its_own_help() -> None:

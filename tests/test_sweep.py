@@ -106,6 +106,7 @@ def test_wrong_designs_are_told_in_one_line(
     assert "\n" not in message
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_the_command_keeps_the_contract(tmp_path: Path) -> None:
     done = blocksim(*written(tmp_path, GRID.replace("0.1]", "3]")))
     assert (done.returncode, done.stdout) == (2, "")

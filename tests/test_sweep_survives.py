@@ -108,6 +108,8 @@ def test_killed_drivers_leave_no_process_and_lose_no_row(
     assert rows_of(out) == uninterrupted
 
 
+# Of `validate`, which ends by the same code, test_processes has it in every run.
+@pytest.mark.long
 def test_a_terminated_sweep_ends_with_one_line(tmp_path: Path) -> None:
     asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
     with started(*asked, "--workers", "1") as driver:

@@ -111,7 +111,7 @@ def test_limits(weight: str) -> None:
 
 
 @given(half_angle=ANGLES, first=FRICTION_ANGLES, second=FRICTION_ANGLES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 def test_eta_never_grows_with_friction(half_angle: float, first: float, second: float) -> None:
     mu = np.tan(np.sort([first, second]))
     for weight in WEIGHTS:
@@ -121,7 +121,7 @@ def test_eta_never_grows_with_friction(half_angle: float, first: float, second: 
 
 
 @given(half_angle=st.floats(0.05, 2.78), friction_angle=st.floats(0.02, 1.57))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 def test_continuity(half_angle: float, friction_angle: float) -> None:
     step = 1e-9
     mu = np.tan(friction_angle + step * np.arange(3))

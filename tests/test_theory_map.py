@@ -34,7 +34,7 @@ frictions = st.floats(0.02, 50.0)
 weights = st.sampled_from(["centreline", "sector"])
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(angles, frictions, st.floats(1.0, 5.0), weights)
 def test_less_friction_asks_for_more(
     alpha: float, mu: float, ratio: float, weight: str
@@ -46,7 +46,7 @@ def test_less_friction_asks_for_more(
     assert (high or math.inf) >= (unbounded or math.inf) * (1 - 1e-12)
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(angles, st.floats(1.0, 1.5), st.one_of(frictions, st.just(math.inf)), weights)
 def test_a_wider_arch_asks_for_more(alpha: float, ratio: float, mu: float, weight: str) -> None:
     wide = min(alpha * ratio, 3.14)
@@ -75,7 +75,7 @@ def region(alpha: float, mu: float, weight: str) -> Mode:
     return Mode.RRS
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(st.floats(1.2, 2.79), st.floats(0.2, 6.0), weights)
 def test_mode_is_that_of_the_region(alpha: float, mu: float, weight: str) -> None:
     found = theory.least_thickness(alpha, mu, weight)
@@ -96,7 +96,7 @@ def test_modes_follow_one_another_from_right_to_left(degrees: float, weight: str
         True: [Mode.RRR, Mode.RRS, Mode.RSR, Mode.RS, Mode.SS],
     }
     seen: list[Mode] = []
-    for mu in np.geomspace(20, 0.02, 120):
+    for mu in np.geomspace(20, 0.02, 60):
         mode = theory.least_thickness(alpha, float(mu), weight).mode
         if not seen or seen[-1] is not mode:
             seen.append(mode)
@@ -148,12 +148,12 @@ def distance_to_a_tie(alpha: float, mu: float, weight: str) -> bool:
     return len(modes) == 1
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(
     st.floats(math.radians(25), math.radians(157)),
     st.floats(0.1, 8.0),
     weights,
-    st.integers(200, 400),
+    st.integers(100, 200),
 )
 def test_many_voussoirs_converge_to_the_closed_form(
     alpha: float, mu: float, weight: str, count: int
@@ -174,7 +174,7 @@ def test_many_voussoirs_converge_to_the_closed_form(
         assert built.hinges_intrados[-1] == pytest.approx(exact.beta_r, abs=2 * spacing)
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(frictions)
 def test_inner_sliding_solves_its_equation(mu: float) -> None:
     """(9) in its plain form, though the solver uses Kepler's."""

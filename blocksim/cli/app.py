@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 import click
-from click.shell_completion import shell_complete
+from click.shell_completion import CompletionItem, shell_complete
 
 from blocksim.cli.arguments import command_of
 from blocksim.cli.output import say
@@ -92,6 +92,15 @@ class Commands(click.Group):
         """Write the commands and what they are for."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, about) for name, (_, about) in COMMANDS.items()])
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Return the names that begin so, and options of the program itself."""
+        found = [
+            CompletionItem(name, help=about)
+            for name, (_, about) in COMMANDS.items()
+            if name.startswith(incomplete)
+        ]
+        return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
 
 
 def _command(name: str, place: str) -> click.Command:

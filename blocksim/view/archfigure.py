@@ -8,6 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -199,7 +200,7 @@ def draw_arch(axes: Axes, picture: ArchPicture) -> None:
     _draw_supports(axes, picture)
     _draw_mechanism(axes, picture, inner, outer)
     whole = _ring(-picture.half_angle, picture.half_angle, inner, outer)
-    axes.add_patch(Polygon(whole, fill=False, ec=INK, lw=1.5, zorder=3))
+    _put(axes, whole, fill=False, ec=INK, lw=1.5, zorder=3)
     for angle in picture.joints[1:-1]:
         axes.plot(*_radius(float(angle), inner, outer), color=INK, lw=0.5, zorder=2)
     pressure, shear = lines_of(picture)
@@ -231,8 +232,8 @@ def _draw_supports(axes: Axes, picture: ArchPicture) -> None:
     deep = min(SUPPORT, 0.8 * (math.pi - picture.half_angle))
     for side in (-1, 1):
         low, high = sorted((side * picture.half_angle, side * (picture.half_angle + deep)))
-        axes.add_patch(Polygon(_ring(low, high, *wider), fc=GROUND, ec="none", zorder=0.5,
-                               label="support"))  # fmt: skip
+        ring = _ring(low, high, *wider)
+        _put(axes, ring, fc=GROUND, ec="none", zorder=0.5, label="support")
 
 
 def _draw_scale(axes: Axes) -> None:
@@ -285,13 +286,15 @@ def _draw_mechanism(axes: Axes, picture: ArchPicture, inner: float, outer: float
         start, stop = float(picture.angles[first]), float(picture.angles[last])
         ring = _ring(start, stop, inner, outer)
         moved = ring + MOVED / reach * _velocity(picture.motions[first], ring)
-        axes.add_patch(
-            Polygon(moved, fc=MECHANISM, alpha=0.13, ec="none", zorder=1),
-        )
-        axes.add_patch(
-            Polygon(moved, fill=False, ec=MECHANISM, lw=1.3, ls=(0, (6, 1.5, 1, 1.5)), zorder=4,
-                    label="mechanism")
-        )  # fmt: skip
+        _put(axes, moved, fc=MECHANISM, alpha=0.13, ec="none", zorder=1)
+        _put(axes, moved, fill=False, ec=MECHANISM, lw=1.3, ls=(0, (6, 1.5, 1, 1.5)), zorder=4,
+             label="mechanism")  # fmt: skip
+
+
+def _put(axes: Axes, points: Array, **looks: Any) -> None:
+    """Draw a polygon; `add_patch` would look at every side as a curve, which takes longer."""
+    axes.add_artist(Polygon(points, **looks))
+    axes.update_datalim(points)
 
 
 def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -> None:

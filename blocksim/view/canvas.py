@@ -21,7 +21,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
-from matplotlib.textpath import TextPath
+from matplotlib.textpath import text_to_path
 from matplotlib.transforms import Bbox, IdentityTransform, TransformedBbox
 from numpy.typing import NDArray
 
@@ -102,8 +102,9 @@ class Label(NamedTuple):
 
 def width_of(words: str, size: float, *, bold: bool = False) -> float:
     """Width of words in pixels."""
-    font = FontProperties(family="DejaVu Sans", weight="bold" if bold else "normal")
-    return float(TextPath((0, 0), words, size=size, prop=font).get_extents().width)
+    weight = "bold" if bold else "normal"
+    font = FontProperties(family="DejaVu Sans", weight=weight, size=size)
+    return text_to_path.get_text_width_height_descent(words, font, ismath=False)[0]
 
 
 class Panel(NamedTuple):

@@ -24,7 +24,7 @@ def page(one_page: playwright.Page) -> playwright.Page:
 
 
 WEIGHTS = ("centreline", "sector")
-COUNT = 1000
+COUNT = 500
 TOLERANCE = 1e-9
 
 
@@ -54,7 +54,7 @@ def column(found: list[dict], key: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)
-def test_least_thickness_at_1000_points(page: playwright.Page, weight: str) -> None:
+def test_least_thickness_at_many_points(page: playwright.Page, weight: str) -> None:
     alpha, mu, eta = sample(1)
     expected = theory.least_thicknesses(alpha, mu, weight)
     rows = np.column_stack([alpha, mu, eta])
@@ -68,7 +68,7 @@ def test_least_thickness_at_1000_points(page: playwright.Page, weight: str) -> N
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)
-def test_points_of_the_map_at_1000_points(page: playwright.Page, weight: str) -> None:
+def test_points_of_the_map_at_many_points(page: playwright.Page, weight: str) -> None:
     _, mu, eta = sample(2)
     expected = at_points(eta, mu, weight)
     rows = np.column_stack([eta, mu, eta])
@@ -155,7 +155,7 @@ def test_share_against_limit_analysis(page: playwright.Page) -> None:
     for (half_angle, friction, ratio), balance in zip(rows.tolist(), found, strict=True):
         for change, stands in ((0.99, False), (1.01, True)):
             share = change * balance["share"]
-            built = least_thickness_by_program(half_angle, share * friction, 300)
+            built = least_thickness_by_program(half_angle, share * friction, 120)
             assert (built is not None and built <= share * ratio) == stands
 
 
@@ -282,7 +282,7 @@ def moved(motion: dict, points: np.ndarray) -> np.ndarray:
 def test_mechanisms_balance_weight_and_friction(page: playwright.Page, weight: str) -> None:
     """Virtual power at the onset: what the weight does is what friction takes."""
     _, mu, eta = sample(5)
-    rows = np.column_stack([eta, mu, eta])[:400]
+    rows = np.column_stack([eta, mu, eta])[:200]
     rows[:40, 1], rows[:40, 2] = math.inf, np.linspace(1.02, 1.9, 40)  # overturning
     rows[40:80, 1], rows[40:80, 2] = 1.8, np.linspace(0.9, 1.0, 40)  # rrs, rsr and rs
     seen = set()

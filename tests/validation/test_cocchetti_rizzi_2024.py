@@ -224,7 +224,7 @@ def solution(alpha: float, mu: float, weight: str = "centreline") -> Critical:
     return found
 
 
-@settings(max_examples=100)
+@settings(max_examples=50)
 @given(wide, friction)
 def test_equations_hold_at_the_solution(alpha: float, mu: float) -> None:
     """Eqs (1)-(4), (8), (9), each in the modes in which the paper says it rules."""
@@ -273,7 +273,7 @@ def lines(
     return moment / normal, shear / normal
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(wide, st.one_of(friction, st.just(math.inf)), weights)
 def test_lines_of_thrust_and_friction(alpha: float, mu: float, weight: str) -> None:
     """Eqs (10)-(14), and that nowhere in between the arch is asked for more."""
