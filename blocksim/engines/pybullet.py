@@ -219,10 +219,12 @@ class Bodies:
             if self._is_rubble:
                 self._tumble(speed)
                 continue
+            parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
             if self._is_layered and self._lifts():
                 self._is_layered = False
                 self._link()
-            parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
+                # Contacts that are open by a hair are found anew only once they have closed.
+                parts = FINEST
             step = self._settings.step / parts
             change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
             self._space.solve_by(step, self._settings.sweeps, change=change)
