@@ -1,40 +1,34 @@
-"""Twelve structures standing and falling, and one collapse by four engines.
+"""Twelve structures standing and falling.
 
 Question: does each shipped structure stand on one side of its known limit and fall on the
 other, all the way to the ground, and can it be seen? Each is drawn at rest a little inside its
 limit, with the forces that hold it, and let go a little beyond it by `direct`, to the end. The
-films are of these recordings. One arch is let go in `direct`, pymunk, pybullet and mujoco; the
-last two are seen in perspective.
+films are of these recordings. `four_engines.py` has one collapse by all engines.
 
 Expected: all stand and fall as their sources say, no energy is gained, blocks stay solid.
 
     python -m analysis.gallery OUT [--quick]
 
-Writes for each a picture and a film (NAME.png, NAME.mp4), all of them on one sheet
-(gallery.png), the four engines as a film and as frames (engines.mp4, engines.png).
+Writes for each a picture and a film (NAME.png, NAME.mp4), and all of them on one sheet
+(gallery.png).
 """
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import BinaryIO
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
-from numpy.typing import NDArray
-from PIL import Image
 
 from analysis.command import run
+from analysis.drawing import few_colours
 from analysis.rows import write_rows
-from blocksim.arch.circular import GRAVITY, Arch
-from blocksim.arch.limit import least_thickness
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
 from blocksim.ask.simulate import simulate
@@ -45,10 +39,10 @@ from blocksim.evidence.recording import Recording
 from blocksim.kinds.known import load_known
 from blocksim.view.arrows import draw_forces, draw_loads
 from blocksim.view.drawing import clipped, save_figure
-from blocksim.view.film import BEFORE, FOOT, HEAD, TALL, Film
+from blocksim.view.film import Film
 from blocksim.view.structure import problem_figure
 from blocksim.view.style import FONT, GROUND, INK, LIVE, QUIET, STONE
-from blocksim.view.video import DRAWN, to_bytes, write_film
+from blocksim.view.video import write_film
 
 SHOWN = {
     "pointed_e0_25": ("Pointed arch", "least thickness {:.4f} m"),
@@ -79,13 +73,6 @@ AROUND = 0.3
 """How far beyond the blocks the pictures of the sheet reach [size]."""
 TILTED = 1e-9
 """Gravity across the plane's vertical from which on it is tilted [g]."""
-ENGINES = {"direct": "2d", "pymunk": "2d", "pybullet": "3d", "mujoco": "3d"}
-TIMES = (0.0, 1.6, 2.4, 3.2)
-"""Of the frames of the four engines, in units of sqrt(r/g)."""
-COLOURS = 256
-"""Of a picture."""
-ARCH = 0.93
-"""Thickness of the arch of the four engines, over the least."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,14 +109,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Result:
-    """All structures, and how far each engine's arch went [r]."""
+    """All structures."""
 
     rows: tuple[Row, ...]
-    engines: dict[str, float]
 
 
 def main(out: Path, *, quick: bool = False) -> Result:
-    """Make pictures, films and the sheet; of two structures and engines in a quick run."""
+    """Make pictures, films and the sheet; of two structures in a quick run."""
     out.mkdir(parents=True, exist_ok=True)
     height = 180 if quick else 720
     rows: list[Row] = []
@@ -144,9 +130,9 @@ def main(out: Path, *, quick: bool = False) -> Result:
             save_figure(picture, file, "png")
         write_film(Film([fall], height=height), out / f"{name}.mp4")
     with (out / "gallery.png").open("wb") as file:
-        _few_colours(sheet(seen), file)
+        few_colours(sheet(seen), file)
     write_rows(out / "gallery.csv", [asdict(row) for row in rows])
-    return Result(tuple(rows), engines(out, quick=quick))
+    return Result(tuple(rows))
 
 
 def shown(name: str) -> tuple[Row, Problem, Array, Recording]:
@@ -301,82 +287,6 @@ def _blocks(
         axes.axhline(level, color=GROUND, lw=1, zorder=0.4)
 
 
-class Tiled:
-    """Films of one collapse on one clock, two beside each other in each line."""
-
-    def __init__(self, films: Sequence[Film]) -> None:
-        self._films = films
-        self._across = min(2, len(films))
-        self.rate = films[0].rate
-        self.count = max(film.count for film in films)
-        self.width = self._across * films[0].width
-        self.height = math.ceil(len(films) / self._across) * films[0].height
-
-    def frame(self, number: int) -> NDArray[np.uint8]:
-        """Draw a frame; a film that has ended shows its last one."""
-        each = [film.frame(min(number, film.count - 1)) for film in self._films]
-        lines = [each[at : at + self._across] for at in range(0, len(each), self._across)]
-        return np.concatenate([np.concatenate(line, axis=1) for line in lines])
-
-
-def engines(out: Path, *, quick: bool) -> dict[str, float]:
-    """Let one arch go in each engine; write a film of all and a picture of its frames."""
-    half, mu, voussoirs = math.radians(90), 0.7, 15
-    least = least_thickness(half, mu, voussoirs).eta
-    assert least is not None  # noqa: S101
-    problem = Arch(half_angle=half, eta=ARCH * least, voussoirs=voussoirs).problem(mu)
-    chosen = [name for name in ENGINES if not quick or name in {"direct", "pymunk"}]
-    runs = {name: simulate(problem, method=name, duration=LONGEST) for name in chosen}
-    # One clock for all: that of the longest.
-    slow = min(Film([each]).slow for each in runs.values())
-    height = 180 if quick else 540
-    films = {
-        name: Film([run], view=ENGINES[name], slow=slow, height=height)  # pyright: ignore
-        for name, run in runs.items()
-    }
-    write_film(Tiled(list(films.values())), out / "engines.mp4")
-    with (out / "engines.png").open("wb") as file:
-        _few_colours(frames_of(films, slow), file)
-    return {name: float(run.displacement.max()) for name, run in runs.items()}
-
-
-def frames_of(films: dict[str, Film], slow: float) -> Figure:
-    """Draw the films at the same times, a line an engine."""
-    with mpl.rc_context(FONT):
-        size = (3.0 * len(TIMES), 1.44 * len(films) + 0.25)
-        figure = Figure(figsize=size, layout="constrained")
-        axes = figure.subplots(len(films), len(TIMES), squeeze=False)
-        for line, (name, film) in zip(axes, films.items(), strict=True):
-            scale = film.height / TALL
-            words, legend = round(HEAD * scale), round(FOOT * scale)
-            for at, panel in zip(TIMES, line, strict=True):
-                seconds = at / math.sqrt(GRAVITY)
-                picture = film.frame(round((BEFORE + seconds * slow) * film.rate))
-                # Without the film's own words: the clock is said once for all.
-                panel.imshow(picture[words : film.height - legend, :, :3])
-                panel.set_xticks([])
-                panel.set_yticks([])
-                panel.spines[:].set_visible(False)
-                if panel in axes[0]:
-                    panel.set_title(f"t = {at:g} √(r/g)", fontsize=10)
-            seen = ", in space" if ENGINES[name] == "3d" else ""
-            line[0].set_ylabel(f"{name}{seen}", fontsize=10)
-    return figure
-
-
-def _few_colours(figure: Figure, file: BinaryIO) -> None:
-    """Write a figure with a palette: a third of the size, and nobody sees it."""
-    whole = io.BytesIO()
-    save_figure(figure, whole, "png")
-    picture = Image.open(whole).convert("RGB")
-    # Colours that say something are few pixels among many of stone and ground: they are given.
-    given = [part for name in dict.fromkeys((*DRAWN, LIVE)) for part in to_bytes(name)]
-    rest = picture.quantize(COLOURS - len(given) // 3).getpalette() or []
-    palette = Image.new("P", (1, 1))
-    palette.putpalette([*given, *rest][: 3 * COLOURS])
-    picture.quantize(palette=palette, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
-
-
 def table(result: Result) -> str:
     """Return what was seen as a table."""
     lines = [f"{'structure':24} {'limit':>10}  {'inside':10} {'beyond':10} {'moved':>6} gain"]
@@ -385,8 +295,7 @@ def table(result: Result) -> str:
         f"{row.moved:6.2f} {row.gain:.1e}, overlap {row.overlap:.1e}"
         for row in result.rows
     ]
-    went = ", ".join(f"{name} {moved:.2f} r" for name, moved in result.engines.items())
-    return "\n".join([*lines, f"one arch falls by {went}"])
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,8 @@ pybullet is undecided above the limit, and its bracket wide.
 
     python -m analysis.random_arches OUT [--engine pymunk|pybullet] [--processes N]
 
-Answers are kept in OUT as they come, and not asked for again.
+Answers are kept in OUT as they come, and not asked for again; they are written as rows, too
+(random_arches_ENGINE.csv).
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from matplotlib.figure import Figure
 
 from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
+from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import bracket
 from blocksim.arch.limit import least_thickness
@@ -153,6 +155,15 @@ def main(
     )
     name = "random_arches" if engine == "pymunk" else f"random_arches_{engine}"
     _figure([*drawn, *others], rows, engine, out / f"{name}.png")
+    asked = [
+        {"kind": "random", **_facts(draw), **row}
+        for draw, row in zip(drawn, rows, strict=False)
+    ]
+    asked += [
+        {"kind": "hard", **_facts(draw), **row}
+        for draw, row in zip(others, rows[len(drawn) :], strict=True)
+    ]
+    write_rows(out / f"random_arches_{engine}.csv", asked)
     for draw, row in zip([*drawn, *others], rows, strict=True):
         if abs(_error(row)) > plan.tol / 2 or not row["confirmed"] or row["mode"] != draw.mode:
             sys.stderr.write(f"{draw}\n    {row}\n")
@@ -178,6 +189,18 @@ def main(
             for draw, row in zip(others, rows[len(drawn) :], strict=True)
         },
     )
+
+
+def _facts(draw: Draw) -> Row:
+    """Return an arch and its exact answer as columns; its answer's mode is `mode`."""
+    return {
+        "half_angle_deg": math.degrees(draw.half_angle),
+        "mu": draw.mu,
+        "voussoirs": draw.voussoirs,
+        "weight": draw.weight,
+        "eta": draw.eta,
+        "mode_exact": draw.mode.value,
+    }
 
 
 def _error(row: Row) -> float:

@@ -15,7 +15,9 @@ from blocksim.arch.scenario import load_scenario
 from blocksim.common.errors import InputError
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.tables import write_results
+from blocksim.studies.agreement import disagreements
 from blocksim.studies.validate import scenarios, validate, validate_one
+from tests.report_rows import ROW
 
 
 def test_quick_scenarios_are_spread_over_the_map() -> None:
@@ -64,6 +66,41 @@ def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None
     row = validate_one(load_scenario("semicircle"), "pymunk")
     assert "error -1.0" in row.miss or "error -0.9" in row.miss
     assert "mode rrr, limit says srr" in row.miss
+
+
+def test_modes_that_coincide_on_a_line_of_the_map_are_both_right(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Fig. 22 prints both modes; where friction is 1e-4 more theory has but one of them.
+
+    In a wide bracket `direct` sees rrr at the lower end; at the limit they are rrs.
+    """
+    monkeypatch.setitem(validate_one.__globals__["TOLS"], "direct", 4e-3)
+    scenario = load_scenario("fig22_first_sliding_149")
+    on_it = validate_one(scenario, "direct")
+    assert (on_it.mode_observed, on_it.mode_limit) == (Mode.RRR, Mode.RRS)
+    assert on_it.miss == ""
+    assert on_it.note.startswith("on a line of the map")
+    beside = validate_one(replace(scenario, mu=1.0001 * scenario.mu), "direct")
+    assert (beside.mode_observed, beside.mode_limit) == (Mode.RRR, Mode.RRS)
+    assert beside.miss == "mode rrr, limit says rrs"
+
+
+@pytest.mark.parametrize(
+    ("coincide", "seen", "places"),
+    [
+        ((Mode.RRR, Mode.RRS), Mode.RRS, 0),
+        ((Mode.RRR,), Mode.RRS, 1),
+        ((Mode.RRR, Mode.RRS), Mode.SRR, 1),
+        ((Mode.RRR, Mode.RRS), None, 1),
+    ],
+)
+def test_engines_that_see_modes_that_coincide_do_not_disagree(
+    coincide: tuple[Mode, ...], seen: Mode | None, places: int
+) -> None:
+    one = replace(ROW, modes_theory=coincide)
+    other = replace(one, engine="pybullet", mode_observed=seen)
+    assert len(disagreements([one, other])) == places
 
 
 def test_results_in_a_folder_that_cannot_be_are_one_line() -> None:

@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Literal
 
 import av
 import numpy as np
@@ -134,6 +135,32 @@ def test_a_film_ends_when_a_falling_block_reaches_the_ground() -> None:
     assert stage.end == pytest.approx(expected, abs=1e-4)
     assert stage.ground == pytest.approx(-DEPTH, abs=1e-15)
     assert Film([falling()]).on_ground
+
+
+def slid(way: float) -> Recording:
+    """The last block slides along the ground, by a way to the right of its place."""
+    moved = np.zeros((2, ARCH.voussoirs, 3))
+    moved[1, -1] = way, -DEPTH / 2, 0.0
+    return recording(moved, np.array([0.0, 1.0]))
+
+
+@pytest.mark.parametrize("view", ["2d", "3d"])
+def test_films_beside_each_other_have_one_scale(view: Literal["2d", "3d"]) -> None:
+    """At rest they are the same picture, whichever goes farther; alone they are not."""
+    near, far = slid(0.2), slid(1.2)
+    films = [Film([near], view=view, beside=[far]), Film([far], view=view, beside=[near])]
+    one, other, alone = (
+        film.frame(0)[100:600].astype(int) for film in (*films, Film([near], view=view))
+    )
+    assert np.abs(one - other).max() == 0
+    assert (np.abs(one - alone).max(axis=2) > 60).mean() > 0.01
+
+
+def test_a_block_that_lies_far_aside_is_in_the_picture() -> None:
+    """A block 1.5 r beyond the springing: at the margin there is ground and nothing else."""
+    film = Film([slid(1.5)])
+    last = film.frame(film.count - 1)[100:600, -12:].astype(int)
+    assert np.abs(last[:, :1] - last).max() < 20
 
 
 def test_a_film_ends_when_a_block_goes_into_a_footing() -> None:

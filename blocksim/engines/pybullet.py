@@ -6,7 +6,8 @@ How blocks are put into it is told in `engines.bulletblocks`. How they are moved
   sweeps this takes hardly depend on the step: long steps, each solved until a sweep changes
   next to nothing.
 - Blocks let go are built anew: Bullet keeps pressures of bodies without links, and
-  accelerations at rest come from bodies with links, whose friction is true.
+  accelerations at rest come from bodies with links, whose friction is true. Once they turn
+  so fast that a step would open a level joint they have links again.
 - Once blocks may meet others (`solids`) all are built anew, as hulls that know their faces,
   with what they stand on and a floor.
 """
@@ -31,7 +32,7 @@ from blocksim.engines.bulletblocks import (
     place_of,
     solid,
 )
-from blocksim.engines.bulletspace import MOST_FRICTION, Space, State
+from blocksim.engines.bulletspace import MOST_FRICTION, SLOP, Space, State
 from blocksim.engines.energy import Balance
 from blocksim.engines.solids import Solids
 
@@ -128,7 +129,8 @@ class Bodies:
             for index in range(len(assembly.blocks))
         ]
         self._turned = np.zeros((len(assembly.blocks), len(TURNS)))
-        self._is_free = self._is_rubble = False
+        self._is_free = self._is_layered = self._is_rubble = False
+        self._gains = np.zeros(len(assembly.blocks))
         self._short, self._held = settings.step, 0
         self._bodies, self._joints = linked(self._space, problem)
         self._space.find_contacts()
@@ -139,10 +141,29 @@ class Bodies:
     def _let_go(self) -> None:
         """Build anew for motion, where bodies without links will do."""
         self._is_free = True
-        if can_be_layered(self._problem):
+        if can_be_layered(self._problem) and not self._lifts():
+            self._is_layered = True
             self._bodies, self._joints = layered(self._space, self._problem)
             self._short, sweeps, self._held = self._settings.step, self._held, 0
             self.hold(sweeps)
+
+    def _lifts(self) -> bool:
+        """Tell whether in the next step a corner may lift off, on its arc, by what overlaps.
+
+        Of bodies without links Bullet forgets contacts of a level joint as soon as it is open.
+        """
+        turns = np.abs(self._velocities()[:, PLANAR - 1]) + self._gains
+        reach = self._assembly.reach / self._assembly.size
+        return bool((reach * (self._settings.step * turns) ** 2 / 2 > SLOP).any())
+
+    def _link(self) -> None:
+        """Build anew, of bodies with links, where blocks are."""
+        states = [self._space.state(body) for body in self._bodies]
+        self._space.clear(breaking_of(self._problem))
+        self._space.pull(self._problem.gravity)
+        self._bodies, self._joints = linked(self._space, self._problem)
+        for body, state in zip(self._bodies, states, strict=True):
+            self._space.put(body, state)
 
     def begin(self, forces: Array) -> None:
         """Build anew, of joints that press by themselves as the forces given do.
@@ -180,6 +201,7 @@ class Bodies:
                 self._space.stop(body)
             else:
                 self._space.put(body, state)
+        self._gains = self._settings.step * np.abs(accelerations[:, PLANAR - 1])
         return accelerations
 
     def advance(self, steps: int) -> None:
@@ -198,11 +220,18 @@ class Bodies:
                 self._tumble(speed)
                 continue
             parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
+            if self._is_layered and self._lifts():
+                self._is_layered = False
+                self._link()
+                # Contacts that are open by a hair are found anew only once they have closed.
+                parts = FINEST
             step = self._settings.step / parts
             change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
             self._space.solve_by(step, self._settings.sweeps, change=change)
+            turns = self._velocities()[:, PLANAR - 1]
             for _ in range(parts):
                 self._step()
+            self._gains = np.abs(self._velocities()[:, PLANAR - 1] - turns)
 
     @cached_property
     def _solids(self) -> Solids:

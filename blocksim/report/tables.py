@@ -32,7 +32,8 @@ def as_record(row: Validation) -> dict[str, object]:
     fields = asdict(replace(row, recording=None))
     left_out = {"half_angle", "recording"}
     record = {key: value for key, value in fields.items() if key not in left_out}
-    record["modes_published"] = "/".join(row.modes_published)
+    for key in ("modes_published", "modes_theory"):
+        record[key] = "/".join(record[key])
     return {"scenario": row.scenario, "half_angle_deg": math.degrees(row.half_angle), **record}
 
 

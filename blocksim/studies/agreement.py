@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from blocksim.arch.modes import Mode
@@ -23,6 +23,8 @@ class Validation:
     weight : str
     modes_published : tuple of Mode
         Of the continuous arch: several on a line of the map.
+    modes_theory : tuple of Mode
+        The same by theory: all that coincide there, so that none of them is wrong.
     eta_published, eta_limit : float or None
     mode_limit : Mode or None
     eta_low, eta_high : float or None
@@ -57,6 +59,7 @@ class Validation:
     voussoirs: int
     weight: str
     modes_published: tuple[Mode, ...]
+    modes_theory: tuple[Mode, ...] = ()
     eta_published: float | None
     eta_limit: float | None = None
     mode_limit: Mode | None = None
@@ -105,6 +108,11 @@ def numbered(rows: Sequence[Validation]) -> dict[str, int]:
     return {name: number for number, name in enumerate(names, start=1)}
 
 
+def agree(one: Mode | None, other: Mode | None, coincident: Collection[Mode]) -> bool:
+    """Tell whether two modes are one, or two of those that coincide on a line of the map."""
+    return one is other or (one in coincident and other in coincident)
+
+
 def disagreements(rows: Sequence[Validation]) -> list[str]:
     """List where engines differ on the same scenario, each with its likely cause.
 
@@ -115,7 +123,8 @@ def disagreements(rows: Sequence[Validation]) -> list[str]:
     Returns
     -------
     list of str
-        Sentences; modes, verdicts and brackets that exclude each other count.
+        Sentences; verdicts, brackets that exclude each other and modes count, but not
+        modes that coincide where the arch lies on the map.
     """
     found: list[str] = []
     for name in dict.fromkeys(row.scenario for row in rows):
@@ -124,7 +133,7 @@ def disagreements(rows: Sequence[Validation]) -> list[str]:
             pair = f"{name}: {first.engine} and {other.engine}"
             # The note of the engine that differs from `limit` says why.
             cause = (first.note if first.miss else other.note) or "no cause known"
-            if first.mode_observed is not other.mode_observed:
+            if not agree(first.mode_observed, other.mode_observed, first.modes_theory):
                 seen = f"{first.mode_observed or 'unnamed'}, {other.mode_observed or 'unnamed'}"
                 found.append(f"{pair} see different modes ({seen}): {cause}")
             if (first.below, first.above) != (other.below, other.above):

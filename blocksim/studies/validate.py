@@ -21,7 +21,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines import get_engine
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
-from blocksim.studies.agreement import Unasked, Validation
+from blocksim.studies.agreement import Unasked, Validation, agree
 
 TOLS = {"direct": 1e-6, "pymunk": 0.001, "pybullet": 0.004, "mujoco": 0.004}
 """Relative width of each engine's brackets."""
@@ -159,6 +159,7 @@ def validate_one(scenario: Scenario, engine: str) -> Validation:
         miss=miss,
         note=_note(scenario, found, in_motion),
         wall_s=time.perf_counter() - started,
+        modes_theory=found.modes_theory,
         recording=recording,
     )
 
@@ -214,7 +215,7 @@ def _misses(
         misses.append(f"no bracket{fell}")
     elif abs(error) > ERROR_BOUND:
         misses.append(f"error {error:+.2%}")
-    if found.mode is not found.mode_limit:
+    if not agree(found.mode, found.mode_limit, found.modes_theory):
         misses.append(
             f"mode {found.mode or 'unnamed'}, limit says {found.mode_limit or 'unnamed'}"
         )
@@ -229,7 +230,7 @@ def _note(scenario: Scenario, found: Bracket, in_motion: Mode | None) -> str:
     """Say why modes differ, where that is known, and what else to keep in mind."""
     notes: list[str] = []
     if found.mode is not found.mode_limit:
-        if {found.mode, found.mode_limit} <= {*scenario.expected_modes}:
+        if agree(found.mode, found.mode_limit, found.modes_theory):
             notes.append("on a line of the map, where both modes coincide")
         elif found.eta_low is not None:
             there = mechanism(scenario.arch(found.eta_low), scenario.mu).mode

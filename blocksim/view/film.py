@@ -78,6 +78,9 @@ class Film:
         Of a frame [pixels]; it is 16:9.
     rate : int
         Frames in a second.
+    beside : sequence of Recording
+        Shown in other films beside this one: there is room for them, too, so that all have
+        one scale.
 
     Attributes
     ----------
@@ -106,6 +109,7 @@ class Film:
         slow: float | None = None,
         height: int = TALL,
         rate: int = 30,
+        beside: Sequence[Recording] = (),
     ) -> None:
         self.height = 2 * (height // 2)
         self.width = 2 * round(height * 8 / 9)
@@ -128,10 +132,9 @@ class Film:
             "2d": PlanarView,
             "3d": SpatialView,
         }
-        # One scale for both, so that they can be compared.
-        shown = np.concatenate(
-            [stage.swept - [stage.middle, 0.0, 0.0] for stage in self._stages]
-        )
+        # One scale for all, so that they can be compared.
+        framed = [*self._stages, *map(Stage, beside)]
+        shown = np.concatenate([stage.swept - [stage.middle, 0.0, 0.0] for stage in framed])
         self._views: list[View] = [
             kinds[view](stage, panel, shown)
             for stage, panel in zip(self._stages, self._panels, strict=True)

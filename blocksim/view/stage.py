@@ -28,7 +28,7 @@ SUNK = 0.02
 """Depth of a corner in the ground or in a footing that passes for touching it [r]."""
 SEEN = 4e-3
 """Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
-FARTHEST = 1.0
+FARTHEST = 1.75
 """Blocks are followed up to this far beyond where they were at rest [r]."""
 ALONG = 2.25
 """The same to the sides on supports that are known, which are shown as far [size]."""
