@@ -136,7 +136,8 @@ class _Bodies:
         """
         self._pressures = np.maximum(forces[:, :, 0], 0.0)
         self._scatter, self._steady = 0.0, True
-        for self._softness in (HARDEST, self._softness):
+        for softness in (HARDEST, self._softness):
+            self._softness = softness
             self._press(HOLD_STEP)
             library.mj_forward(self._model, self._state)
             start = self._starts().reshape(-1, 3)
