@@ -113,8 +113,8 @@ def test_what_still_settles_is_no_collapse() -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.9, 1.1])
-def test_a_thin_shallow_arch_is_not_answered(ratio: float) -> None:
-    """Known limit: 30 degrees, eta 0.0015. Its contacts do not come to rest."""
+def test_a_thin_shallow_arch_is_not_answered_from_nothing(ratio: float) -> None:
+    """From nothing: 30 degrees, eta 0.0015. Its contacts do not come to rest."""
     arch = arch_at(ratio, 30, 0.7, 27)
     engine = get_engine("mujoco")
     settings = replace(engine.rule(arch.assembly()), hold_sweeps=1500)
@@ -123,6 +123,13 @@ def test_a_thin_shallow_arch_is_not_answered(ratio: float) -> None:
         onset(world, engine, Problem(assembly=arch.assembly(), mu=0.7), settings).verdict
         is Verdict.UNDECIDED
     )
+
+
+@pytest.mark.parametrize(("ratio", "expected"), [(0.99, "collapses"), (1.01, "stands")])
+def test_a_thin_shallow_arch_is_begun_with_forces(ratio: float, expected: str) -> None:
+    """The same arch: the exact limit of its voussoirs is the truth."""
+    seen = observe(arch_at(ratio, 30, 0.7, 27).problem(0.7), "mujoco", moving=False)
+    assert seen.verdict.value == expected
 
 
 @pytest.mark.parametrize("degrees", [5, 20, 45])
