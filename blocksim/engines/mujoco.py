@@ -39,7 +39,7 @@ from blocksim.blocks.assembly import Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.energy import Balance
-from blocksim.engines.mujocoblocks import RUBBLE_PERIOD, joined, library, rubble, ways
+from blocksim.engines.mujocoblocks import RUBBLE_PERIOD, TOLERANCE, joined, library, rubble, ways
 from blocksim.engines.mujocostep import coulomb_step
 from blocksim.engines.solids import Solids
 
@@ -237,6 +237,7 @@ class _Bodies:
             self._press(self._part)
             self._settle(SETTLING)
             self._zero = self._state.qpos.copy()
+            self._model.opt.tolerance = TOLERANCE
             self._choose(self._part, 0.0)
         for _ in range(steps):
             if self._is_rubble:
