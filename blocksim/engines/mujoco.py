@@ -39,7 +39,14 @@ from blocksim.blocks.assembly import Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.energy import Balance
-from blocksim.engines.mujocoblocks import RUBBLE_PERIOD, TOLERANCE, joined, library, rubble, ways
+from blocksim.engines.mujocoblocks import (
+    RUBBLE_PERIOD,
+    TOLERANCE,
+    joined,
+    library,
+    rubble,
+    ways,
+)
 from blocksim.engines.mujocostep import coulomb_step
 from blocksim.engines.solids import Solids
 
