@@ -54,7 +54,7 @@ HOLD_STEP = 1e-5
 """Time step of the onset test."""
 HOLD_SWEEPS = 20_000
 """Most time steps of the onset test."""
-UNAIDED = 5000
+UNAIDED = 10_000
 """After how many of them it begins anew, with forces of limit analysis."""
 LEAST_SWEEPS = 100
 PAUSE = 5.0
