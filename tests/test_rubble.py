@@ -50,6 +50,7 @@ def test_a_collapse_ends_on_the_ground(engine: str, case: rubble.Case) -> None:
     found = rubble.measured(recording)
     assert found["overlap"] < rubble.ALLOWED
     assert found["sunk"] < 2e-3
+    assert found["thrown"] == 0.0
     quality = recording.quality
     assert quality.gain is not None
     assert quality.gain < rubble.GAIN

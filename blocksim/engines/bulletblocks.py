@@ -40,7 +40,7 @@ from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.engines.boxes import EDGE, Box, Frame, edge, plate
 from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
-from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, sides_of
+from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, reaching, sides_of
 from blocksim.engines.solids import Solids, prisms
 
 OVERLAP = SLOP
@@ -209,7 +209,7 @@ def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Tou
     for joint, sides in enumerate(sides_of(assembly)):
         deep, pair = _depths(problem, sides), sides
         if reaches is not None:
-            pair = _reaching(sides, assembly.joint_arrays.ends[joint], reaches[joint])
+            pair = reaching(sides, assembly.joint_arrays.ends[joint], reaches[joint])
         for side, depth, sense in zip(pair, deep, (-1.0, 1.0), strict=True):
             at_rest = side.body == SUPPORT
             origin = np.zeros(2) if at_rest else assembly.centres[side.body] / assembly.size
@@ -230,19 +230,6 @@ def _depths(problem: Problem, sides: tuple[Side, Side]) -> tuple[float, float]:
         depth = min(float(depths[each.body]) for each in sides if each.body != SUPPORT)
         more = 2 * LEDGE
     return (depth, depth + more) if lengths[1] > lengths[0] else (depth + more, depth)
-
-
-def _reaching(sides: tuple[Side, Side], ends: Array, ways: Array) -> tuple[Side, Side]:
-    """Let the shorter side of a joint reach into the other, by a way at each end.
-
-    The other is the one Bullet takes the normal from.
-    """
-    shorter = int(sides[1].length < sides[0].length)
-    side, along = sides[shorter], ends[1] - ends[0]
-    shares = (side.ends - ends[0]) @ along / (along @ along) if along.any() else np.zeros(2)
-    reach = ways[0] + shares * (ways[1] - ways[0])
-    moved = replace(side, ends=side.ends - np.outer(reach, side.inward))
-    return (sides[0], moved) if shorter else (moved, sides[1])
 
 
 def _layers(assembly: Assembly) -> Array:

@@ -12,7 +12,7 @@ which is longer, and nothing has to be added.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,6 +77,27 @@ def sides_of(assembly: Assembly) -> tuple[tuple[Side, Side], ...]:
         )
         found.append((first, second))
     return tuple(found)
+
+
+def reaching(sides: tuple[Side, Side], ends: Array, ways: Array) -> tuple[Side, Side]:
+    """Let the shorter side of a joint reach into the other, by a way at each end.
+
+    The other is the one Bullet takes the normal from.
+
+    Parameters
+    ----------
+    sides : (Side, Side)
+    ends : (2, 2) float
+        Of the joint.
+    ways : (2,) float
+        At either end; negative for a gap.
+    """
+    shorter = int(sides[1].length < sides[0].length)
+    side, along = sides[shorter], ends[1] - ends[0]
+    shares = (side.ends - ends[0]) @ along / (along @ along) if along.any() else np.zeros(2)
+    reach = ways[0] + shares * (ways[1] - ways[0])
+    moved = replace(side, ends=side.ends - np.outer(reach, side.inward))
+    return (sides[0], moved) if shorter else (moved, sides[1])
 
 
 def _reaches(assembly: Assembly, joint: Joint, faces: Array, carrier: int) -> Array:

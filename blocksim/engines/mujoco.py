@@ -18,9 +18,10 @@ measured):
   that. With the damper of the pressure a slipping contact is lifted off, and chatters. Held
   from rest, friction is given next to no damper (`LOOSE`); in motion, that of the pressure.
 - Friction is much harder than pressure (`HELD_RATIO`), or resting joints creep.
-- While joints are joints only they are contacts: pairs of boxes named beforehand, for which
-  alone friction has settings of its own. One face of each joint reaches beyond the other, as in
-  `boxes`.
+- Blocks that fall find a motion of sliding where they could rest, too: nothing presses their
+  joints until they have moved. So the test can be begun with forces (`begin`). The sides of a
+  joint then reach into each other by what its pressures need: nothing has to give way, and
+  contacts can be the hardest. Friction needs no way, and is left to MuJoCo.
 - Once blocks may meet others (`solids`) they are put into a model of their own, as the bodies
   they are, with what they stand on and a floor.
 
@@ -31,24 +32,30 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly, displacement
+from blocksim.blocks.assembly import Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
-from blocksim.engines.base import FRICTION_CAP, Engine, Library, Quality, Settings
-from blocksim.engines.boxes import plate, uneven_depths
+from blocksim.engines.base import Engine, Quality, Settings
 from blocksim.engines.energy import Balance
-from blocksim.engines.faces import sides_of
+from blocksim.engines.mujocoblocks import (
+    RUBBLE_PERIOD,
+    TOLERANCE,
+    joined,
+    library,
+    rubble,
+    ways,
+)
+from blocksim.engines.mujocostep import coulomb_step
 from blocksim.engines.solids import Solids
-
-library: Any = Library("mujoco")
 
 HOLD_STEP = 1e-5
 """Time step of the onset test."""
 HOLD_SWEEPS = 20_000
 """Most time steps of the onset test."""
+UNAIDED = 10_000
+"""After how many of them it begins anew, with forces of limit analysis."""
 LEAST_SWEEPS = 100
 PAUSE = 5.0
 """Time between two stops of the blocks while they are held, in units of a contact's period."""
@@ -77,14 +84,9 @@ LOOSE = 10.0
 """Time constant of friction held from rest."""
 HELD_RATIO, RATIO = 1e6, 1e4
 """How much harder friction is than pressure, in the onset test and in motion."""
-TOLERANCE = 1e-14
-RUBBLE_STEP, RUBBLE_PERIOD = 5e-4, 2.0
-"""MuJoCo's step once blocks may meet, and the period of contacts in such steps."""
 GENTLE, FIRMER = 20.0, 0.8
 """That period at first, which lets joints that have sunk into each other rise without a push,
 and by how much it shrinks in each step."""
-RUBBLE_SOFTNESS, RUBBLE_RATIO = 1e-3, 10.0
-"""How soft they are then, and how much harder friction is than pressure."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -93,6 +95,7 @@ def rule(assembly: Assembly) -> Settings:
         step=STEP,
         sweeps=round(PARTS * max(1.0, math.sqrt(SHORT / assembly.shortest))),
         hold_sweeps=HOLD_SWEEPS,
+        unaided=UNAIDED,
         still=STILL,
         noise=NOISE,
         closing=CLOSING,
@@ -115,7 +118,7 @@ class _Bodies:
         self._step = settings.step
         self._is_rubble, self._deepest, self._period = False, 0.0, GENTLE
         self._scatter, self._steady = 0.0, True
-        self._model = _model(problem)
+        self._model = joined(problem)
         self._state = library.MjData(self._model)
         self._places = np.column_stack(
             [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
@@ -123,6 +126,7 @@ class _Bodies:
         self._zero = np.zeros(self._places.size)
         self._balance = Balance(problem, self._places)
         self._pull()
+        self._pressures: Array | None = None
         self._softness, self._force = HARDEST, 1 / HARDEST
         self._choose(HOLD_STEP, LOOSE)
         # With the hardest contacts the blocks as built fall a little: that tells of all others.
@@ -132,18 +136,54 @@ class _Bodies:
         self._softness = min(max(SAG * HARDEST * (1 - fall) / fall, HARDEST), HARD)
         self._choose(HOLD_STEP, LOOSE)
 
+    def begin(self, forces: Array) -> None:
+        """Begin anew, with joints that press by themselves as the forces given do.
+
+        Where these do not balance blocks start to move, and contacts have to follow.
+        """
+        self._pressures = np.maximum(forces[:, :, 0], 0.0)
+        self._scatter, self._steady = 0.0, True
+        for softness in (HARDEST, self._softness):
+            self._softness = softness
+            self._press(HOLD_STEP)
+            library.mj_forward(self._model, self._state)
+            start = self._starts().reshape(-1, 3)
+            if displacement(start, self._problem.assembly) < STILL:
+                break
+
+    def _press(self, step: float) -> None:
+        """Put blocks where they were built, their contacts as far given way as they press."""
+        if self._pressures is None:
+            self._choose(step, LOOSE)
+            return
+        period, impedance = self._period_at(step), _impedance(self._softness)
+        unit = (1 - impedance) * (DAMPING * period) ** 2
+        needed = unit * ways(self._problem.assembly, self._pressures)
+        self._model = joined(self._problem, needed - self._unit(period))
+        self._state = library.MjData(self._model)
+        # Where a step gains little, forces between the hardest contacts may be far off still.
+        self._model.opt.tolerance = 0.0
+        self._choose(step, LOOSE)
+        self._pull()
+
+    def _period_at(self, step: float) -> float:
+        """Return the period of contacts that suits a time step."""
+        return step * max(PERIOD / math.sqrt(self._softness * self._force), SHORTEST)
+
+    def _unit(self, period: float) -> float:
+        """Return how far one block's weight presses into a contact, about."""
+        return self._softness * (DAMPING * period) ** 2
+
     def _choose(self, step: float, slip: float) -> None:
         """Set the time step, the contacts that suit it, and the time constant of friction."""
-        period = step * max(PERIOD / math.sqrt(self._softness * self._force), SHORTEST)
-        impedance = 1 / (1 + self._softness)
+        period, impedance = self._period_at(step), _impedance(self._softness)
         model = self._model
         model.opt.timestep = step
         model.opt.impratio = HELD_RATIO if slip else RATIO
         model.pair_solref[:] = [period, DAMPING]
         model.pair_solreffriction[:] = [slip or period, 1.0]
         model.pair_solimp[:] = [impedance, impedance, 1.0, 0.5, 2.0]
-        # How far one block's weight presses into a contact.
-        model.pair_margin[:] = self._softness * (DAMPING * period) ** 2
+        model.pair_margin[:] = self._unit(period)
         self._pause = math.ceil(PAUSE * period / step)
 
     def _pull(self) -> None:
@@ -166,9 +206,9 @@ class _Bodies:
         kept, a millionth of the size, and the blocks are stopped.
         """
         if self._scatter > CHATTER and self._softness < SOFTEST:
-            self._softness *= SOFTER
-            self._choose(HOLD_STEP, LOOSE)
+            self._softness = min(SOFTER * self._softness, SOFTEST)
             self._state.qpos[:] = 0.0
+            self._press(HOLD_STEP)
         early = self._round(max(sweeps, LEAST_SWEEPS) // 2)
         late = self._round(max(sweeps, LEAST_SWEEPS) // 2)
         # What still changes is the contacts' doing, not the arch's.
@@ -187,14 +227,24 @@ class _Bodies:
 
     def _accelerations(self) -> Array:
         library.mj_step(self._model, self._state)
-        return self._state.qacc.copy()
+        return self._starts()
+
+    def _starts(self) -> Array:
+        """Return the accelerations that follow from forces.
+
+        MuJoCo's own do not, where its solver has ended too early.
+        """
+        forces = self._state.qfrc_smooth + self._state.qfrc_constraint
+        found: Array = forces / self._problem.assembly.masses.ravel()
+        return found
 
     def advance(self, steps: int) -> None:
         """Let the blocks move; before they first do, contacts take up the weight again."""
         if not self._is_rubble and self._model.opt.timestep != self._part:
-            self._choose(self._part, LOOSE)
+            self._press(self._part)
             self._settle(SETTLING)
             self._zero = self._state.qpos.copy()
+            self._model.opt.tolerance = TOLERANCE
             self._choose(self._part, 0.0)
         for _ in range(steps):
             if self._is_rubble:
@@ -214,20 +264,21 @@ class _Bodies:
         """Make blocks the bodies they are, with what they stand on and the floor."""
         self._is_rubble = True
         moved, velocities = self._state.qpos - self._zero, self._state.qvel.copy()
-        self._model = _rubble(self._problem, self._solids)
+        self._model = rubble(self._problem, self._solids)
         self._state = library.MjData(self._model)
         self._state.qpos[:], self._state.qvel[:] = moved, velocities
         self._zero = np.zeros_like(moved)
 
     def _tumble(self) -> None:
         """Take a step of blocks that meet."""
-        step = self._model.opt.timestep
-        self._model.geom_solref[:, 0] = self._period * step
+        length = self._model.opt.timestep
+        self._model.geom_solref[:, 0] = self._period * length
         self._period = max(RUBBLE_PERIOD, FIRMER * self._period)
         self._pull()
-        library.mj_step(self._model, self._state, max(1, round(self._step / step)) - 1)
+        for _ in range(max(1, round(self._step / length)) - 1):
+            coulomb_step(self._model, self._state)
         poses, before = self.poses(), self._state.qvel.reshape(-1, 3).copy()
-        library.mj_step(self._model, self._state)
+        coulomb_step(self._model, self._state)
         self._balance.look(poses, before, self._state.qvel.reshape(-1, 3))
         gaps = self._state.contact.dist
         self._deepest = max(self._deepest, -float(gaps.min(initial=0.0)))
@@ -244,94 +295,9 @@ class _Bodies:
         return Quality(residual=residual, penetration=self._deepest, gain=self._balance.gain)
 
 
-def _bodies(problem: Problem) -> tuple[Any, list[Any]]:
-    """Return a model of bodies that move in the plane, without shapes, and the bodies."""
-    assembly, gravity = problem.assembly, problem.gravity
-    size = assembly.size
-    spec = library.MjSpec()
-    option = spec.option
-    option.gravity = gravity.tolist()
-    option.cone = library.mjtCone.mjCONE_ELLIPTIC
-    option.solver = library.mjtSolver.mjSOL_NEWTON
-    option.tolerance = TOLERANCE
-    # It would put all blocks back in silence where numbers overflow.
-    option.disableflags |= library.mjtDisableBit.mjDSBL_AUTORESET
-    bodies: list[Any] = []
-    for index, block in enumerate(assembly.blocks):
-        mass, _, inertia, _, *across = assembly.spatial_masses[index].tolist()
-        body = spec.worldbody.add_body(
-            pos=[*(block.centre / size), 0.0],
-            mass=mass,
-            inertia=[*across, inertia],
-            # Left out, they are not those of the body.
-            ipos=[0.0, 0.0, 0.0],
-            iquat=[1.0, 0.0, 0.0, 0.0],
-            explicitinertial=True,
-        )
-        slide, hinge = library.mjtJoint.mjJNT_SLIDE, library.mjtJoint.mjJNT_HINGE
-        body.add_joint(type=slide, axis=[1.0, 0.0, 0.0])
-        body.add_joint(type=slide, axis=[0.0, 1.0, 0.0])
-        body.add_joint(type=hinge, axis=[0.0, 0.0, 1.0])
-        bodies.append(body)
-    return spec, bodies
-
-
-def _model(problem: Problem) -> Any:
-    """Return a model of bodies that touch where the assembly has joints."""
-    assembly = problem.assembly
-    spec, bodies = _bodies(problem)
-    spec.option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
-    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
-    depth = np.append(uneven_depths(assembly), 2 * assembly.depths.max())
-    for k, sides in enumerate(sides_of(assembly)):
-        for side in sides:
-            body = spec.worldbody if side.body == SUPPORT else bodies[side.body]
-            box = plate(side, float(depth[side.body]), centres[side.body], overlap=0.0)
-            x, y, z, w = box.quaternion
-            body.add_geom(
-                name=f"joint {k}, block {side.body}",
-                type=library.mjtGeom.mjGEOM_BOX,
-                size=box.half,
-                pos=box.centre,
-                quat=[w, x, y, z],
-                contype=0,
-                conaffinity=0,
-            )
-        mu = min(float(problem.friction[k]), FRICTION_CAP)
-        spec.add_pair(
-            geomname1=f"joint {k}, block {sides[0].body}",
-            geomname2=f"joint {k}, block {sides[1].body}",
-            condim=3,
-            friction=[mu] * 2 + [0.0] * 3,
-        )
-    return spec.compile()
-
-
-def _rubble(problem: Problem, solids: Solids) -> Any:
-    """Return a model of the blocks as they are, what they stand on and the floor."""
-    spec, bodies = _bodies(problem)
-    spec.option.timestep = RUBBLE_STEP
-    spec.option.impratio = RUBBLE_RATIO
-    look = {
-        "friction": [min(problem.mu, FRICTION_CAP), 0.0, 0.0],
-        "condim": 3,
-        "solref": [RUBBLE_PERIOD * RUBBLE_STEP, 1.0],
-        "solimp": [*[1 / (1 + RUBBLE_SOFTNESS)] * 2, 1.0, 0.5, 2.0],
-    }
-    owners = [bodies[index] for index, _ in solids.moving]
-    owners += [spec.worldbody] * len(solids.fixed)
-    polygons = [polygon for _, polygon in solids.moving] + solids.fixed
-    for index, (body, polygon) in enumerate(zip(owners, polygons, strict=True)):
-        points = [[x, y, z] for z in (-0.5, 0.5) for x, y in polygon.tolist()]
-        spec.add_mesh(name=f"mesh {index}", uservert=np.array(points).ravel())
-        body.add_geom(type=library.mjtGeom.mjGEOM_MESH, meshname=f"mesh {index}", **look)
-    half = math.sqrt(0.5)
-    spec.worldbody.add_geom(
-        type=library.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0], pos=[0.0, solids.level, 0.0],
-        # Its normal is z, turned to y.
-        quat=[half, -half, 0.0, 0.0], **look,
-    )  # fmt: skip
-    return spec.compile()
+def _impedance(softness: float) -> float:
+    """Return what MuJoCo calls so: the share of its force by which a contact is not soft."""
+    return min(1 / (1 + softness), float(library.mjMAXIMP))
 
 
 ENGINE = Engine(
@@ -343,6 +309,8 @@ ENGINE = Engine(
     rule=rule,
     build=_Bodies,
     finest=1e-3,
+    takes_forces=True,
+    keeps_impulses=True,
     contacts=4,
     chart={
         "tolerance": (1e-2, 1e-3),
