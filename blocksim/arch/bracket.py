@@ -223,7 +223,7 @@ def bracket(
         )
     else:
         reduced = reduces(rung, reduce, is_planar=not lean)
-        guess = ETA_MAX if continuous.eta is None else continuous.eta
+        guess = built.eta or continuous.eta or ETA_MAX
         search = by_engine(
             _Thinning(arch, mu, lean, rung.name, settings, reduce=reduced).held_at,
             guess,

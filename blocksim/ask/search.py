@@ -3,9 +3,9 @@
 A value may be a thickness or anything else of which more is safer. Below the threshold the
 acceleration that blocks start with falls with the value and vanishes there: in nearly a
 straight line, as long as the mechanism is the same. So two ratios that collapsed tell where
-the threshold lies, and a probe to either side of that place closes the bracket, to whatever
-width; what an engine answers is never replaced by the estimate. Where the estimate leads
-nowhere the bracket is halved.
+the threshold lies, and one that collapses a little below that place tells it better. In the
+end a probe to either side closes the bracket, to whatever width; what an engine answers is
+never replaced by the estimate. Where the estimate leads nowhere the bracket is halved.
 """
 
 from __future__ import annotations
@@ -24,6 +24,9 @@ THINNEST = 1e-6
 """Search below this ratio is given up."""
 ASIDE = 0.4
 """How far to the sides of the estimate probes are made, in units of the tolerance."""
+LOWER = 0.4
+"""Where a bracket is divided to see a second collapse; halved, it would be just where a guess
+is that was right, and that is the hardest to tell."""
 CURVED = 5.0
 """Error of the estimate over the square of how far it reaches, both relative."""
 
@@ -128,7 +131,7 @@ class Bisection:
                     self._progress(share, f"trying {self._name} = {eta:.6g}")
                     self.probe(eta)
             # An estimate that did worse than two halvings gives way to one.
-            helped = halves or self._width() < width / 4
+            helped = halves or self.low in etas or self._width() < width / 4
 
     def _ceiling(self) -> float | None:
         """Upper end of the search: what stood, or the thickest arch if it is undecided."""
@@ -140,7 +143,7 @@ class Bisection:
         return 0.0 if self.low is None or high is None else 1 - self.low / high
 
     def _middle(self, tol: float) -> float | None:
-        """Middle of the wider end part; nothing is to be learnt between undecided ratios."""
+        """Inside of the wider end part; nothing is to be learnt between undecided ratios."""
         floor, ceiling = self.low, self._ceiling()
         if floor is None or ceiling is None:
             return None
@@ -148,10 +151,14 @@ class Bisection:
         below, above = min(dark, default=ceiling), max(dark, default=floor)
         parts = ((floor, below), (above, ceiling))
         low, high = max(parts, key=lambda part: part[1] - part[0])
-        return (low + high) / 2 if high - low > tol * ceiling / 4 else None
+        share = LOWER if len(self._falls) == 1 else 0.5
+        return low + share * (high - low) if high - low > tol * ceiling / 4 else None
 
     def _around_estimate(self, tol: float) -> tuple[float, ...]:
-        """Ratios to both sides of where the accelerations of two collapses vanish."""
+        """Ratios about where the accelerations of two collapses vanish.
+
+        Below it while that tells the place better than two halvings, at last to both sides.
+        """
         if self.high is None or self._dark or len(self._falls) < 2:
             return ()
         (far, more), (near, less) = sorted(self._falls)[-2:]
@@ -159,4 +166,7 @@ class Bisection:
             return ()
         zero = near + less * (near - far) / (more - less)
         aside = zero * max(ASIDE * tol, CURVED * (1 - far / zero) * (1 - near / zero))
-        return tuple(eta for eta in (zero + aside, zero - aside) if near < eta < self.high)
+        below = zero - aside
+        if ASIDE * tol * zero < aside < (zero - near) / 4 and below < self.high:
+            return (below,)
+        return tuple(eta for eta in (zero + aside, below) if near < eta < self.high)
