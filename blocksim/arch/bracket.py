@@ -131,8 +131,8 @@ def bracket(
 ) -> Bracket:
     """Find the least thickness-to-radius ratio that stands.
 
-    Engines bisect with the onset test and let the arch go at both ends. The search begins at
-    the value of the closed form, and takes nothing else from it.
+    Engines search with the onset test and let the arch go at both ends. The search begins at
+    the value of limit analysis, and takes nothing else from it.
 
     Parameters
     ----------
