@@ -268,3 +268,11 @@ def test_kinds_are_listed() -> None:
     assert width.count("pier_width") == 2, "it may be bracketed over"
     courses = next(row for row in rows if row.startswith("pier_courses"))
     assert courses.count("pier_courses") == 1
+
+
+@pytest.mark.parametrize("over", ["tilt", "lean", "mu"])
+def test_the_ends_of_a_range_can_be_asked(over: str) -> None:
+    family = family_of(structure_of({"kind": "wall", "friction": 0.7}), over)
+    for value in (family.low, family.high):
+        if math.isfinite(value) and value > 0:
+            assert all(map(math.isfinite, family.at(value).gravity))

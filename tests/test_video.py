@@ -137,6 +137,17 @@ def test_a_film_ends_when_a_falling_block_reaches_the_ground() -> None:
     assert Film([falling()]).on_ground
 
 
+def test_a_block_too_far_away_to_have_a_width_casts_no_shadow() -> None:
+    fallen = falling()
+    assembly = fallen.problem.assembly
+    far = replace(assembly.blocks[-1], centre=np.array([0.7, 1e16]))
+    lost = replace(assembly, blocks=(*assembly.blocks[:-1], far))
+    seen = replace(fallen, problem=replace(fallen.problem, assembly=lost))
+    frames = [Film([each], view="3d", height=120).frame(0) for each in (seen, fallen)]
+    assert frames[0].std() > 1
+    assert (frames[0] != frames[1]).any()
+
+
 def slid(way: float) -> Recording:
     """The last block slides along the ground, by a way to the right of its place."""
     moved = np.zeros((2, ARCH.voussoirs, 3))

@@ -36,6 +36,8 @@ TRIED = 25
 """Values of a kind's parameter at which limit analysis looks for the change."""
 HIGHEST_FACTOR = 1e6
 """Load factor above which no limit is looked for."""
+LEANEST = 89.999
+"""Farthest that gravity leans: by less than a right angle [deg]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,7 +159,7 @@ def _over_lean(problem: Problem) -> Family:
         unit="deg",
         at=lambda value: problem.leaning(math.radians(value)),
         low=0.0,
-        high=90.0,
+        high=LEANEST,
         stands="low",
         exact=lambda: None,
     )

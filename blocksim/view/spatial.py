@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, QhullError
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
@@ -189,7 +189,7 @@ class SpatialView:
         down[..., 1] = level
         flat = self._to_pixels(down.reshape(-1, 3)).reshape(len(corners), -1, 2)
         above = corners[..., 1].max(axis=(1, 2)) > level
-        pieces = [each[ConvexHull(each).vertices] for each in flat[above]]
+        pieces = [hull for each in flat[above] if (hull := _hull(each)) is not None]
         ground = mixed(colour(PAPER), colour(GROUND), 0.75)
         dark = mixed((0.0, 0.0, 0.0, 1.0), ground, SHADOW)
         soft = mixed(dark, ground, 0.5)
@@ -197,6 +197,14 @@ class SpatialView:
             *(Shape(piece, fill=soft, edge=soft, width=4 * self._line) for piece in pieces),
             *(Shape(piece, fill=dark, edge=dark, width=1.0) for piece in pieces),
         ]
+
+
+def _hull(points: Array) -> Array | None:
+    """Return the corners of what points span; None where that has no width."""
+    try:
+        return points[ConvexHull(points).vertices]
+    except QhullError:
+        return None
 
 
 def _prism(outline: Array, half: float) -> Array:
