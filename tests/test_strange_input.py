@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import io
 import json
 import math
@@ -257,6 +258,19 @@ def test_times_without_end_are_no_recording(scale: float, tmp_path: Path) -> Non
     path = tmp_path / "a.npz"
     path.write_bytes(packed(header, times * scale, poses))
     with pytest.raises(InputError, match="of finite poses at times that grow"):
+        load_recording(path)
+
+
+def test_blocks_that_stand_on_nothing_are_no_recording(tmp_path: Path) -> None:
+    header, times, poses = _good()
+    header = copy.deepcopy(header)
+    assembly = header["problem"]["assembly"]
+    inner = [each for each in assembly["joints"] if min(each["before"], each["after"]) >= 0]
+    assert 0 < len(inner) < len(assembly["joints"])
+    assembly["joints"] = inner
+    path = tmp_path / "a.npz"
+    path.write_bytes(packed(header, times, poses))
+    with pytest.raises(InputError, match="of blocks that stand on something"):
         load_recording(path)
 
 

@@ -216,6 +216,9 @@ def read_recording(path: AnyPath, renew: Callable[[Header], Header] = dict) -> R
         raise InputError("recording", where, f"of poses of shape {(*expected, PLANAR)}")
     if header.get("state_hash") != recording.state_hash:
         raise InputError("recording", where, "undamaged (its state hash does not match)")
+    assembly = recording.assembly
+    if not assembly.supports and not assembly.springings:
+        raise InputError("recording", where, "of blocks that stand on something")
     if not _moves(recording):
         raise InputError("recording", where, "of finite poses at times that grow")
     return recording
