@@ -122,7 +122,7 @@ class Bisection:
             etas = self._around_estimate(tol) if helped else ()
             halves = not etas
             if halves:
-                middle = self._middle(tol)
+                middle = self._inside(tol)
                 if middle is None:
                     return
                 etas = (middle,)
@@ -142,7 +142,7 @@ class Bisection:
         high = self._ceiling()
         return 0.0 if self.low is None or high is None else 1 - self.low / high
 
-    def _middle(self, tol: float) -> float | None:
+    def _inside(self, tol: float) -> float | None:
         """Inside of the wider end part; nothing is to be learnt between undecided ratios."""
         floor, ceiling = self.low, self._ceiling()
         if floor is None or ceiling is None:

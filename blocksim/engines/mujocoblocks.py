@@ -115,11 +115,10 @@ def ways(assembly: Assembly, pressures: Array) -> Array:
     """
     joints = assembly.joint_arrays
     free = np.zeros_like(pressures)
-    for bodies in (joints.before, joints.after):
+    for bodies, every in zip((joints.before, joints.after), assembly.joint_arms, strict=True):
         moves = bodies != SUPPORT
         mass, _, inertia = assembly.masses[bodies[moves]].T[:, :, None]
-        arms = joints.ends[moves] - (assembly.centres[bodies[moves]] / assembly.size)[:, None]
-        normal = joints.normal[moves, None]
+        arms, normal = every[moves], joints.normal[moves, None]
         levers = arms[..., 0] * normal[..., 1] - arms[..., 1] * normal[..., 0]
         free[moves] += 1 / mass + levers**2 / inertia
     carried = pressures / 2

@@ -82,14 +82,12 @@ class Displaced:
             axis=1,
         )
         self._supports = max(len(assembly.supports), 1 + max(on, default=0))
-        built = np.zeros((self._count + self._supports, 2))
-        built[: self._count] = assembly.centres / self.size
-        self._arms = joints.ends[:, None] - built[self._sides][:, :, None]
+        self._arms = np.swapaxes(assembly.joint_arms, 0, 1)
         self._axes, self._corner = joints.normal, joints.is_corner
         self._reach = assembly.reach / self.size
         closed = np.ones((len(assembly.joints), 2), dtype=np.bool_)
         closed[self._corner, 1] = False
-        poses = np.column_stack([built[: self._count], np.zeros(self._count)])
+        poses = np.column_stack([assembly.centres / self.size, np.zeros(self._count)])
         self.start = Frame(value=0.0, poses=poses, closed=closed)
 
     def _placed(self, value: float) -> Array:
