@@ -61,30 +61,44 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
     linear = Linear(step, contacts, stiffness)
     held = np.abs(guess.forces[:, 2:])
     preload = linear.doing.forces(guess.forces, held)
-    tried, systems = [guess], 0
+    tried, systems = list[Answer](), 0
     last, allowed = math.inf, preload.size
     seen, careful = set[bytes](), False
     rates = step.velocities(x)
-    fastest = float(np.abs(step.rates).max(initial=0.0))
     for systems in range(1, MOST_SYSTEMS + 1):
         way, more = linear.way(x, preload - stiffness * rates, held)
-        if not np.isfinite(way).all():
-            break
         x, held = x + way, held + more
+        largest = float(np.abs(x).max())
+        if not math.isfinite(largest):
+            break
         rates = step.velocities(x)
         forces = linear.doing.forces(preload - stiffness * rates, held)
         change = forces - preload
         most = float(np.abs(change).max(initial=0.0))
-        unsure = UNSURE * most
+        unsure, yields = UNSURE * most, most / stiffness
         mended = _mended(step, linear.doing, forces, rates, unsure, unsure / stiffness)
         changes = 0 if mended is contacts else int(np.count_nonzero(mended != contacts))
-        found = Answer(x=x, forces=forces, contacts=contacts)
-        largest = float(np.abs(x).max())
-        if changes and -float(forces[:, :2].min()) <= RELATIVE * largest * max(1.0, largest):
-            # Nothing pulls; so it may be that nothing is wrong but round-off.
-            found = replace(found, residual=step.residual(x, forces, rates))
-            if found.residual <= RELATIVE * largest:
-                return replace(found, systems=guess.systems + systems, is_settled=True)
+        nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
+        ratio, last = yields / last, math.inf if changes else yields
+        residual, is_settled = math.inf, False
+        if changes:
+            # Where nothing pulls it may be that nothing is wrong but round-off.
+            if -float(forces[:, :2].min()) <= RELATIVE * largest * max(1.0, largest):
+                residual = step.residual(x, forces, rates)
+                is_settled = residual <= RELATIVE * largest
+        elif yields <= nothing or (ratio > DRIFT and yields <= _unfit(step, largest)):
+            residual, is_settled = step.residual(x, forces, rates), True
+        spent = guess.systems + systems
+        found = Answer(
+            x=x,
+            forces=forces,
+            contacts=contacts,
+            residual=residual,
+            systems=spent,
+            is_settled=is_settled,
+        )
+        if is_settled:
+            return found
         tried.append(found)
         if changes > allowed:
             break
@@ -98,16 +112,9 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
                 careful = True
             if careful:
                 mended = _first(contacts, mended)
-            contacts, last = mended, math.inf
+            contacts = mended
             linear = Linear(step, contacts, stiffness)
-            continue
-        yields = most / stiffness
-        nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
-        ratio, last = yields / last, yields
-        if yields <= nothing or (ratio > DRIFT and yields <= RIGID * max(largest, fastest)):
-            residual, spent = step.residual(x, forces, rates), guess.systems + systems
-            return replace(found, residual=residual, systems=spent, is_settled=True)
-        if ratio > SLOW:
+        elif ratio > SLOW:
             # It goes on to change, less each time, or until a contact gives way.
             ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
             ahead = min(ahead, _reach(step, forces, change))
@@ -115,9 +122,14 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
                 # Contacts contradict each other, and none ever gives way.
                 break
             preload = forces + ahead * change
-    known = [each if each.residual < math.inf else _known(step, each) for each in tried[1:]]
+    known = [each if each.residual < math.inf else _known(step, each) for each in tried]
     best = min([guess, *known], key=lambda each: each.residual)
     return replace(best, systems=guess.systems + systems)
+
+
+def _unfit(step: Step, largest: float) -> float:
+    """Return the yield without end of faces that do not quite fit."""
+    return RIGID * max(largest, float(np.abs(step.rates).max(initial=0.0)))
 
 
 def _known(step: Step, answer: Answer) -> Answer:
@@ -150,18 +162,17 @@ def _mended(
     step: Step, doing: Doing, forces: Array, rates: Array, unsure: float, yields: float
 ) -> Contacts:
     """Return what contacts do in place of what they cannot."""
-    pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
     nothing = ROUND_OFF * max(1.0, float(np.abs(forces).max(initial=0.0)))
     no_force, no_rate = nothing + unsure, nothing + yields
-    a, b = step.friction.room
-    beyond = doing.sticks & (b * np.abs(friction) - a * pressure > no_force)
-    back = doing.side * slip > no_rate
-    passes = doing.is_open & (rates[:, :2] < -no_rate)
-    pulls = pressure < -no_force
-    if not (beyond | back | passes | pulls).any():
+    beyond = doing.sticks & (step.friction.excess(forces) > no_force)
+    wrong_way = doing.is_open & (rates[:, :2] < -no_rate)
+    if doing.some_slide:
+        wrong_way |= doing.side * rates[:, 2:] > no_rate
+    pulls = forces[:, :2] < -no_force
+    if not (beyond | wrong_way | pulls).any():
         return doing.contacts
     found = doing.contacts.copy()
-    found[beyond] = np.where(friction[beyond] > 0, SLIDES_UP, SLIDES_DOWN)
-    found[back | passes] = STICKS
+    found[beyond] = np.where(forces[:, 2:][beyond] > 0, SLIDES_UP, SLIDES_DOWN)
+    found[wrong_way] = STICKS
     found[pulls & ~doing.is_open] = OPEN
     return found

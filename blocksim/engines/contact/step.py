@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
@@ -91,18 +92,17 @@ class Step:
 
     def residual(self, x: Array, forces: Array, rates: Array | None = None) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
-        worst = float(np.abs(self.imbalance(x, forces)).max())
+        imbalance = np.abs(self.imbalance(x, forces)).max()
         rates = self.velocities(x) if rates is None else rates
         normal, slip = rates[:, :2], rates[:, 2:]
         pressure, friction = forces[:, :2], forces[:, 2:]
         # Friction in the cone; at its edge, against the slip, or no slip.
         a, b = self.friction.room
-        most, size, way = a * pressure, b * np.abs(friction), np.abs(slip)
-        helping = np.sign(slip) * friction
+        way, helping = np.abs(slip), np.sign(slip) * friction
         wrongs = [
             np.abs(np.minimum(pressure, normal)),
-            size - most,
-            np.minimum(most + b * helping, way),
+            self.friction.excess(forces),
+            np.minimum(a * pressure + b * helping, way),
         ]
         if self.friction.some_steep:
             # Nor does friction help the slip, or act across a gap.
@@ -110,18 +110,16 @@ class Step:
                 np.where(self.friction.steep, wrong, 0.0)
                 for wrong in (np.minimum(helping, way), np.minimum(np.abs(friction), normal))
             ]
-        for wrong in wrongs:
-            # Unlike max, this keeps nan.
-            worst = np.maximum(worst, wrong.max(initial=0.0))
+        # Unlike Python's, numpy's maximum keeps nan.
+        worst = np.maximum(imbalance, reduce(np.maximum, wrongs).max(initial=0.0))
         return float(worst) / max(1.0, float(np.abs(x).max()))
 
     def told(self, x: Array, forces: Array) -> Contacts:
         """Tell what contacts do where what is about 0 is still more than nothing."""
         rates = self.velocities(x)
         pressure, along = forces[:, :2], forces[:, 2:]
-        a, b = self.friction.room
         contacts = np.where(along > 0, SLIDES_UP, SLIDES_DOWN).astype(np.int8)
-        contacts[a * pressure - b * np.abs(along) > np.abs(rates[:, 2:])] = STICKS
+        contacts[-self.friction.excess(forces) > np.abs(rates[:, 2:])] = STICKS
         contacts[pressure <= rates[:, :2]] = OPEN
         return contacts
 
@@ -140,7 +138,7 @@ class Linear:
     def __init__(self, step: Step, contacts: Contacts, stiffness: float) -> None:
         self._step, self._stiffness = step, stiffness
         self.doing = doing = Doing(step.friction, contacts)
-        acting = leaning(step.rows, doing.slope)
+        acting = leaning(step.rows, doing.slope) if doing.some_slide else step.rows
         self._solve = step.bands.factored(acting, stiffness * doing.springs, step.rows)
         self._slides = None
         if doing.own is not None:
