@@ -198,7 +198,7 @@ def distrust(quality: Quality, settings: Settings, length: str) -> str:
 
 
 def _is_early(times: list[float], moved: list[float]) -> bool:
-    """Tell whether blocks, if they go on as they did, stay within `EARLY` for `SPARSE` frames."""
+    """Tell whether blocks that go on as they did stay within `EARLY` for `SPARSE` frames."""
     if len(moved) == 1 or moved[-1] < UNMOVED:
         return len(moved) > 1
     ahead = SPARSE * FRAME / (times[-1] - times[-2])

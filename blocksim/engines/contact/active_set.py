@@ -11,7 +11,6 @@ It begins where no more than a few have to change, and gives up where more and m
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -46,8 +45,8 @@ RELATIVE = 1e-8
 """Residual over the accelerations at which contacts that still change are round-off."""
 
 
-def settle(step: Step, guess: Answer, precision: float) -> Answer:
-    """Find the solution that is near a guess, or the best on the way.
+def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
+    """Look for the solution that is near a guess.
 
     Parameters
     ----------
@@ -55,13 +54,19 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
     guess : Answer
     precision : float
         Yield of contacts at which it counts as solved [g].
+
+    Returns
+    -------
+    list of Answer
+        Those on the way. The last is the solution if it is settled; `residual` of others may
+        not be known.
     """
     x, contacts = guess.x, guess.contacts
     stiffness = stiffness_at(step.friction, x, precision)
     linear = Linear(step, contacts, stiffness)
     held = np.abs(guess.forces[:, 2:])
     preload = linear.doing.forces(guess.forces, held)
-    tried, systems = list[Answer](), 0
+    tried: list[Answer] = []
     last, allowed = math.inf, preload.size
     seen, careful = set[bytes](), False
     rates = step.velocities(x)
@@ -88,30 +93,30 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
                 is_settled = residual <= RELATIVE * largest
         elif yields <= nothing or (ratio > DRIFT and yields <= _unfit(step, largest)):
             residual, is_settled = step.residual(x, forces, rates), True
-        spent = guess.systems + systems
         found = Answer(
             x=x,
             forces=forces,
             contacts=contacts,
             residual=residual,
-            systems=spent,
+            systems=guess.systems + systems,
             is_settled=is_settled,
         )
-        if is_settled:
-            return found
         tried.append(found)
-        if changes > allowed:
+        if is_settled or changes > allowed:
             break
         allowed = min(allowed, MORE * changes + FEW)
         preload = forces
         if changes:
             seen.add(contacts.tobytes())
-            if mended.tobytes() in seen:
+            if not careful and mended.tobytes() in seen:
                 # In a circle: one at a time, always the first, leads out (K. G. Murty,
                 # Opsearch 11, 1974, 4-10, for matrices that are as friction seldom is not).
-                careful = True
+                careful, seen = True, {contacts.tobytes()}
             if careful:
                 mended = _first(contacts, mended)
+                if mended.tobytes() in seen:
+                    # It does not.
+                    break
             contacts = mended
             linear = Linear(step, contacts, stiffness)
         elif ratio > SLOW:
@@ -122,18 +127,12 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
                 # Contacts contradict each other, and none ever gives way.
                 break
             preload = forces + ahead * change
-    known = [each if each.residual < math.inf else _known(step, each) for each in tried]
-    best = min([guess, *known], key=lambda each: each.residual)
-    return replace(best, systems=guess.systems + systems)
+    return tried
 
 
 def _unfit(step: Step, largest: float) -> float:
     """Return the yield without end of faces that do not quite fit."""
     return RIGID * max(largest, float(np.abs(step.rates).max(initial=0.0)))
-
-
-def _known(step: Step, answer: Answer) -> Answer:
-    return replace(answer, residual=step.residual(answer.x, answer.forces))
 
 
 def _first(contacts: Contacts, mended: Contacts) -> Contacts:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 
 import numpy as np
@@ -15,6 +15,8 @@ from blocksim.blocks.assembly import Array
 
 BLOCKED = 32
 """Width from which LAPACK does."""
+NARROW = 2
+"""How far apart blocks that touch may be in an order that is looked for no further."""
 EVEN = 6
 """Digits to which places are told apart."""
 MOST_CHANGES, NO_RANK = 32, 1e-13
@@ -165,23 +167,28 @@ def _order(
     before: NDArray[np.int64], after: NDArray[np.int64], blocks: int, points: Array | None
 ) -> NDArray[np.int64] | None:
     """Return an order in which blocks that touch are near; None for that which there is."""
-    apart = int(np.abs(before - after).max(initial=0))
-    if apart <= 1:
-        return None
-    ones = np.ones(len(before))
-    graph = csr_array((ones, (before, after)), shape=(blocks, blocks))
-    orders = [reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)]
-    if points is not None:
-        # Blocks above each other are so to round-off only.
-        x, y = np.round(points, EVEN).T
-        orders += [np.lexsort((y, x)), np.lexsort((x, y))]
-    best = None
-    for order in orders:
+    apart, best = int(np.abs(before - after).max(initial=0)), None
+    for order in _orders(before, after, blocks, points):
+        if apart <= NARROW:
+            break
         rank = np.argsort(order)
         found = int(np.abs(rank[before] - rank[after]).max())
         if found < apart:
             best, apart = order.astype(np.int64), found
     return best
+
+
+def _orders(
+    before: NDArray[np.int64], after: NDArray[np.int64], blocks: int, points: Array | None
+) -> Iterator[NDArray[np.integer]]:
+    """Give orders that may do, the cheapest first."""
+    if points is not None:
+        # Blocks above each other are so to round-off only.
+        x, y = np.round(points, EVEN).T
+        yield np.lexsort((y, x))
+        yield np.lexsort((x, y))
+    graph = csr_array((np.ones(len(before)), (before, after)), shape=(blocks, blocks))
+    yield reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
 
 
 class System:

@@ -98,7 +98,7 @@ class Friction:
         return np.where(self.steep, 1.0, self.mu), np.where(self.steep, self.flat, 1.0)
 
     def excess(self, forces: Array) -> Array:
-        """Return how far friction is above its largest, shape (joints, 2); in pressure if steep.
+        """Return how far friction is beyond its cone, (joints, 2); as pressure if steep.
 
         Parameters
         ----------

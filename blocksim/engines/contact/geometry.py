@@ -72,7 +72,7 @@ class Geometry:
         self._deepest: Array = DEEPEST * np.where(joints.is_corner, longer, shorter)
         # Of `before` less, of `after` more, of the ground nothing.
         moves = np.where(self._sides == SUPPORT, 0.0, np.repeat([-1.0, 1.0], count))
-        self._moves = moves.reshape(2, count).T[:, None, :, None]
+        self._moves = moves.reshape(2, count).T
         self._corners = np.flatnonzero(joints.is_corner)
         self._carried_by_after = joints.carrier[self._corners, None] == 1
         self._turns = np.array(
@@ -112,14 +112,8 @@ class Geometry:
         gap = (apart.conj() * tangents).imag
         holds &= gap.min(axis=1) > -self._deepest
         at: Complex = np.where(after_over, after, before)
-        # Normals of the two contacts, then tangents, and their moments about both blocks.
-        axes = np.concatenate([-1j * tangents, tangents], axis=1)[..., None]
-        ends = np.concatenate([at, at], axis=1)[..., None]
-        rows = np.empty((count, 4, 2, 3))
-        rows[..., 0], rows[..., 1] = axes.real, axes.imag
-        rows[..., 2] = ((ends - centres.reshape(2, 1, count).T).conj() * axes).imag
-        rows *= self._moves
-        return Touch(gap=gap, rows=rows.reshape(count, 4, 6)), holds
+        rows = rows_at(at, tangents, centres.reshape(2, count).T, self._moves)
+        return Touch(gap=gap, rows=rows), holds
 
     def _on_face(self, one: Complex, two: Complex, apart: Complex) -> NDArray[np.bool_]:
         """Tell which corners are on their faces still, and touch them with nothing else.
@@ -142,6 +136,27 @@ class Geometry:
             & (turn.imag > -self._turns[:, 0])
             & (turn.imag < self._turns[:, 1])
         )
+
+
+def rows_at(points: Complex, tangents: Complex, centres: Complex, moves: Array) -> Array:
+    """Return velocities at two contacts of each pair from those of both blocks, as in `Touch`.
+
+    Parameters
+    ----------
+    points, tangents : (pairs, 2) complex
+        Of the two contacts.
+    centres : (pairs, 2) complex
+        Centres of mass of both blocks.
+    moves : (pairs, 2) float
+        -1 for the first block, 1 for the second, 0 for what stays.
+    """
+    axes = np.concatenate([-1j * tangents, tangents], axis=1)[..., None]
+    arms = np.concatenate([points, points], axis=1)[..., None] - centres[:, None]
+    rows = np.empty((len(points), 4, 2, 3))
+    rows[..., 0], rows[..., 1] = axes.real, axes.imag
+    rows[..., 2] = (arms.conj() * axes).imag
+    rows *= moves[:, None, :, None]
+    return rows.reshape(len(points), 4, 6)
 
 
 def in_one(points: Array) -> Complex:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
@@ -34,7 +34,7 @@ class Answer:
     contacts : (joints, 2) int
         What the contacts do.
     residual : float
-        `Step.residual` of it.
+        `Step.residual` of it; inf where it is not known.
     systems : int
         Banded systems it took.
     is_settled : bool
@@ -53,11 +53,6 @@ class Answer:
         """Return what is worse than any other."""
         contacts = np.full((len(step.rates), 2), OPEN, dtype=np.int8)
         return cls(x=step.free, forces=np.zeros_like(step.rates), contacts=contacts)
-
-    def or_better(self, other: Answer) -> Answer:
-        """Return the better of the two; systems are those of both."""
-        best = min(self, other, key=lambda each: (not each.is_settled, each.residual))
-        return replace(best, systems=self.systems + other.systems)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
