@@ -253,8 +253,8 @@ class Blocks:
         return ContactProblem(before, after, self._mass, friction, self._poses[:, :2])
 
     def _rates(self, rows: Array) -> Array:
-        padded = np.vstack([self._velocities, np.zeros(3)])
-        return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
+        of_joints = self._problem.bands.of_joints(self._velocities.ravel())
+        return np.matmul(rows, of_joints[:, :, None])[:, :, 0]
 
     def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
         self._rows = touch.rows

@@ -49,14 +49,16 @@ class Bands:
         points: Array | None = None,
     ) -> None:
         self.size = 3 * blocks
-        self.place = self._places(before, after)
+        self.place = self._places_of(before, after)
+        self._flat = self.place.ravel()
+        self._inside = np.minimum(self.place, self.size - 1)[:, :, None]
         self._order, place = None, self.place
         inner = (before >= 0) & (after >= 0)
         order = _order(before[inner], after[inner], blocks, points)
         if order is not None:
             rank = np.append(np.argsort(order), -1)
             self._order = (3 * order[:, None] + np.arange(3)).ravel()
-            place = self._places(rank[before], rank[after])
+            place = self._places_of(rank[before], rank[after])
         row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
         inside = (row < self.size) & (column < self.size)
         apart = row - column
@@ -70,7 +72,7 @@ class Bands:
         whole = column * self.rows + 2 * self._width + apart
         self.whole = np.where(inside, whole, self.rows * self.size).reshape(len(place), 36)
 
-    def _places(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _places_of(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> NDArray[np.int64]:
         """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
         pair = np.repeat(np.stack([before, after], axis=1), 3, axis=1)
         return np.where(pair < 0, self.size, 3 * pair + np.tile(np.arange(3), 2))
@@ -87,13 +89,13 @@ class Bands:
         return padded[self.place]
 
     def along(self, rows: Array, values: Array) -> Array:
-        """Velocities along rows, shape (joints, k)."""
-        return np.matmul(rows, self.of_joints(values)[:, :, None])[:, :, 0]
+        """Velocities along rows that are 0 for the ground, shape (joints, k)."""
+        return np.matmul(rows, values[self._inside])[:, :, 0]
 
     def pull(self, rows: Array, forces: Array) -> Array:
         """Sum forces along rows, shape (joints, k), on the blocks."""
         parts = np.matmul(forces[:, None, :], rows).ravel()
-        sums = np.bincount(self.place.ravel(), parts, self.size + 1)
+        sums = np.bincount(self._flat, parts, self.size + 1)
         return sums[:-1].astype(np.float64, copy=False)
 
     def factored(

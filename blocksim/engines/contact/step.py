@@ -133,8 +133,11 @@ class Linear:
     def __init__(self, step: Step, contacts: Contacts, stiffness: float) -> None:
         self._step, self._stiffness = step, stiffness
         self.doing = doing = Doing(step.friction, contacts)
-        acting = leaning(step.rows, doing.slope) if doing.some_slide else step.rows
-        self._solve = step.bands.factored(acting, stiffness * doing.springs, step.rows)
+        # Where nothing slides the system is symmetric.
+        rows, seen = step.rows, None
+        if doing.some_slide:
+            rows, seen = leaning(step.rows, doing.slope), step.rows
+        self._solve = step.bands.factored(rows, stiffness * doing.springs, seen)
         self._slides = None
         if doing.own is not None:
             flattest = step.friction.flattest
