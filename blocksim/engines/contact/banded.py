@@ -109,8 +109,8 @@ class Bands:
             return self.factored_band(self.band(rows, weight, seen))
         count = self._width + 1
         products = self._products(rows, weight, rows)
-        band = np.bincount(self._lower, products, count * self.size + 1)[:-1]
-        band = band.reshape(self.size, count).T
+        sums = np.bincount(self._lower, products, count * self.size + 1)[:-1]
+        band = sums.astype(np.float64, copy=False).reshape(self.size, count).T
         band[0] += 1.0
         factors, failed = dpbtrf(band, lower=1, overwrite_ab=1)
         return (
