@@ -72,7 +72,9 @@ class Bands:
         whole = column * self.rows + 2 * self._width + apart
         self.whole = np.where(inside, whole, self.rows * self.size).reshape(len(place), 36)
 
-    def _places_of(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _places_of(
+        self, before: NDArray[np.int64], after: NDArray[np.int64]
+    ) -> NDArray[np.int64]:
         """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
         pair = np.repeat(np.stack([before, after], axis=1), 3, axis=1)
         return np.where(pair < 0, self.size, 3 * pair + np.tile(np.arange(3), 2))
