@@ -27,11 +27,10 @@ rotation vector's components along x and y, from engines in three dimensions."""
 
 
 def frozen(values: object, shape: tuple[int, ...]) -> Array:
-    """Return a read-only float array of the given shape (-1: any length)."""
+    """Return a read-only float array of the given shape (-1 first: any length)."""
     array = np.array(values, dtype=np.float64)
     if array.shape != shape and (
-        array.ndim != len(shape)
-        or any(want not in (-1, have) for want, have in zip(shape, array.shape, strict=True))
+        array.ndim != len(shape) or shape[0] != -1 or array.shape[1:] != shape[1:]
     ):
         message = f"expected an array of shape {shape}, got {array.shape}"
         raise ValueError(message)
@@ -76,18 +75,20 @@ class Block:
             if not known.has(value := getattr(self, field)):
                 raise InputError(self._called(field), value, known.words)
         vertices = frozen(self.vertices, (-1, 2))
-        corners = vertices.tolist()
-        if not all(abs(x) <= COORDINATE.high and abs(y) <= COORDINATE.high for x, y in corners):
+        corners, most = vertices.tolist(), COORDINATE.high
+        if not all(-most <= x <= most and -most <= y <= most for x, y in corners):
             raise InputError(self._called("vertices"), corners, COORDINATE.words)
         area, folds = _outline(corners)
         if area == 0 or folds:
             allowed = "three corners or more around a convex area"
             raise InputError(self._called("vertices"), corners, allowed)
-        object.__setattr__(
-            self, "vertices", vertices if area > 0 else frozen(vertices[::-1], (-1, 2))
-        )
+        if area < 0:
+            vertices = frozen(vertices[::-1], (-1, 2))
+        object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "centre", frozen(self.centre, (2,)))
-        object.__setattr__(self, "parts", tuple(frozen(part, (-1, 2)) for part in self.parts))
+        if self.parts:
+            parts = tuple(frozen(part, (-1, 2)) for part in self.parts)
+            object.__setattr__(self, "parts", parts)
 
     def _called(self, field: str) -> str:
         return f"block {self.name}: {field}" if self.name else field
@@ -100,15 +101,16 @@ class Block:
 
 def _outline(corners: list[list[float]]) -> tuple[float, bool]:
     """Return twice the area of a polygon, and whether it folds inwards or has no numbers."""
+    if len(corners) < FEWEST_CORNERS:
+        return 0.0, True
+    (x0, y0), (x1, y1), (x2, y2) = corners[0], corners[-2], corners[-1]
     turns: list[float] = []
-    count = len(corners)
-    (x0, y0), area = corners[0] if count else (0.0, 0.0), 0.0
-    for index in range(count):
-        (x1, y1), (x2, y2) = corners[index], corners[(index + 1) % count]
-        (x3, y3) = corners[(index + 2) % count]
-        area += (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    area = 0.0
+    for x3, y3 in corners:
+        area += (x2 - x0) * (y3 - y0) - (x3 - x0) * (y2 - y0)
         turns.append((x2 - x1) * (y3 - y2) - (y2 - y1) * (x3 - x2))
-    if not math.isfinite(area) or count < FEWEST_CORNERS:
+        x1, y1, x2, y2 = x2, y2, x3, y3
+    if not math.isfinite(area):
         return 0.0, True
     slack = FLAT * abs(area)
     return area, min(turns) < -slack and max(turns) > slack
@@ -323,9 +325,9 @@ class Assembly:
 
         Shape (blocks, 3), to go with motions x, y and rotation.
         """
-        mass = np.array([block.mass for block in self.blocks])
-        inertia = np.array([block.inertia for block in self.blocks]) / self.size**2
-        return frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
+        square = self.size**2
+        found = np.array([(each.mass, each.mass, each.inertia / square) for each in self.blocks])
+        return frozen(found / found[:, 0].mean(), (-1, 3))
 
     @cached_property
     def spatial_masses(self) -> Array:
@@ -351,7 +353,7 @@ class Assembly:
         away = np.concatenate([block.vertices for block in self.blocks])
         away -= np.repeat(self.centres, corners, axis=0)
         first = np.cumsum([0, *corners[:-1]])
-        return frozen(np.maximum.reduceat(np.hypot(*away.T), first), (-1,))
+        return frozen(np.maximum.reduceat(np.hypot(away[:, 0], away[:, 1]), first), (-1,))
 
     @cached_property
     def joint_arrays(self) -> JointArrays:
@@ -363,16 +365,16 @@ class Assembly:
         ends = ends.astype(np.float64, copy=False).reshape(-1, 2, 2)
         own = [np.nan if j.friction is None else j.friction for j in joints]
         faces = np.repeat(ends[:, None], 2, axis=1)
-        is_corner = np.array([joint.is_corner for joint in joints], dtype=np.bool_)
+        is_corner = np.array([joint.across is not None for joint in joints], dtype=np.bool_)
         way = ends[:, 1] - ends[:, 0]
         length = np.hypot(way[:, 0], way[:, 1])
         tangent = way / np.where(is_corner, 1.0, length)[:, None]
         for index, joint in enumerate(joints):
-            if joint.faces is not None or joint.is_corner:
+            if joint.faces is not None or joint.across is not None:
                 faces[index], tangent[index] = self._faces(joint), joint.tangent
         at_face = faces[:, 0, 1] - faces[:, 0, 0]
         has_length = np.hypot(at_face[:, 0], at_face[:, 1]) > 0
-        normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
+        normal = tangent[:, ::-1] * [1.0, -1.0]
         return JointArrays(
             before=before,
             after=after,
@@ -396,7 +398,7 @@ class Assembly:
         joints = self.joint_arrays
         centres = np.vstack([self.centres / self.size, np.zeros(2)])
         arms = joints.ends - centres[[joints.before, joints.after]][:, :, None]
-        return frozen(arms, (2, -1, 2, 2))
+        return frozen(arms, arms.shape)
 
     def _faces(self, joint: Joint) -> Array:
         """Return the faces of `before` and `after` that meet in a joint [m]."""
