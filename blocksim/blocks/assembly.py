@@ -326,7 +326,9 @@ class Assembly:
         Shape (blocks, 3), to go with motions x, y and rotation.
         """
         square = self.size**2
-        found = np.array([(each.mass, each.mass, each.inertia / square) for each in self.blocks])
+        found = np.array(
+            [(each.mass, each.mass, each.inertia / square) for each in self.blocks]
+        )
         return frozen(found / found[:, 0].mean(), (-1, 3))
 
     @cached_property

@@ -54,12 +54,8 @@ class Neighbours:
         self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._loose = False
-        # Whose each polygon is: those of the blocks come first, -1 is what stays.
-        parts = [len(block.polygons) for block in assembly.blocks]
-        self.owner = np.repeat(np.arange(self._count), parts)
-        none = np.zeros(0, dtype=np.int64)
-        self._meet = (none, none)
-        self._list()
+        self.before, self.after = self._joints.before, self._joints.after
+        self.keys = np.arange(len(self._holds))
 
     def touch(self, poses: Array, fastest: Callable[[], float]) -> Touch:
         """Find the contacts of all pairs, and which pairs there are.
@@ -93,12 +89,17 @@ class Neighbours:
         before, after = (index.astype(np.int64) for index in np.nonzero(near))
         met = self._polygons.touch(poses, before, after)
         close = met.gap.min(axis=1, initial=np.inf) < NEAR + 2 * reach
-        self._meet = before[close], after[close]
-        self._list()
+        self._list(before[close], after[close])
         return Touch(
             gap=np.concatenate([touch.gap[self._holds], met.gap[close]]),
             rows=np.concatenate([touch.rows[self._holds], met.rows[close]]),
         )
+
+    @cached_property
+    def owner(self) -> NDArray[np.int64]:
+        """Whose each polygon is: those of the blocks come first, -1 is what stays."""
+        parts = [len(block.polygons) for block in self._assembly.blocks]
+        return np.repeat(np.arange(self._count), parts)
 
     @cached_property
     def _polygons(self) -> Polygons:
@@ -157,8 +158,9 @@ class Neighbours:
         # Two corners may each go by the root of 2 of that, and by as much again by turning.
         return float(gap[gap > APART].min(initial=4 * LOOSE)) / 4
 
-    def _list(self) -> None:
-        held, (before, after) = self._holds, self._meet
+    def _list(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> None:
+        """List joints that hold, then pairs of polygons that meet."""
+        held = self._holds
         owner = np.append(self.owner, SUPPORT)
         count = len(self.owner)
         self.before = np.concatenate([self._joints.before[held], owner[before]])
