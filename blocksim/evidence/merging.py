@@ -205,7 +205,7 @@ class Merging:
             return True, None
         left = self.left(resultants, problem)
         joints = problem.assembly.joints
-        inside = tuple(joints[index] for index in np.flatnonzero(self._inside))
+        inside = tuple(joints[index] for index in np.flatnonzero(self._inside).tolist())
         cones = Cones(replace(problem, assembly=replace(problem.assembly, joints=inside)))
         found = most_common(cones, left)
         if not found.exists:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.rows import column
 from blocksim.engines.contact.geometry import Geometry, Touch
 from blocksim.engines.contact.meeting import Polygons
 from blocksim.engines.ground import ground_level, standing, standing_at
@@ -98,7 +99,7 @@ class Neighbours:
     @cached_property
     def owner(self) -> NDArray[np.int64]:
         """Whose each polygon is: those of the blocks come first, -1 is what stays."""
-        parts = [len(block.polygons) for block in self._assembly.blocks]
+        parts = [len(each) or 1 for each in column(self._assembly.blocks, "parts")]
         return np.repeat(np.arange(self._count), parts)
 
     @cached_property
