@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from blocksim.blocks.rows import column
+from blocksim.blocks.rows import Rows, column
 from blocksim.common.checks import COORDINATE, INERTIA, LENGTH, MASS
 from blocksim.common.errors import InputError
 
@@ -22,10 +22,6 @@ SUPPORT = -1
 FEWEST_CORNERS = 3
 FLAT = 1e-6
 """How far a polygon may fold inwards and still count as convex, over twice its area."""
-OUTWARDS = np.array([1.0, -1.0])
-"""On y and x of a joint's tangent: its normal, to the right of it."""
-WAYS = np.array([-1.0, 1.0])
-"""Along the normal of a joint, to the blocks before and after it."""
 PLANAR, SPATIAL = 3, 6
 """Columns of poses and motions: x, y and rotation in the plane; then z, out of it, and the
 rotation vector's components along x and y, from engines in three dimensions."""
@@ -119,6 +115,11 @@ def _outline(corners: list[list[float]]) -> tuple[float, bool]:
         return 0.0, True
     slack = FLAT * abs(area)
     return area, min(turns) < -slack and max(turns) > slack
+
+
+def _mean(corners: list[list[float]]) -> tuple[float, float]:
+    x, y = zip(*corners, strict=True)
+    return sum(x) / len(x), sum(y) / len(y)
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,6 +267,7 @@ class Assembly:
     ----------
     blocks : sequence of Block
     joints : sequence of Joint
+        Normals of `Rows` lead from `before` to `after`; others are turned where they do not.
     size : float
         A characteristic length [m]; engines work in units of it.
     supports : tuple of Support
@@ -280,40 +282,23 @@ class Assembly:
     def __post_init__(self) -> None:
         """Turn joints round whose ends are exchanged: normals lead from `before` to `after`."""
         LENGTH.require("size", self.size)
-        exchanged = self._exchanged()
-        if exchanged.any():
-            both = zip(self.joints, exchanged.tolist(), strict=True)
-            turned = tuple(joint.turned if wrong else joint for joint, wrong in both)
-            object.__setattr__(self, "joints", turned)
-
-    def _exchanged(self) -> NDArray[np.bool_]:
-        """Tell of which joints the normal leads from `after` to `before`, shape (joints,)."""
-        sides, ends = self._sides, _ends(self.joints)
-        normal = (ends[:, 1] - ends[:, 0])[:, ::-1] * OUTWARDS
-        for index, across in enumerate(column(self.joints, "across")):
-            if across is not None:
-                normal[index] = across
-        corners, first, count = self._outlines
-        middles = np.add.reduceat(corners, first) / count[:, None]
-        arms = middles[sides] - (ends[:, :1] + ends[:, 1:]) / 2
-        ahead = np.matmul(arms, normal[:, :, None])[:, :, 0] * WAYS > 0
-        # Blocks that are hulls of others may lie on both sides: then it is left as given.
-        single = np.array([not parts for parts in column(self.blocks, "parts")])
-        known = single[sides] & (sides != SUPPORT)
-        return known.any(axis=1) & ~(known & ahead).any(axis=1)
-
-    @cached_property
-    def _sides(self) -> NDArray[np.int64]:
-        """Blocks before and after each joint, shape (joints, 2)."""
-        sides = [column(self.joints, "before"), column(self.joints, "after")]
-        return np.array(sides, dtype=np.int64).T
-
-    @cached_property
-    def _outlines(self) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
-        """Corners of all blocks one after the other [m], where each block's begin, how many."""
-        outlines = column(self.blocks, "vertices")
-        count = np.array([len(corners) for corners in outlines])
-        return np.concatenate(outlines), count.cumsum() - count, count
+        if isinstance(self.joints, Rows):
+            return
+        middles = [_mean(block.vertices.tolist()) for block in self.blocks]
+        joints = list(self.joints)
+        for index, joint in enumerate(self.joints):
+            (x1, y1), (x2, y2) = joint.inner.tolist(), joint.outer.tolist()
+            across = (y2 - y1, x1 - x2) if joint.across is None else joint.across.tolist()
+            ahead: set[bool] = set()
+            for side, sign in ((joint.before, -1.0), (joint.after, 1.0)):
+                if side != SUPPORT and not self.blocks[side].parts:
+                    x, y = middles[side]
+                    away = across[0] * (x - (x1 + x2) / 2) + across[1] * (y - (y1 + y2) / 2)
+                    ahead.add(sign * away > 0)
+            # Blocks that are hulls of others may lie on both sides: then it is left as given.
+            if ahead == {False}:
+                joints[index] = joint.turned
+        object.__setattr__(self, "joints", tuple(joints))
 
     @classmethod
     def of_polygons(
@@ -346,7 +331,8 @@ class Assembly:
         """
         mass = np.array(column(self.blocks, "mass"))
         inertia = np.array(column(self.blocks, "inertia")) / self.size**2
-        return frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
+        found = np.column_stack([mass, mass, inertia])
+        return frozen(found / mass.mean(), (-1, 3))
 
     @cached_property
     def spatial_masses(self) -> Array:
@@ -368,31 +354,45 @@ class Assembly:
     @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
-        corners, first, count = self._outlines
-        x, y = (corners - np.repeat(self.centres, count, axis=0)).T
-        return frozen(np.maximum.reduceat(np.hypot(x, y), first), (-1,))
+        outlines = column(self.blocks, "vertices")
+        count = np.array([len(corners) for corners in outlines])
+        x, y = (np.concatenate(outlines) - np.repeat(self.centres, count, axis=0)).T
+        return frozen(np.maximum.reduceat(np.hypot(x, y), count.cumsum() - count), (-1,))
+
+    @cached_property
+    def built(self) -> Array:
+        """Poses as built, in units of the size; then that of the ground, index `SUPPORT`.
+
+        Shape (blocks + 1, 3).
+        """
+        poses = np.zeros((len(self.blocks) + 1, PLANAR))
+        poses[:-1, :2] = self.centres / self.size
+        return frozen(poses, (-1, PLANAR))
 
     @cached_property
     def joint_arrays(self) -> JointArrays:
         """The joints gathered into arrays, for what looks at them frame by frame."""
-        before, after = self._sides.T
-        ends, across = _ends(self.joints), column(self.joints, "across")
-        own = [np.nan if each is None else each for each in column(self.joints, "friction")]
-        is_corner = np.array([each is not None for each in across], dtype=np.bool_)
+        joints = self.joints
+        before, after = (
+            np.array(column(joints, side), np.int64) for side in ("before", "after")
+        )
+        ends = np.array([column(joints, "inner"), column(joints, "outer")], np.float64)
+        ends = ends.reshape(2, -1, 2).transpose(1, 0, 2)
+        own = [np.nan if each is None else each for each in column(joints, "friction")]
+        is_corner = np.array([each is not None for each in column(joints, "across")], np.bool_)
+        given = np.array([each is not None for each in column(joints, "faces")], np.bool_)
         faces = np.repeat(ends[:, None], 2, axis=1)
         way = ends[:, 1] - ends[:, 0]
         length = np.hypot(way[:, 0], way[:, 1])
         tangent = way / np.where(is_corner, 1.0, length)[:, None]
-        given = np.array([each is not None for each in column(self.joints, "faces")])
         for index in np.flatnonzero(is_corner | given).tolist():
-            joint = self.joints[index]
-            faces[index], tangent[index] = self._faces(joint), joint.tangent
+            faces[index], tangent[index] = self._faces(joints[index]), joints[index].tangent
         at_corner = (faces[:, 0, 0] == faces[:, 0, 1]).all(axis=1)
         return JointArrays(
             before=before,
             after=after,
             ends=frozen(ends / self.size, (-1, 2, 2)),
-            normal=frozen(tangent[:, ::-1] * OUTWARDS, (-1, 2)),
+            normal=frozen(tangent[:, ::-1] * [1.0, -1.0], (-1, 2)),
             tangent=frozen(tangent, (-1, 2)),
             length=frozen(length / self.size, (-1,)),
             friction=frozen(own, (-1,)),
@@ -409,8 +409,8 @@ class Assembly:
         ground.
         """
         joints = self.joint_arrays
-        centres = np.vstack([self.centres / self.size, np.zeros(2)])
-        arms = joints.ends - centres[[joints.before, joints.after]][:, :, None]
+        centres = self.built[[joints.before, joints.after], :2]
+        arms = joints.ends - centres[:, :, None]
         return frozen(arms, arms.shape)
 
     def _faces(self, joint: Joint) -> Array:
@@ -444,7 +444,8 @@ class Assembly:
     @cached_property
     def springings(self) -> tuple[Joint, ...]:
         """The joints with the support."""
-        return tuple(joint for joint in self.joints if SUPPORT in (joint.before, joint.after))
+        ground = (self.joint_arrays.before == SUPPORT) | (self.joint_arrays.after == SUPPORT)
+        return tuple(self.joints[index] for index in np.flatnonzero(ground).tolist())
 
     @property
     def shortest(self) -> float:
@@ -452,12 +453,6 @@ class Assembly:
         joints = self.joint_arrays
         lengths = joints.length[~joints.is_corner]
         return float(lengths.min()) if len(lengths) else 1.0
-
-
-def _ends(joints: Sequence[Joint]) -> Array:
-    """Return the inner and the outer end of each joint, shape (joints, 2, 2) [m]."""
-    ends = [column(joints, "inner"), column(joints, "outer")]
-    return np.array(ends, dtype=np.float64).reshape(2, -1, 2).transpose(1, 0, 2)
 
 
 def displacement(moved: Array, assembly: Assembly) -> Array:

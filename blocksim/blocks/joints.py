@@ -60,8 +60,7 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     joints, arms = assembly.joint_arrays, assembly.joint_arms
     # The support is appended as a block that stays where it is, index -1.
     moved = np.zeros((len(poses) + 1, PLANAR))
-    moved[:-1] = poses[:, :PLANAR]
-    moved[:-1, :2] -= assembly.centres / assembly.size
+    moved[:-1] = poses[:, :PLANAR] - assembly.built[:-1]
     sides = moved[[joints.before, joints.after]]
     turns: Array = sides[..., 2]
     # cos - 1 = -2 sin^2(angle/2): no cancellation for small rotations.
@@ -135,7 +134,7 @@ def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
     """
     before, after, ends, _, tangent, *_ = assembly.joint_arrays
     middle = ends.mean(axis=1)
-    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+    centres = assembly.built[:, :2]
     beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])
     depths = np.append(assembly.depths, np.inf)
     half = np.minimum(depths[before], depths[after]) / 2

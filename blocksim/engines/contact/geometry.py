@@ -52,13 +52,12 @@ class Geometry:
     def __init__(self, assembly: Assembly) -> None:
         joints = assembly.joint_arrays
         self.before, self.after = joints.before, joints.after
-        # The ground is a block at the origin that stays, index -1.
-        centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
         faces, tangent = faces_at_joints(assembly), joints.tangent
         # Both corners of each face, then its direction, all of which a block turns alike.
         sides = np.stack([joints.before, joints.after])
-        turned = np.empty((2, *sides.shape, 3))
-        turned[..., :2] = faces.transpose(3, 1, 0, 2) - centres.T[:, sides, None]
+        centres = assembly.built.T[:2, sides]
+        turned = np.empty((*centres.shape, 3))
+        turned[..., :2] = faces.transpose(3, 1, 0, 2) - centres[..., None]
         turned[..., 2] = tangent.T[:, None]
         self._sides, self._turned = sides.ravel(), turned.reshape(2, -1, 3)
         lengths = np.matmul(faces[:, :, 1] - faces[:, :, 0], tangent[:, :, None])[:, :, 0]

@@ -47,11 +47,10 @@ class Neighbours:
     """
 
     def __init__(self, assembly: Assembly) -> None:
-        size = assembly.size
         self._joints = Geometry(assembly)
-        self._start = np.column_stack([assembly.centres / size, np.zeros(len(assembly.blocks))])
+        self._start = assembly.built[:-1]
         self._arms = np.ones_like(self._start)
-        self._arms[:, 2] = assembly.reach / size
+        self._arms[:, 2] = assembly.reach / assembly.size
         self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._loose = False
