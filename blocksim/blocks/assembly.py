@@ -370,12 +370,15 @@ class Assembly:
         return frozen(poses, (-1, PLANAR))
 
     @cached_property
+    def sides(self) -> NDArray[np.int64]:
+        """Blocks before and after each joint, shape (2, joints)."""
+        sides = [column(self.joints, "before"), column(self.joints, "after")]
+        return np.array(sides, dtype=np.int64)
+
+    @cached_property
     def joint_arrays(self) -> JointArrays:
         """The joints gathered into arrays, for what looks at them frame by frame."""
         joints = self.joints
-        before, after = (
-            np.array(column(joints, side), np.int64) for side in ("before", "after")
-        )
         ends = np.array([column(joints, "inner"), column(joints, "outer")], np.float64)
         ends = ends.reshape(2, -1, 2).transpose(1, 0, 2)
         own = [np.nan if each is None else each for each in column(joints, "friction")]
@@ -389,8 +392,8 @@ class Assembly:
             faces[index], tangent[index] = self._faces(joints[index]), joints[index].tangent
         at_corner = (faces[:, 0, 0] == faces[:, 0, 1]).all(axis=1)
         return JointArrays(
-            before=before,
-            after=after,
+            before=self.sides[0],
+            after=self.sides[1],
             ends=frozen(ends / self.size, (-1, 2, 2)),
             normal=frozen(tangent[:, ::-1] * [1.0, -1.0], (-1, 2)),
             tangent=frozen(tangent, (-1, 2)),
@@ -408,9 +411,7 @@ class Assembly:
         Shape (2 sides, joints, 2 ends, 2), in units of the size; from the origin for the
         ground.
         """
-        joints = self.joint_arrays
-        centres = self.built[[joints.before, joints.after], :2]
-        arms = joints.ends - centres[:, :, None]
+        arms = self.joint_arrays.ends - self.built[self.sides, None, :2]
         return frozen(arms, arms.shape)
 
     def _faces(self, joint: Joint) -> Array:

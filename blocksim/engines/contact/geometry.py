@@ -54,7 +54,7 @@ class Geometry:
         self.before, self.after = joints.before, joints.after
         faces, tangent = faces_at_joints(assembly), joints.tangent
         # Both corners of each face, then its direction, all of which a block turns alike.
-        sides = np.stack([joints.before, joints.after])
+        sides = assembly.sides
         centres = assembly.built.T[:2, sides]
         turned = np.empty((*centres.shape, 3))
         turned[..., :2] = faces.transpose(3, 1, 0, 2) - centres[..., None]
