@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -64,6 +65,13 @@ def test_an_arch_that_falls_is_told_by_the_solver_alone() -> None:
     found, _ = loaded(f"check {ARCH} --eta 0.1 --method limit", code=1)
     assert "highspy" in found
     assert not found & (SLOW - {"highspy", "scipy"} | {"scipy.optimize", "pymunk"})
+
+
+def test_what_is_printed_is_the_answer_alone() -> None:
+    """HiGHS greets on standard output, by itself, from 1.16 on."""
+    found, said = loaded(f"check {ARCH} --eta 0.1 --method limit --json", code=1)
+    assert "highspy" in found
+    assert json.loads(said)["verdict"] == "collapses"
 
 
 def test_a_shell_completes_commands_and_options() -> None:

@@ -102,15 +102,15 @@ class Blocks:
     def advance(self, steps: int) -> None:
         """Let the blocks move; in few long steps while they hardly do."""
         whole = steps * self._step
-        count = min(steps, math.ceil(whole / LONG))
-        if count:
-            step = whole / count
-            # With nothing known of them, blocks may fall.
-            speeding = self._free if self._solution is None else self._solution.acceleration
-            way = step * np.abs(self._velocities) + step**2 * np.abs(speeding)
-            # Ground that shakes may set them in motion at any time.
-            shakes = self._asked.shaking and self._asked.shaking.duration > self._seconds
-            count = count if way.max() < SLOW and not shakes else steps
+        # With nothing known of them, blocks may fall.
+        speeding = self._free if self._solution is None else self._solution.acceleration
+        speed, more = float(np.abs(self._velocities).max()), float(np.abs(speeding).max())
+        # In that time the fastest goes by `SLOW`; no time at all is no step either.
+        slow = 2 * SLOW / (speed + math.sqrt(speed**2 + 4 * SLOW * more) or math.inf)
+        # Ground that shakes may set them in motion at any time.
+        shakes = self._asked.shaking and self._asked.shaking.duration > self._seconds
+        longest = self._step if shakes else min(LONG, max(self._step, slow))
+        count = min(steps, math.ceil(whole / longest))
         for _ in range(count):
             before = vars(self).copy()
             self._move(whole / count)
@@ -252,8 +252,8 @@ class Blocks:
         return ContactProblem(before, after, self._mass, friction, self._poses[:, :2])
 
     def _rates(self, rows: Array) -> Array:
-        padded = np.vstack([self._velocities, np.zeros(3)])
-        return np.matmul(rows, padded[self._pairs].reshape(-1, 6, 1))[:, :, 0]
+        of_joints = self._problem.bands.of_joints(self._velocities.ravel())
+        return np.matmul(rows, of_joints[:, :, None])[:, :, 0]
 
     def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
         self._rows = touch.rows

@@ -149,8 +149,7 @@ def _released(
     overlap = 0.0
     while times[-1] < end - step / 2 and overlap <= OVERLAP:
         # Before anything moves a verdict needs no frames, and some engines longer steps.
-        idle = until is None and len(moved) > 1 and moved[-1] < UNMOVED
-        frames = SPARSE if idle else 1
+        frames = SPARSE if until is None and _is_early(times, moved) else 1
         world.advance(frames * stride)
         taken += frames * stride
         times.append(taken * step)
@@ -196,6 +195,14 @@ def distrust(quality: Quality, settings: Settings, length: str) -> str:
     if residual is not None and not residual <= settings.residual:
         return f"a contact was left with a residual of {residual:.1e}"
     return f"blocks overlap by {penetration:.1e} {length}"
+
+
+def _is_early(times: list[float], moved: list[float]) -> bool:
+    """Tell whether blocks that go on as they did stay within `EARLY` for `SPARSE` frames."""
+    if len(moved) == 1 or moved[-1] < UNMOVED:
+        return len(moved) > 1
+    ahead = SPARSE * FRAME / (times[-1] - times[-2])
+    return moved[-1] ** (1 + ahead) < EARLY * min(moved[-2:]) ** ahead
 
 
 def _moved(assembly: Assembly, poses: list[Array]) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -79,15 +80,10 @@ class LinearProgramme:
     """
 
     def __init__(self) -> None:
-        self._highs: Any = highspy.Highs()
+        self._highs = _solver(
+            primal_feasibility_tolerance=FINEST, dual_feasibility_tolerance=FINEST
+        )
         self._shape, self._basis = (0, 0), None
-        for name, value in (
-            ("output_flag", False),
-            ("parallel", "off"),
-            ("primal_feasibility_tolerance", FINEST),
-            ("dual_feasibility_tolerance", FINEST),
-        ):
-            self._highs.setOptionValue(name, value)
 
     def solve(self, cost: Array, matrix: Matrix, rows: Ends, bounds: Ends) -> Optimum:
         """Find the least cost.
@@ -160,18 +156,13 @@ def choose(
     model = _model(cost, sparse.csc_array(matrix), rows, bounds)
     kinds = highspy.HighsVarType
     model.integrality_ = [kinds.kInteger if each else kinds.kContinuous for each in whole]
-    highs: Any = highspy.Highs()
-    for name, value in (
-        ("output_flag", False),
-        ("parallel", "off"),
-        ("threads", 1),
-        ("mip_rel_gap", 0.0),
-        ("mip_abs_gap", gap),
-        ("mip_feasibility_tolerance", FINEST),
-        ("primal_feasibility_tolerance", FINEST),
-        ("time_limit", seconds),
-    ):
-        highs.setOptionValue(name, value)
+    highs = _solver(
+        mip_rel_gap=0.0,
+        mip_abs_gap=gap,
+        mip_feasibility_tolerance=FINEST,
+        primal_feasibility_tolerance=FINEST,
+        time_limit=seconds,
+    )
     highs.passModel(model)
     highs.run()
     solution, status = highs.getSolution(), highs.getModelStatus()
@@ -180,6 +171,27 @@ def choose(
         least=float(highs.getInfo().mip_dual_bound),
         is_empty=status == highspy.HighsModelStatus.kInfeasible,
     )
+
+
+def _solver(**options: float) -> Any:
+    """Return a solver that prints nothing and does one thing at a time."""
+    found = _quiet()()
+    # No number of threads: all solvers of a process have to have the same.
+    for name, value in {"parallel": "off", **options}.items():
+        found.setOptionValue(name, value)
+    return found
+
+
+@cache
+def _quiet() -> Any:
+    """Make HiGHS silent before it is built: from 1.16 on that is when it greets."""
+
+    class Quiet(highspy.Highs):
+        def enableCallbacks(self) -> None:  # noqa: N802 - HiGHS's name
+            self.setOptionValue("output_flag", False)
+            super().enableCallbacks()
+
+    return Quiet
 
 
 def _model(cost: Array, columns: sparse.csc_array, rows: Ends, bounds: Ends) -> Any:

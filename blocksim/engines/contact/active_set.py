@@ -11,7 +11,6 @@ It begins where no more than a few have to change, and gives up where more and m
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -46,8 +45,8 @@ RELATIVE = 1e-8
 """Residual over the accelerations at which contacts that still change are round-off."""
 
 
-def settle(step: Step, guess: Answer, precision: float) -> Answer:
-    """Find the solution that is near a guess, or the best on the way.
+def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
+    """Look for the solution that is near a guess.
 
     Parameters
     ----------
@@ -55,59 +54,72 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
     guess : Answer
     precision : float
         Yield of contacts at which it counts as solved [g].
+
+    Returns
+    -------
+    list of Answer
+        Those on the way. The last is the solution if it is settled; `residual` of others may
+        not be known.
     """
     x, contacts = guess.x, guess.contacts
     stiffness = stiffness_at(step.friction, x, precision)
     linear = Linear(step, contacts, stiffness)
     held = np.abs(guess.forces[:, 2:])
     preload = linear.doing.forces(guess.forces, held)
-    tried, systems = [guess], 0
+    tried: list[Answer] = []
     last, allowed = math.inf, preload.size
     seen, careful = set[bytes](), False
     rates = step.velocities(x)
-    fastest = float(np.abs(step.rates).max(initial=0.0))
     for systems in range(1, MOST_SYSTEMS + 1):
         way, more = linear.way(x, preload - stiffness * rates, held)
-        if not np.isfinite(way).all():
-            break
         x, held = x + way, held + more
+        largest = float(np.abs(x).max())
+        if not math.isfinite(largest):
+            break
         rates = step.velocities(x)
         forces = linear.doing.forces(preload - stiffness * rates, held)
         change = forces - preload
         most = float(np.abs(change).max(initial=0.0))
-        unsure = UNSURE * most
+        unsure, yields = UNSURE * most, most / stiffness
         mended = _mended(step, linear.doing, forces, rates, unsure, unsure / stiffness)
         changes = 0 if mended is contacts else int(np.count_nonzero(mended != contacts))
-        found = Answer(x=x, forces=forces, contacts=contacts)
-        largest = float(np.abs(x).max())
-        if changes and -float(forces[:, :2].min()) <= RELATIVE * largest * max(1.0, largest):
-            # Nothing pulls; so it may be that nothing is wrong but round-off.
-            found = replace(found, residual=step.residual(x, forces, rates))
-            if found.residual <= RELATIVE * largest:
-                return replace(found, systems=guess.systems + systems, is_settled=True)
+        nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
+        ratio, last = yields / last, math.inf if changes else yields
+        residual, is_settled = math.inf, False
+        if changes:
+            # Where nothing pulls it may be that nothing is wrong but round-off.
+            if -float(forces[:, :2].min()) <= RELATIVE * largest * max(1.0, largest):
+                residual = step.residual(x, forces, rates)
+                is_settled = residual <= RELATIVE * largest
+        elif yields <= nothing or (ratio > DRIFT and yields <= _unfit(step, largest)):
+            residual, is_settled = step.residual(x, forces, rates), True
+        found = Answer(
+            x=x,
+            forces=forces,
+            contacts=contacts,
+            residual=residual,
+            systems=guess.systems + systems,
+            is_settled=is_settled,
+        )
         tried.append(found)
-        if changes > allowed:
+        if is_settled or changes > allowed:
             break
         allowed = min(allowed, MORE * changes + FEW)
         preload = forces
         if changes:
             seen.add(contacts.tobytes())
-            if mended.tobytes() in seen:
+            if not careful and mended.tobytes() in seen:
                 # In a circle: one at a time, always the first, leads out (K. G. Murty,
                 # Opsearch 11, 1974, 4-10, for matrices that are as friction seldom is not).
-                careful = True
+                careful, seen = True, {contacts.tobytes()}
             if careful:
                 mended = _first(contacts, mended)
-            contacts, last = mended, math.inf
+                if mended.tobytes() in seen:
+                    # It does not.
+                    break
+            contacts = mended
             linear = Linear(step, contacts, stiffness)
-            continue
-        yields = most / stiffness
-        nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
-        ratio, last = yields / last, yields
-        if yields <= nothing or (ratio > DRIFT and yields <= RIGID * max(largest, fastest)):
-            residual, spent = step.residual(x, forces, rates), guess.systems + systems
-            return replace(found, residual=residual, systems=spent, is_settled=True)
-        if ratio > SLOW:
+        elif ratio > SLOW:
             # It goes on to change, less each time, or until a contact gives way.
             ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
             ahead = min(ahead, _reach(step, forces, change))
@@ -115,13 +127,12 @@ def settle(step: Step, guess: Answer, precision: float) -> Answer:
                 # Contacts contradict each other, and none ever gives way.
                 break
             preload = forces + ahead * change
-    known = [each if each.residual < math.inf else _known(step, each) for each in tried[1:]]
-    best = min([guess, *known], key=lambda each: each.residual)
-    return replace(best, systems=guess.systems + systems)
+    return tried
 
 
-def _known(step: Step, answer: Answer) -> Answer:
-    return replace(answer, residual=step.residual(answer.x, answer.forces))
+def _unfit(step: Step, largest: float) -> float:
+    """Return the yield without end of faces that do not quite fit."""
+    return RIGID * max(largest, float(np.abs(step.rates).max(initial=0.0)))
 
 
 def _first(contacts: Contacts, mended: Contacts) -> Contacts:
@@ -150,18 +161,17 @@ def _mended(
     step: Step, doing: Doing, forces: Array, rates: Array, unsure: float, yields: float
 ) -> Contacts:
     """Return what contacts do in place of what they cannot."""
-    pressure, friction, slip = forces[:, :2], forces[:, 2:], rates[:, 2:]
     nothing = ROUND_OFF * max(1.0, float(np.abs(forces).max(initial=0.0)))
     no_force, no_rate = nothing + unsure, nothing + yields
-    a, b = step.friction.room
-    beyond = doing.sticks & (b * np.abs(friction) - a * pressure > no_force)
-    back = doing.side * slip > no_rate
-    passes = doing.is_open & (rates[:, :2] < -no_rate)
-    pulls = pressure < -no_force
-    if not (beyond | back | passes | pulls).any():
+    beyond = doing.sticks & (step.friction.excess(forces) > no_force)
+    wrong_way = doing.is_open & (rates[:, :2] < -no_rate)
+    if doing.some_slide:
+        wrong_way |= doing.side * rates[:, 2:] > no_rate
+    pulls = forces[:, :2] < -no_force
+    if not (beyond | wrong_way | pulls).any():
         return doing.contacts
     found = doing.contacts.copy()
-    found[beyond] = np.where(friction[beyond] > 0, SLIDES_UP, SLIDES_DOWN)
-    found[back | passes] = STICKS
+    found[beyond] = np.where(forces[:, 2:][beyond] > 0, SLIDES_UP, SLIDES_DOWN)
+    found[wrong_way] = STICKS
     found[pulls & ~doing.is_open] = OPEN
     return found

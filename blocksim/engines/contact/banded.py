@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cached_property
 
@@ -16,6 +16,8 @@ from blocksim.blocks.assembly import Array
 
 BLOCKED = 32
 """Width from which LAPACK does."""
+NARROW = 2
+"""How far apart blocks that touch may be in an order that is looked for no further."""
 EVEN = 6
 """Digits to which places are told apart."""
 MOST_CHANGES, NO_RANK = 32, 1e-13
@@ -48,7 +50,9 @@ class Bands:
         points: Array | None = None,
     ) -> None:
         self.size = 3 * blocks
-        self.place = self._numbered = self._places(before, after)
+        self.place = self._numbered = self._places_of(before, after)
+        self._flat = self.place.ravel()
+        self._inside = np.minimum(self.place, self.size - 1)[:, :, None]
         self._order = None
         inner = (before >= 0) & (after >= 0)
         order = _order(before[inner], after[inner], blocks, points)
@@ -56,7 +60,7 @@ class Bands:
             rank = np.append(np.argsort(order), -1)
             before, after = rank[before], rank[after]
             self._order = (3 * order[:, None] + np.arange(3)).ravel()
-            self._numbered = self._places(before, after)
+            self._numbered = self._places_of(before, after)
         self._width = 3 * int(np.abs(before - after)[inner].max(initial=0)) + 2
         self.rows = 3 * self._width + 1
         # Places in LAPACK's band storage, column after column, and one past its end.
@@ -76,7 +80,9 @@ class Bands:
         inside = np.maximum(row, column) < self.size
         return np.where(inside, at, self.rows * self.size).reshape(len(at), 36)
 
-    def _places(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _places_of(
+        self, before: NDArray[np.int64], after: NDArray[np.int64]
+    ) -> NDArray[np.int64]:
         """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
         pair = np.stack([before, after], axis=1)[:, :, None]
         places = np.where(pair < 0, self.size, 3 * pair + np.arange(3))
@@ -94,13 +100,13 @@ class Bands:
         return padded[self.place]
 
     def along(self, rows: Array, values: Array) -> Array:
-        """Velocities along rows, shape (joints, k)."""
-        return np.matmul(rows, self.of_joints(values)[:, :, None])[:, :, 0]
+        """Velocities along rows that are 0 for the ground, shape (joints, k)."""
+        return np.matmul(rows, values[self._inside])[:, :, 0]
 
     def pull(self, rows: Array, forces: Array) -> Array:
         """Sum forces along rows, shape (joints, k), on the blocks."""
         parts = np.matmul(forces[:, None, :], rows).ravel()
-        sums = np.bincount(self.place.ravel(), parts, self.size + 1)
+        sums = np.bincount(self._flat, parts, self.size + 1)
         return sums[:-1].astype(np.float64, copy=False)
 
     def factored(
@@ -114,8 +120,8 @@ class Bands:
             return self.factored_band(self.band(rows, weight, seen))
         count = self._width + 1
         products = self._products(rows, weight, rows)
-        band = np.bincount(self._lower, products, count * self.size + 1)[:-1]
-        band = band.reshape(self.size, count).T
+        sums = np.bincount(self._lower, products, count * self.size + 1)[:-1]
+        band = sums.astype(np.float64, copy=False).reshape(self.size, count).T
         band[0] += 1.0
         factors, failed = dpbtrf(band, lower=1, overwrite_ab=1)
         return (
@@ -174,23 +180,28 @@ def _order(
     before: NDArray[np.int64], after: NDArray[np.int64], blocks: int, points: Array | None
 ) -> NDArray[np.int64] | None:
     """Return an order in which blocks that touch are near; None for that which there is."""
-    apart = int(np.abs(before - after).max(initial=0))
-    if apart <= 1:
-        return None
-    ones = np.ones(len(before))
-    graph = csr_array((ones, (before, after)), shape=(blocks, blocks))
-    orders = [reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)]
-    if points is not None:
-        # Blocks above each other are so to round-off only.
-        x, y = np.round(points, EVEN).T
-        orders += [np.lexsort((y, x)), np.lexsort((x, y))]
-    best = None
-    for order in orders:
+    apart, best = int(np.abs(before - after).max(initial=0)), None
+    for order in _orders(before, after, blocks, points):
+        if apart <= NARROW:
+            break
         rank = np.argsort(order)
         found = int(np.abs(rank[before] - rank[after]).max())
         if found < apart:
             best, apart = order.astype(np.int64), found
     return best
+
+
+def _orders(
+    before: NDArray[np.int64], after: NDArray[np.int64], blocks: int, points: Array | None
+) -> Iterator[NDArray[np.integer]]:
+    """Give orders that may do, the cheapest first."""
+    if points is not None:
+        # Blocks above each other are so to round-off only.
+        x, y = np.round(points, EVEN).T
+        yield np.lexsort((y, x))
+        yield np.lexsort((x, y))
+    graph = csr_array((np.ones(len(before)), (before, after)), shape=(blocks, blocks))
+    yield reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True)
 
 
 class System:

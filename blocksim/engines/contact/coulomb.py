@@ -74,6 +74,11 @@ class Friction:
         return np.where(self.steep, 0.0, self.mu)
 
     @cached_property
+    def most_lean(self) -> float:
+        """Largest of these."""
+        return float(self.lean.max(initial=0.0))
+
+    @cached_property
     def flat(self) -> Array:
         """Pressure per friction of steep contacts that slide."""
         return np.where(self.steep, 1 / np.maximum(self.mu, STEEP), 0.0)
@@ -91,6 +96,20 @@ class Friction:
     def room(self) -> tuple[Array, Array]:
         """Factors a, b for which |friction| is below mu p where b |friction| is below a p."""
         return np.where(self.steep, 1.0, self.mu), np.where(self.steep, self.flat, 1.0)
+
+    def excess(self, forces: Array) -> Array:
+        """Return how far friction is beyond its cone, (joints, 2); as pressure if steep.
+
+        Parameters
+        ----------
+        forces : (joints, 4) float
+            Pressure at both contacts, then friction.
+        """
+        pressure, size = forces[:, :2], np.abs(forces[:, 2:])
+        if not self.some_steep:
+            return size - self.mu * pressure
+        a, b = self.room
+        return b * size - a * pressure
 
     def unfold(self, glued: Array, contacts: Contacts, held: Array) -> Array:
         """Put y in the place of q, for steep friction.
@@ -175,6 +194,8 @@ class Doing:
 
     Attributes
     ----------
+    some_slide : bool
+        Whether any contact slides.
     side : (joints, 2) float
         1 and -1 where contacts slide, up and down.
     slope : (joints, 2) float
@@ -187,6 +208,7 @@ class Doing:
 
     def __init__(self, friction: Friction, contacts: Contacts) -> None:
         self.contacts, self._flat = contacts, friction.flat
+        self.some_slide = int(contacts.max(initial=OPEN)) >= SLIDES_UP
         self.side = LEAN[contacts]
         self.slope = friction.lean * self.side
         own = friction.own(contacts) if friction.some_steep else None
@@ -207,7 +229,8 @@ class Doing:
             Size of friction; looked at where it is an unknown of its own.
         """
         forces: Array = self.springs * glued
-        forces[:, 2:] += self.slope * forces[:, :2]
+        if self.some_slide:
+            forces[:, 2:] += self.slope * forces[:, :2]
         if self.own is not None:
             size = np.where(self.own, held, 0.0)
             forces[:, :2] += self._flat * size

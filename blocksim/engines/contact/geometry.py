@@ -7,6 +7,9 @@ so. That ends where the faces no longer lie over each other or have turned far a
 
 A corner on a face has both its contacts in the corner. It is over when the corner leaves the
 face, and when its block has turned until another of its edges lies on it.
+
+Points and directions are complex numbers, x + iy: a product turns them, and that of one with
+the conjugate of another is their scalar product and, times i, their cross product.
 """
 
 from __future__ import annotations
@@ -19,6 +22,8 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.corners import NEAR, turns
+
+Complex = NDArray[np.complex128]
 
 DEEPEST = 0.05
 """Overlap in joint lengths beyond which two faces no longer touch but have passed."""
@@ -52,21 +57,19 @@ class Geometry:
     def __init__(self, assembly: Assembly) -> None:
         joints = assembly.joint_arrays
         self.before, self.after = joints.before, joints.after
-        faces, tangent = faces_at_joints(assembly), joints.tangent
+        sides, tangent = assembly.sides, in_one(joints.tangent)
+        faces, centres = in_one(faces_at_joints(assembly)), in_one(assembly.built)
         # Both corners of each face, then its direction, all of which a block turns alike.
-        sides = assembly.sides
-        centres = assembly.built.T[:2, sides]
-        turned = np.empty((*centres.shape, 3))
-        turned[..., :2] = faces.transpose(3, 1, 0, 2) - centres[..., None]
-        turned[..., 2] = tangent.T[:, None]
-        self._sides, self._turned = sides.ravel(), turned.reshape(2, -1, 3)
-        lengths = np.matmul(faces[:, :, 1] - faces[:, :, 0], tangent[:, :, None])[:, :, 0]
+        turned = np.empty((*sides.shape, 3), dtype=np.complex128)
+        turned[..., :2] = faces.swapaxes(0, 1) - centres[sides, None]
+        turned[..., 2] = tangent
+        self._sides, self._turned = sides.ravel(), turned.reshape(-1, 3)
+        lengths = ((faces[..., 1] - faces[..., 0]) * tangent[:, None].conj()).real
         self._length = lengths[:, 0]
         shorter, longer = np.minimum(*lengths.T), np.maximum(*lengths.T)
         self._deepest: Array = DEEPEST * np.where(joints.is_corner, longer, shorter)
         # Of `before` less, of `after` more, of the ground nothing.
-        moves = np.where(sides == SUPPORT, 0.0, [[-1.0], [1.0]])
-        self._moves = np.repeat(moves.T, 3, axis=1)[:, None]
+        self._moves = np.where(sides == SUPPORT, 0.0, [[-1.0], [1.0]]).T
         self._corners = np.flatnonzero(joints.is_corner)
         self._carried_by_after = joints.carrier[self._corners, None] == 1
         self._turns = np.array(
@@ -87,67 +90,75 @@ class Geometry:
         holds : (joints,) bool
         """
         count = len(self._length)
-        placed = np.vstack([poses, np.zeros(3)])[self._sides]
-        cos, sin = np.cos(placed[:, 2:]), np.sin(placed[:, 2:])
-        x: Array
-        y: Array
-        x, y = self._turned
-        x, y = cos * x - sin * y, sin * x + cos * y
-        one = x[:count, 2:], y[:count, 2:]
-        two = x[count:, 2:], y[count:, 2:]
-        x, y = x[:, :2] + placed[:, :1], y[:, :2] + placed[:, 1:2]
-        apart = x[count:] - x[:count], y[count:] - y[:count]
-        along = apart[0] * one[0] + apart[1] * one[1]
+        placed = np.concatenate([poses, np.zeros((1, 3))])[self._sides]
+        centres = in_one(placed)[:, None]
+        turned = self._turned * np.exp(1j * placed[:, 2:])
+        one, two = turned[:count, 2:], turned[count:, 2:]
+        points = turned[:, :2] + centres
+        before, after = points[:count], points[count:]
+        apart = after - before
+        along = (apart * one.conj()).real
         overlapping = self._length - np.maximum(along[:, 0], 0) + np.minimum(along[:, 1], 0)
         # Over the face of `before` lies the corner of `after` that is nearer to its middle.
         after_over = along * INWARDS >= 0
-        holds = (overlapping > 0) & ((one[0] * two[0] + one[1] * two[1])[:, 0] > WIDEST)
+        holds = (overlapping > 0) & ((one * two.conj()).real[:, 0] > WIDEST)
         if len(self._corners):
             holds[self._corners] = self._on_face(one, two, apart)
             after_over[self._corners] = ~self._carried_by_after
-        over_x: Array = np.where(after_over, one[0], two[0])
-        over_y: Array = np.where(after_over, one[1], two[1])
-        over = over_x, over_y
-        gap: Array = apart[0] * over[1] - apart[1] * over[0]
+        tangents: Complex = np.where(after_over, one, two)
+        gap = (apart.conj() * tangents).imag
         holds &= gap.min(axis=1) > -self._deepest
-        x_at: Array = np.where(after_over, x[count:], x[:count])
-        y_at: Array = np.where(after_over, y[count:], y[:count])
-        # Normals (y, -x) of the two contacts, then tangents (x, y), and their moments.
-        rows = np.empty((count, 4, 6))
-        for column, centre in ((0, placed[:count]), (3, placed[count:])):
-            arm = x_at - centre[:, :1], y_at - centre[:, 1:2]
-            rows[:, :2, column], rows[:, :2, column + 1] = over[1], -over[0]
-            rows[:, :2, column + 2] = -(arm[0] * over[0] + arm[1] * over[1])
-            rows[:, 2:, column], rows[:, 2:, column + 1] = over
-            rows[:, 2:, column + 2] = arm[0] * over[1] - arm[1] * over[0]
-        rows *= self._moves
+        at: Complex = np.where(after_over, after, before)
+        rows = rows_at(at, tangents, centres.reshape(2, count).T, self._moves)
         return Touch(gap=gap, rows=rows), holds
 
-    def _on_face(
-        self, one: tuple[Array, Array], two: tuple[Array, Array], apart: tuple[Array, Array]
-    ) -> NDArray[np.bool_]:
+    def _on_face(self, one: Complex, two: Complex, apart: Complex) -> NDArray[np.bool_]:
         """Tell which corners are on their faces still, and touch them with nothing else.
 
         Parameters
         ----------
-        one, two : x and y, (joints, 1) float
+        one, two : (joints, 1) complex
             Directions of the faces of `before` and `after`.
-        apart : x and y, (joints, 2) float
+        apart : (joints, 2) complex
             From the corners of `before` to those of `after`.
         """
-        chosen = self._corners
-        (x, y), (u, v) = ((x[chosen], y[chosen]) for x, y in (one, two))
+        one, two, apart = one[self._corners], two[self._corners], apart[self._corners]
         after = self._carried_by_after
-        x_apart, y_apart = (each[chosen] for each in apart)
-        along = x_apart * np.where(after, u, x) + y_apart * np.where(after, v, y)
+        along = (apart * np.where(after, two, one).conj()).real
         inwards = np.where(after, -1.0, 1.0) * INWARDS
-        alike, turned = (x * u + y * v)[:, 0], (x * v - y * u)[:, 0]
+        turn = (one.conj() * two)[:, 0]
         return (
             (along * inwards >= 0).all(axis=1)
-            & (alike > WIDEST)
-            & (turned > -self._turns[:, 0])
-            & (turned < self._turns[:, 1])
+            & (turn.real > WIDEST)
+            & (turn.imag > -self._turns[:, 0])
+            & (turn.imag < self._turns[:, 1])
         )
+
+
+def rows_at(points: Complex, tangents: Complex, centres: Complex, moves: Array) -> Array:
+    """Return velocities at two contacts of each pair from those of both blocks, as in `Touch`.
+
+    Parameters
+    ----------
+    points, tangents : (pairs, 2) complex
+        Of the two contacts.
+    centres : (pairs, 2) complex
+        Centres of mass of both blocks.
+    moves : (pairs, 2) float
+        -1 for the first block, 1 for the second, 0 for what stays.
+    """
+    axes = np.concatenate([-1j * tangents, tangents], axis=1)[..., None]
+    arms = np.concatenate([points, points], axis=1)[..., None] - centres[:, None]
+    rows = np.empty((len(points), 4, 2, 3))
+    rows[..., 0], rows[..., 1] = axes.real, axes.imag
+    rows[..., 2] = (arms.conj() * axes).imag
+    rows *= moves[:, None, :, None]
+    return rows.reshape(len(points), 4, 6)
+
+
+def in_one(points: Array) -> Complex:
+    """Return x + iy, shape (...), of points of shape (..., 2 or more)."""
+    return points[..., 0] + 1j * points[..., 1]
 
 
 def faces_at_joints(assembly: Assembly) -> Array:

@@ -69,6 +69,7 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
     apart = bands.along(edges, x) + offset + lift
     least, pressed = STEEP_START if step.friction.some_steep else START
     room: Array = np.maximum(np.abs(apart), least)
+    short: Array = apart - room
     forces: Array = np.full_like(apart, pressed)
     count = 0
     for count in range(MOST_STEPS):  # noqa: B007
@@ -76,23 +77,24 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
         if product < CLOSE:
             break
         weight: Array = forces / room
-        short: Array = apart - room
         solve = bands.factored(edges, weight, turned)
         if solve is None:
             break
-        seen, left = edges if turned is None else turned, free - x
+        seen, left, shortage = edges if turned is None else turned, free - x, weight * short
 
         def toward(
-            target: Array, solve: Callable[[Array], Array] = solve
+            target: Array | float, solve: Callable[[Array], Array] = solve
         ) -> tuple[Array, Array, Array]:
             """Change x, room and forces to products of so much, over the room."""
-            way = solve(left + bands.pull(edges, target - weight * short))  # noqa: B023
+            way = solve(left + bands.pull(edges, target - shortage))  # noqa: B023
             wider = bands.along(seen, way) + short  # noqa: B023
             return way, wider, target - forces - weight * wider  # noqa: B023
 
-        _, wider, more = toward(np.zeros_like(room))
+        _, wider, more = toward(0.0)
         ahead = _length(room, wider, forces, more)
-        after = float(np.vdot(room + ahead * wider, forces + ahead * more)) / room.size
+        # To first order products fall by the share of the way.
+        second = float(np.vdot(wider, more)) / room.size
+        after = (1 - ahead) * product + ahead**2 * second
         aim = max((after / product) ** 3, 0.0 if dilates else CAREFUL) * product
         way, wider, more = toward((aim - wider * more) / room)
         # Near its end the path is straight.
@@ -102,10 +104,13 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
             break
         x = x + length * way
         room, forces = room + length * wider, forces + length * more
-        if not dilates:
-            smooth = SMOOTH * math.sqrt(float(np.vdot(room, forces)) / room.size)
-            lift, turned = _lift(step, x, cones, smooth)
-        apart = bands.along(edges, x) + offset + lift
+        if dilates:
+            # All is linear.
+            short = (1 - length) * short
+            continue
+        smooth = SMOOTH * math.sqrt(float(np.vdot(room, forces)) / room.size)
+        lift, turned = _lift(step, x, cones, smooth)
+        short = bands.along(edges, x) + offset + lift - room
     return x, forces, count
 
 

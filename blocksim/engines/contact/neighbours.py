@@ -54,6 +54,10 @@ class Neighbours:
         self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._loose = False
+        none = np.zeros(0, dtype=np.int64)
+        self._meet = none, none
+        # Pairs of polygons that may meet, once blocks have moved.
+        self._watched: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
         self.before, self.after = self._joints.before, self._joints.after
         self.keys = np.arange(len(self._holds))
 
@@ -79,21 +83,38 @@ class Neighbours:
             self._loose = way > TIGHT and way > self.free
             if not self._loose:
                 return touch
-        reach = fastest()
-        self._holds &= holds
+        margin = NEAR + 2 * fastest()
+        parts = bool((self._holds & ~holds).any())
+        if parts or self._watched is None:
+            self._holds &= holds
+            self._watched = self._strangers()
         poses = poses[self.owner]
-        near = self._polygons.near(poses, NEAR + 2 * reach) & ~self._same
-        joint, first, second = self.sides
-        first, second = first[self._holds[joint]], second[self._holds[joint]]
-        near[first, second] = False
-        before, after = (index.astype(np.int64) for index in np.nonzero(near))
+        before, after = self._watched
+        near = self._polygons.near(poses, before, after, margin)
+        before, after = before[near], after[near]
         met = self._polygons.touch(poses, before, after)
-        close = met.gap.min(axis=1, initial=np.inf) < NEAR + 2 * reach
-        self._list(before[close], after[close])
+        close = met.gap.min(axis=1, initial=np.inf) < margin
+        before, after = before[close], after[close]
+        if parts or not all(map(np.array_equal, self._meet, (before, after))):
+            self._meet = before, after
+            self._list()
         return Touch(
             gap=np.concatenate([touch.gap[self._holds], met.gap[close]]),
             rows=np.concatenate([touch.rows[self._holds], met.rows[close]]),
         )
+
+    def _strangers(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Find pairs of polygons of two blocks that no joint holds, the smaller first."""
+        others = len(standing(self._assembly)) + 1
+        every = np.concatenate([self.owner, np.full(others, SUPPORT)])
+        count = len(self.owner)
+        strange = np.arange(len(every)) > np.arange(count)[:, None]
+        strange &= self.owner[:, None] != every
+        joint, first, second = self.sides
+        held = self._holds[joint]
+        strange[first[held], second[held]] = False
+        first, second = np.nonzero(strange)
+        return first, second
 
     @cached_property
     def owner(self) -> NDArray[np.int64]:
@@ -115,13 +136,6 @@ class Neighbours:
             ],
             [*(each / size for each in standing(assembly)), floor],
         )
-
-    @cached_property
-    def _same(self) -> NDArray[np.bool_]:
-        """Which polygons are of one block."""
-        others = len(standing(self._assembly)) + 1
-        every = np.concatenate([self.owner, np.full(others, SUPPORT)])
-        return self.owner[:, None] == every[None]
 
     @cached_property
     def sides(self) -> tuple[NDArray[np.int64], ...]:
@@ -150,17 +164,15 @@ class Neighbours:
         if not self._assembly.supports:
             return LOOSE
         poses = self._start[self.owner]
-        near = self._polygons.near(poses, 4 * LOOSE) & ~self._same
-        _, first, second = self.sides
-        near[first, second] = False
-        before, after = (index.astype(np.int64) for index in np.nonzero(near))
-        gap = self._polygons.apart(poses, before, after)
+        before, after = self._strangers()
+        near = self._polygons.near(poses, before, after, 4 * LOOSE)
+        gap = self._polygons.apart(poses, before[near], after[near])
         # Two corners may each go by the root of 2 of that, and by as much again by turning.
         return float(gap[gap > APART].min(initial=4 * LOOSE)) / 4
 
-    def _list(self, before: NDArray[np.int64], after: NDArray[np.int64]) -> None:
+    def _list(self) -> None:
         """List joints that hold, then pairs of polygons that meet."""
-        held = self._holds
+        held, (before, after) = self._holds, self._meet
         owner = np.append(self.owner, SUPPORT)
         count = len(self.owner)
         self.before = np.concatenate([self._joints.before[held], owner[before]])

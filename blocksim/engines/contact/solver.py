@@ -160,18 +160,25 @@ class ContactProblem:
 
     def _solved(self, step: Step, start: Solution | None, precision: float) -> Solution:
         """Take guesses in turn until one leads to a solution."""
-        best = Answer.of_nothing(step)
         guesses: list[Answer] = []
+        tried: list[Answer] = []
+        spent = 0
         for guess in self._guesses(step, start):
             guesses.append(guess)
-            best = best.or_better(settle(step, guess, precision))
+            found = settle(step, guess, precision)
+            tried += found
+            best = found[-1] if found else guess
+            spent += best.systems
             if best.is_settled and best.residual <= SOLVED:
                 break
         else:
+            best = _best(step, tried)
             for path in self._paths(step, guesses, known=start is not None):
                 if (best.is_settled or start is not None) and best.residual <= ENOUGH:
                     break
-                best = best.or_better(settle(step, path(), precision))
+                found = settle(step, path(), precision)
+                spent += found[-1].systems if found else 0
+                best = _best(step, [best, *found])
         # From nothing an answer close by may be that of another arch.
         close = SURE * min(1.0, float(np.abs(best.x).max()))
         sure = best.is_settled or start is not None or best.residual <= close
@@ -180,7 +187,7 @@ class ContactProblem:
             forces=best.forces,
             contacts=best.contacts,
             residual=best.residual if sure else math.inf,
-            iterations=best.systems,
+            iterations=spent,
         )
 
     def _guesses(self, step: Step, start: Solution | None) -> Iterator[Answer]:
@@ -212,6 +219,19 @@ class ContactProblem:
                 yield lambda: put_right(step, guesses[-1], NEAREST_PIECES)
             yield lambda: put_right(step, guesses[0])
         yield lambda: come_together(step, None if known else guesses[-1].forces)
+
+
+def _best(step: Step, tried: list[Answer]) -> Answer:
+    """Return the best of answers, a settled one if there is any."""
+    known = [
+        replace(each, residual=step.residual(each.x, each.forces))
+        if each.residual == math.inf
+        else each
+        for each in tried
+    ]
+    known = [each for each in known if math.isfinite(each.residual)]
+    nothing = Answer.of_nothing(step)
+    return min(known, key=lambda each: (not each.is_settled, each.residual), default=nothing)
 
 
 def _parted(step: Step, answer: Answer) -> Iterator[Answer]:

@@ -28,6 +28,6 @@ def stiffness_at(friction: Friction, x: Array, precision: float = 0.0) -> float:
     """
     rough = precision >= ROUGH and not friction.some_steep
     # Steep friction multiplies nothing: it is an unknown of its own.
-    softer = max(1.0, float(friction.lean.max(initial=0.0)) / STEEPEST)
+    softer = max(1.0, friction.most_lean / STEEPEST)
     largest = max(float(np.abs(x).max()), 1e-9)
-    return float(np.clip((MOVING if rough else STIFFNESS) / softer / largest, SOFT, STIFF))
+    return min(max((MOVING if rough else STIFFNESS) / softer / largest, SOFT), STIFF)

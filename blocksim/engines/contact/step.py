@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -33,7 +34,7 @@ class Answer:
     contacts : (joints, 2) int
         What the contacts do.
     residual : float
-        `Step.residual` of it.
+        `Step.residual` of it; inf where it is not known.
     systems : int
         Banded systems it took.
     is_settled : bool
@@ -52,11 +53,6 @@ class Answer:
         """Return what is worse than any other."""
         contacts = np.full((len(step.rates), 2), OPEN, dtype=np.int8)
         return cls(x=step.free, forces=np.zeros_like(step.rates), contacts=contacts)
-
-    def or_better(self, other: Answer) -> Answer:
-        """Return the better of the two; systems are those of both."""
-        best = min(self, other, key=lambda each: (not each.is_settled, each.residual))
-        return replace(best, systems=self.systems + other.systems)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,18 +87,17 @@ class Step:
 
     def residual(self, x: Array, forces: Array, rates: Array | None = None) -> float:
         """Worst of imbalance, penetration rate, and what complementarity leaves."""
-        worst = float(np.abs(self.imbalance(x, forces)).max())
+        imbalance = np.abs(self.imbalance(x, forces)).max()
         rates = self.velocities(x) if rates is None else rates
         normal, slip = rates[:, :2], rates[:, 2:]
         pressure, friction = forces[:, :2], forces[:, 2:]
         # Friction in the cone; at its edge, against the slip, or no slip.
         a, b = self.friction.room
-        most, size, way = a * pressure, b * np.abs(friction), np.abs(slip)
-        helping = np.sign(slip) * friction
+        way, helping = np.abs(slip), np.sign(slip) * friction
         wrongs = [
             np.abs(np.minimum(pressure, normal)),
-            size - most,
-            np.minimum(most + b * helping, way),
+            self.friction.excess(forces),
+            np.minimum(a * pressure + b * helping, way),
         ]
         if self.friction.some_steep:
             # Nor does friction help the slip, or act across a gap.
@@ -110,18 +105,16 @@ class Step:
                 np.where(self.friction.steep, wrong, 0.0)
                 for wrong in (np.minimum(helping, way), np.minimum(np.abs(friction), normal))
             ]
-        for wrong in wrongs:
-            # Unlike max, this keeps nan.
-            worst = np.maximum(worst, wrong.max(initial=0.0))
+        # Unlike Python's, numpy's maximum keeps nan.
+        worst = np.maximum(imbalance, reduce(np.maximum, wrongs).max(initial=0.0))
         return float(worst) / max(1.0, float(np.abs(x).max()))
 
     def told(self, x: Array, forces: Array) -> Contacts:
         """Tell what contacts do where what is about 0 is still more than nothing."""
         rates = self.velocities(x)
         pressure, along = forces[:, :2], forces[:, 2:]
-        a, b = self.friction.room
         contacts = np.where(along > 0, SLIDES_UP, SLIDES_DOWN).astype(np.int8)
-        contacts[a * pressure - b * np.abs(along) > np.abs(rates[:, 2:])] = STICKS
+        contacts[-self.friction.excess(forces) > np.abs(rates[:, 2:])] = STICKS
         contacts[pressure <= rates[:, :2]] = OPEN
         return contacts
 
@@ -140,8 +133,11 @@ class Linear:
     def __init__(self, step: Step, contacts: Contacts, stiffness: float) -> None:
         self._step, self._stiffness = step, stiffness
         self.doing = doing = Doing(step.friction, contacts)
-        acting = leaning(step.rows, doing.slope)
-        self._solve = step.bands.factored(acting, stiffness * doing.springs, step.rows)
+        # Where nothing slides the system is symmetric.
+        rows, seen = step.rows, None
+        if doing.some_slide:
+            rows, seen = leaning(step.rows, doing.slope), step.rows
+        self._solve = step.bands.factored(rows, stiffness * doing.springs, seen)
         self._slides = None
         if doing.own is not None:
             flattest = step.friction.flattest
