@@ -367,9 +367,9 @@ def test_a_path_from_a_guess_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
             return interior.central_path(step, cones, dilates=True)
         return np.zeros_like(step.free), np.zeros_like(cones.offset), 0
 
-    def put_right(step: Step, guess: Answer, *most: int) -> Answer:
+    def put_right(step: Step, guess: Answer, *most: int) -> Answer | None:
         end = path_following.put_right(step, guess, *most)
-        systems.append(end.systems)
+        systems.append(end.systems if end else 0)
         return end
 
     monkeypatch.setattr(solver, "central_path", central_path)

@@ -85,14 +85,20 @@ def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
         changes = 0 if mended is contacts else int(np.count_nonzero(mended != contacts))
         nothing = max(precision * max(1.0, largest), NO_YIELD * largest)
         ratio, last = yields / last, math.inf if changes else yields
-        residual, is_settled = math.inf, False
+        residual, is_settled, ahead = math.inf, False, 0.0
         if changes:
             # Where nothing pulls it may be that nothing is wrong but round-off.
             if -float(forces[:, :2].min()) <= RELATIVE * largest * max(1.0, largest):
                 residual = step.residual(x, forces, rates)
                 is_settled = residual <= RELATIVE * largest
-        elif yields <= nothing or (ratio > DRIFT and yields <= _unfit(step, largest)):
-            residual, is_settled = step.residual(x, forces, rates), True
+        else:
+            if yields > nothing and ratio > SLOW:
+                # It goes on to change, less each time, or until a contact gives way.
+                ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
+                ahead = min(ahead, _reach(step, forces, change))
+            # Contacts may contradict each other, and none ever gives way.
+            if yields <= nothing or (ahead == FARTHEST and yields <= _unfit(step, largest)):
+                residual, is_settled = step.residual(x, forces, rates), True
         found = Answer(
             x=x,
             forces=forces,
@@ -119,13 +125,9 @@ def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
                     break
             contacts = mended
             linear = Linear(step, contacts, stiffness)
-        elif ratio > SLOW:
-            # It goes on to change, less each time, or until a contact gives way.
-            ahead = ratio / (1 - ratio) if ratio < DRIFT else FARTHEST
-            ahead = min(ahead, _reach(step, forces, change))
-            if ahead == FARTHEST:
-                # Contacts contradict each other, and none ever gives way.
-                break
+        elif ahead == FARTHEST:
+            break
+        else:
             preload = forces + ahead * change
     return tried
 

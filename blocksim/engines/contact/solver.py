@@ -11,14 +11,15 @@ as much as the number of blocks.
 What each contact does is guessed, and mended until all forces and velocities agree with it
 (`active_set.py`). Guesses are taken in turn, until one leads to a solution:
 
-- what the contacts did in the last step;
+- what the contacts did in the last step, then the end of a short path from there
+  (`path_following.py`);
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction, steep one taken to be less;
-- the end of a path that begins at the last of these guesses, if it is short, or at the first
-  (`path_following.py`);
-- the end of one that begins with all contacts apart.
+- from nothing, the end of a path that begins at the last of these guesses, if it is short, or
+  at the first;
+- the end of a path that begins with all contacts apart.
 """
 
 from __future__ import annotations
@@ -37,7 +38,12 @@ from blocksim.engines.contact.banded import Bands
 from blocksim.engines.contact.cones import Cones
 from blocksim.engines.contact.coulomb import Contacts, Friction
 from blocksim.engines.contact.interior import central_path
-from blocksim.engines.contact.path_following import NEAREST_PIECES, come_together, put_right
+from blocksim.engines.contact.path_following import (
+    LAST_PIECES,
+    NEAREST_PIECES,
+    come_together,
+    put_right,
+)
 from blocksim.engines.contact.step import Answer, Step
 from blocksim.engines.contact.threads import one_thread
 
@@ -176,9 +182,10 @@ class ContactProblem:
             for path in self._paths(step, guesses, known=start is not None):
                 if (best.is_settled or start is not None) and best.residual <= ENOUGH:
                     break
-                found = settle(step, path(), precision)
-                spent += found[-1].systems if found else 0
-                best = _best(step, [best, *found])
+                if guess := path():
+                    found = settle(step, guess, precision)
+                    spent += found[-1].systems if found else 0
+                    best = _best(step, [best, *found])
         # From nothing an answer close by may be that of another arch.
         close = SURE * min(1.0, float(np.abs(best.x).max()))
         sure = best.is_settled or start is not None or best.residual <= close
@@ -201,24 +208,38 @@ class ContactProblem:
                 answer = cones.answer(step, x, pressed, systems)
                 yield answer
                 yield from _parted(step, answer)
+            for tame in _tamed(step):
+                yield _coulomb(tame)
         else:
             x = (start.acceleration * self.root).ravel()
-            yield Answer(x=x, forces=start.forces, contacts=start.contacts)
-        for most in TAME if step.friction.some_steep else (math.inf,):
-            tame = replace(step, friction=step.friction.at_most(most))
-            cones = Cones.of(tame)
-            x, pressed, systems = central_path(tame, cones, dilates=False)
-            yield cones.answer(tame, x, pressed, systems)
+            last = Answer(x=x, forces=start.forces, contacts=start.contacts)
+            yield last
+            if not step.friction.some_steep and (end := put_right(step, last, LAST_PIECES)):
+                yield end
 
     def _paths(
         self, step: Step, guesses: list[Answer], *, known: bool
-    ) -> Iterator[Callable[[], Answer]]:
-        """Give what follows a path, the shorter one first."""
-        if not step.friction.some_steep:
-            if not known:
-                yield lambda: put_right(step, guesses[-1], NEAREST_PIECES)
+    ) -> Iterator[Callable[[], Answer | None]]:
+        """Give what takes longer, the shorter one first."""
+        if known:
+            for tame in _tamed(step):
+                yield lambda tame=tame: _coulomb(tame)
+        elif not step.friction.some_steep:
+            yield lambda: put_right(step, guesses[-1], NEAREST_PIECES)
             yield lambda: put_right(step, guesses[0])
         yield lambda: come_together(step, None if known else guesses[-1].forces)
+
+
+def _tamed(step: Step) -> Iterator[Step]:
+    """Give the step with friction that is not steep."""
+    for most in TAME if step.friction.some_steep else (math.inf,):
+        yield replace(step, friction=step.friction.at_most(most))
+
+
+def _coulomb(step: Step) -> Answer:
+    """Return the end of the interior-point method for Coulomb friction."""
+    cones = Cones.of(step)
+    return cones.answer(step, *central_path(step, cones, dilates=False))
 
 
 def _best(step: Step, tried: list[Answer]) -> Answer:
