@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from scipy.integrate import dblquad
 
 from blocksim.arch.circular import GRAVITY, Arch
-from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
+from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, JointArrays
 from blocksim.common.errors import InputError
 
 arches = st.builds(
@@ -253,6 +253,28 @@ def test_arrays_cannot_be_changed() -> None:
     ):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1.0
+
+
+@given(arches)
+def test_arrays_are_those_of_its_voussoirs(arch: Arch) -> None:
+    assembly = arch.assembly()
+    made = replace(assembly, blocks=tuple(assembly.blocks), joints=tuple(assembly.joints))
+    assert made.joints == assembly.joints[:], "no joint is turned round"
+    for name in ("centres", "masses", "depths", "reach"):
+        assert np.array_equal(getattr(assembly, name), getattr(made, name)), name
+    for name, mine, its in zip(
+        JointArrays._fields, assembly.joint_arrays, made.joint_arrays, strict=True
+    ):
+        assert np.array_equal(mine, its, equal_nan=name == "friction"), name
+
+
+def test_voussoirs_are_those_of_a_tuple() -> None:
+    voussoirs = Arch(half_angle=1.0, eta=0.1, voussoirs=5).assembly().blocks
+    assert [block.name for block in voussoirs] == ["1", "2", "3", "4", "5"]
+    assert voussoirs[-2] is voussoirs[3]
+    assert voussoirs[1:3] == (voussoirs[1], voussoirs[2])
+    with pytest.raises(IndexError):
+        voussoirs[5]
 
 
 def test_reach_is_the_farthest_corner() -> None:

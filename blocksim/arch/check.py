@@ -23,6 +23,7 @@ from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 
 if TYPE_CHECKING:
+    from blocksim.arch.limit import LimitState
     from blocksim.arch.limit.mechanism import Mechanism
 
 TIMES = 0.5
@@ -147,7 +148,7 @@ def check(
         verdict, reason = _compare(arch.eta, continuous.eta, "of the continuous arch")
         mode = continuous.mode if verdict is Verdict.COLLAPSES else None
     elif rung.name == "limit":
-        verdict, reason = _static(arch, mu, built.eta)
+        verdict, reason = _static(arch, mu, built)
         if verdict is Verdict.COLLAPSES:
             # Its linear programmes take longer to load than an arch that stands to answer.
             from blocksim.arch.limit.mechanism import mechanism
@@ -172,7 +173,7 @@ def check(
         later = observed_mode(seen.joints_in_motion, arch)
     rest = rest_of(
         arch.problem(mu) if must_rest else None,
-        exists=None if lean else limit.stands(arch, mu),
+        exists=None if lean else built.stands_at(arch.eta),
         moved=seen is not None and seen.moved,
         progress=progress,
     )
@@ -213,10 +214,9 @@ def _compare(eta: float, least: float | None, whose: str) -> tuple[Verdict, str]
     return verdict, f"eta is {abs(share):.2%} {side} the least thickness {whose}, {least:.6g}"
 
 
-def _static(arch: Arch, mu: float, least: float | None) -> tuple[Verdict, str]:
-    """Apply the static theorem to the arch; the least thickness only words the reason."""
-    verdict = Verdict.STANDS if limit.stands(arch, mu) else Verdict.COLLAPSES
-    _, reason = _compare(arch.eta, least, "of the voussoirs as built")
+def _static(arch: Arch, mu: float, built: LimitState) -> tuple[Verdict, str]:
+    """Apply the static theorem to the arch, and tell what it has to spare."""
+    verdict, reason = _compare(arch.eta, built.eta, "of the voussoirs as built")
     if verdict is Verdict.STANDS:
         spare = limit.slack(arch, mu)
         reason = f"{reason}; {spare:.2%} of thickness and friction could be taken away"

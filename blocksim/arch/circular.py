@@ -11,6 +11,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY as GRAVITY
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.rows import Rows
 from blocksim.common.checks import (
     ETA,
     FRICTION,
@@ -114,7 +115,8 @@ class Arch(Shown):
         Returns
         -------
         Assembly
-            n blocks and n + 1 joints, both from the left springing to the right.
+            n blocks and n + 1 joints, both from the left springing to the right, each made
+            when it is looked at.
         """
         angles = self.joint_angles
         intrados, extrados = self.radius - self.thickness / 2, self.radius + self.thickness / 2
@@ -133,26 +135,25 @@ class Arch(Shown):
         corners = np.stack([inner[:-1], inner[1:], outer[1:], outer[:-1]], axis=1)
         if intrados == 0:
             corners = corners[:, 1:]
-        blocks = tuple(
-            Block(
-                vertices=corners[i],
-                centre=centres[i],
-                mass=mass,
-                inertia=inertia,
-                depth=self.depth,
-                name=str(i + 1),
-            )
-            for i in range(self.voussoirs)
+        count = self.voussoirs
+        blocks = Rows(
+            Block,
+            vertices=corners,
+            centre=centres,
+            mass=[mass] * count,
+            inertia=[inertia] * count,
+            depth=[self.depth] * count,
+            name=[str(i + 1) for i in range(count)],
         )
-        joints = tuple(
-            Joint(
-                before=i - 1 if i > 0 else SUPPORT,
-                after=i if i < self.voussoirs else SUPPORT,
-                inner=inner[i],
-                outer=outer[i],
-            )
-            for i in range(self.voussoirs + 1)
+        joints = Rows(
+            Joint,
+            before=[SUPPORT, *range(count)],
+            after=[*range(count), SUPPORT],
+            inner=inner,
+            outer=outer,
         )
+        # They are alike: what is wrong with the first is so with all, and told at once.
+        _ = blocks[0]
         return Assembly(blocks=blocks, joints=joints, size=self.radius)
 
     def problem(self, mu: float, lean: float = 0.0) -> Problem:

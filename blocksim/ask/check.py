@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from blocksim.ask.carried import Carried, carried_by
 from blocksim.ask.methods import choose, chosen_words, merges
 from blocksim.ask.rest import Rest, require_rest, rest_of
@@ -243,8 +241,7 @@ def _observed(problem: Problem, rates: Array) -> tuple[ObservedJoint, ...]:
     from blocksim.evidence.onset import PROBE
 
     assembly = problem.assembly
-    start = np.column_stack([assembly.centres / assembly.size, np.zeros(len(rates))])
-    return classify(assembly, start + PROBE * rates[:, :3])
+    return classify(assembly, assembly.built[:-1] + PROBE * rates[:, :3])
 
 
 def _unit(rates: Array, problem: Problem) -> Array:

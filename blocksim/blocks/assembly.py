@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from blocksim.blocks.rows import Rows, column
 from blocksim.common.checks import COORDINATE, INERTIA, LENGTH, MASS
 from blocksim.common.errors import InputError
 
@@ -27,11 +28,10 @@ rotation vector's components along x and y, from engines in three dimensions."""
 
 
 def frozen(values: object, shape: tuple[int, ...]) -> Array:
-    """Return a read-only float array of the given shape (-1: any length)."""
+    """Return a read-only float array of the given shape (-1 first: any length)."""
     array = np.array(values, dtype=np.float64)
     if array.shape != shape and (
-        array.ndim != len(shape)
-        or any(want not in (-1, have) for want, have in zip(shape, array.shape, strict=True))
+        array.ndim != len(shape) or shape[0] != -1 or array.shape[1:] != shape[1:]
     ):
         message = f"expected an array of shape {shape}, got {array.shape}"
         raise ValueError(message)
@@ -76,18 +76,20 @@ class Block:
             if not known.has(value := getattr(self, field)):
                 raise InputError(self._called(field), value, known.words)
         vertices = frozen(self.vertices, (-1, 2))
-        corners = vertices.tolist()
-        if not all(abs(x) <= COORDINATE.high and abs(y) <= COORDINATE.high for x, y in corners):
+        corners, most = vertices.tolist(), COORDINATE.high
+        if not all(-most <= x <= most and -most <= y <= most for x, y in corners):
             raise InputError(self._called("vertices"), corners, COORDINATE.words)
         area, folds = _outline(corners)
         if area == 0 or folds:
             allowed = "three corners or more around a convex area"
             raise InputError(self._called("vertices"), corners, allowed)
-        object.__setattr__(
-            self, "vertices", vertices if area > 0 else frozen(vertices[::-1], (-1, 2))
-        )
+        if area < 0:
+            vertices = frozen(vertices[::-1], (-1, 2))
+        object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "centre", frozen(self.centre, (2,)))
-        object.__setattr__(self, "parts", tuple(frozen(part, (-1, 2)) for part in self.parts))
+        if self.parts:
+            parts = tuple(frozen(part, (-1, 2)) for part in self.parts)
+            object.__setattr__(self, "parts", parts)
 
     def _called(self, field: str) -> str:
         return f"block {self.name}: {field}" if self.name else field
@@ -100,15 +102,16 @@ class Block:
 
 def _outline(corners: list[list[float]]) -> tuple[float, bool]:
     """Return twice the area of a polygon, and whether it folds inwards or has no numbers."""
+    if len(corners) < FEWEST_CORNERS:
+        return 0.0, True
+    (x0, y0), (x1, y1), (x2, y2) = corners[0], corners[-2], corners[-1]
     turns: list[float] = []
-    count = len(corners)
-    (x0, y0), area = corners[0] if count else (0.0, 0.0), 0.0
-    for index in range(count):
-        (x1, y1), (x2, y2) = corners[index], corners[(index + 1) % count]
-        (x3, y3) = corners[(index + 2) % count]
-        area += (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    area = 0.0
+    for x3, y3 in corners:
+        area += (x2 - x0) * (y3 - y0) - (x3 - x0) * (y2 - y0)
         turns.append((x2 - x1) * (y3 - y2) - (y2 - y1) * (x3 - x2))
-    if not math.isfinite(area) or count < FEWEST_CORNERS:
+        x1, y1, x2, y2 = x2, y2, x3, y3
+    if not math.isfinite(area):
         return 0.0, True
     slack = FLAT * abs(area)
     return area, min(turns) < -slack and max(turns) > slack
@@ -262,22 +265,25 @@ class Assembly:
 
     Parameters
     ----------
-    blocks : tuple of Block
-    joints : tuple of Joint
+    blocks : sequence of Block
+    joints : sequence of Joint
+        Normals of `Rows` lead from `before` to `after`; others are turned where they do not.
     size : float
         A characteristic length [m]; engines work in units of it.
     supports : tuple of Support
         The bodies it stands on, where they are known.
     """
 
-    blocks: tuple[Block, ...]
-    joints: tuple[Joint, ...]
+    blocks: Sequence[Block]
+    joints: Sequence[Joint]
     size: float
     supports: tuple[Support, ...] = ()
 
     def __post_init__(self) -> None:
         """Turn joints round whose ends are exchanged: normals lead from `before` to `after`."""
         LENGTH.require("size", self.size)
+        if isinstance(self.joints, Rows):
+            return
         middles = [_mean(block.vertices.tolist()) for block in self.blocks]
         joints = list(self.joints)
         for index, joint in enumerate(self.joints):
@@ -315,7 +321,7 @@ class Assembly:
     @cached_property
     def centres(self) -> Array:
         """Centres of mass, shape (blocks, 2) [m]."""
-        return frozen([block.centre for block in self.blocks], (-1, 2))
+        return frozen(column(self.blocks, "centre"), (-1, 2))
 
     @cached_property
     def masses(self) -> Array:
@@ -323,9 +329,10 @@ class Assembly:
 
         Shape (blocks, 3), to go with motions x, y and rotation.
         """
-        mass = np.array([block.mass for block in self.blocks])
-        inertia = np.array([block.inertia for block in self.blocks]) / self.size**2
-        return frozen(np.stack([mass, mass, inertia], axis=1) / mass.mean(), (-1, 3))
+        mass = np.array(column(self.blocks, "mass"))
+        inertia = np.array(column(self.blocks, "inertia")) / self.size**2
+        found = np.column_stack([mass, mass, inertia])
+        return frozen(found / mass.mean(), (-1, 3))
 
     @cached_property
     def spatial_masses(self) -> Array:
@@ -342,48 +349,59 @@ class Assembly:
     @cached_property
     def depths(self) -> Array:
         """Depth of each block, shape (blocks,), in units of the size."""
-        return frozen([block.depth / self.size for block in self.blocks], (-1,))
+        return frozen(np.array(column(self.blocks, "depth")) / self.size, (-1,))
 
     @cached_property
     def reach(self) -> Array:
         """Largest distance of a corner from the centre of mass, shape (blocks,) [m]."""
-        corners = [len(block.vertices) for block in self.blocks]
-        away = np.concatenate([block.vertices for block in self.blocks])
-        away -= np.repeat(self.centres, corners, axis=0)
-        first = np.cumsum([0, *corners[:-1]])
-        return frozen(np.maximum.reduceat(np.hypot(*away.T), first), (-1,))
+        outlines = column(self.blocks, "vertices")
+        count = np.array([len(corners) for corners in outlines])
+        x, y = (np.concatenate(outlines) - np.repeat(self.centres, count, axis=0)).T
+        return frozen(np.maximum.reduceat(np.hypot(x, y), count.cumsum() - count), (-1,))
+
+    @cached_property
+    def built(self) -> Array:
+        """Poses as built, in units of the size; then that of the ground, index `SUPPORT`.
+
+        Shape (blocks + 1, 3).
+        """
+        poses = np.zeros((len(self.blocks) + 1, PLANAR))
+        poses[:-1, :2] = self.centres / self.size
+        return frozen(poses, (-1, PLANAR))
+
+    @cached_property
+    def sides(self) -> NDArray[np.int64]:
+        """Blocks before and after each joint, shape (2, joints)."""
+        sides = [column(self.joints, "before"), column(self.joints, "after")]
+        return np.array(sides, dtype=np.int64)
 
     @cached_property
     def joint_arrays(self) -> JointArrays:
         """The joints gathered into arrays, for what looks at them frame by frame."""
         joints = self.joints
-        sides = [(joint.before, joint.after) for joint in joints]
-        before, after = np.array(sides, dtype=np.int64).reshape(-1, 2).T
-        ends = np.array([each for joint in joints for each in (joint.inner, joint.outer)])
-        ends = ends.astype(np.float64, copy=False).reshape(-1, 2, 2)
-        own = [np.nan if j.friction is None else j.friction for j in joints]
+        ends = np.array([column(joints, "inner"), column(joints, "outer")], np.float64)
+        ends = ends.reshape(2, -1, 2).transpose(1, 0, 2)
+        own = [np.nan if each is None else each for each in column(joints, "friction")]
+        is_corner = np.array([each is not None for each in column(joints, "across")], np.bool_)
+        given = np.array([each is not None for each in column(joints, "faces")], np.bool_)
         faces = np.repeat(ends[:, None], 2, axis=1)
-        is_corner = np.array([joint.is_corner for joint in joints], dtype=np.bool_)
         way = ends[:, 1] - ends[:, 0]
         length = np.hypot(way[:, 0], way[:, 1])
         tangent = way / np.where(is_corner, 1.0, length)[:, None]
-        for index, joint in enumerate(joints):
-            if joint.faces is not None or joint.is_corner:
-                faces[index], tangent[index] = self._faces(joint), joint.tangent
-        at_face = faces[:, 0, 1] - faces[:, 0, 0]
-        has_length = np.hypot(at_face[:, 0], at_face[:, 1]) > 0
-        normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
+        for index in np.flatnonzero(is_corner | given).tolist():
+            faces[index], tangent[index] = self._faces(joints[index]), joints[index].tangent
+        at_corner = (faces[:, 0, 0] == faces[:, 0, 1]).all(axis=1)
         return JointArrays(
-            before=before,
-            after=after,
+            before=self.sides[0],
+            after=self.sides[1],
             ends=frozen(ends / self.size, (-1, 2, 2)),
-            normal=frozen(normal, (-1, 2)),
+            normal=frozen(tangent[:, ::-1] * [1.0, -1.0], (-1, 2)),
             tangent=frozen(tangent, (-1, 2)),
             length=frozen(length / self.size, (-1,)),
             friction=frozen(own, (-1,)),
             faces=frozen(faces / self.size, (-1, 2, 2, 2)),
             is_corner=is_corner,
-            carrier=(is_corner & ~has_length).astype(np.int64),
+            carrier=(is_corner & at_corner).astype(np.int64),
         )
 
     @cached_property
@@ -393,10 +411,8 @@ class Assembly:
         Shape (2 sides, joints, 2 ends, 2), in units of the size; from the origin for the
         ground.
         """
-        joints = self.joint_arrays
-        centres = np.vstack([self.centres / self.size, np.zeros(2)])
-        arms = joints.ends - centres[[joints.before, joints.after]][:, :, None]
-        return frozen(arms, (2, -1, 2, 2))
+        arms = self.joint_arrays.ends - self.built[self.sides, None, :2]
+        return frozen(arms, arms.shape)
 
     def _faces(self, joint: Joint) -> Array:
         """Return the faces of `before` and `after` that meet in a joint [m]."""
@@ -429,7 +445,8 @@ class Assembly:
     @cached_property
     def springings(self) -> tuple[Joint, ...]:
         """The joints with the support."""
-        return tuple(joint for joint in self.joints if SUPPORT in (joint.before, joint.after))
+        ground = (self.joint_arrays.before == SUPPORT) | (self.joint_arrays.after == SUPPORT)
+        return tuple(self.joints[index] for index in np.flatnonzero(ground).tolist())
 
     @property
     def shortest(self) -> float:

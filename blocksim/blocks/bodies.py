@@ -34,7 +34,7 @@ def problem_of_bodies(problem: Problem, owner: Owner) -> Problem:
     owner : (blocks,) int
     """
     assembly = problem.assembly
-    members = [np.flatnonzero(owner == each) for each in range(owner.max() + 1)]
+    members = [np.flatnonzero(owner == each).tolist() for each in range(owner.max() + 1)]
     bodies = replace(
         assembly,
         blocks=tuple(_merged([assembly.blocks[k] for k in its]) for its in members),

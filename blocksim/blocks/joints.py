@@ -60,9 +60,8 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     joints, arms = assembly.joint_arrays, assembly.joint_arms
     # The support is appended as a block that stays where it is, index -1.
     moved = np.zeros((len(poses) + 1, PLANAR))
-    moved[:-1] = poses[:, :PLANAR]
-    moved[:-1, :2] -= assembly.centres / assembly.size
-    sides = moved[[joints.before, joints.after]]
+    moved[:-1] = poses[:, :PLANAR] - assembly.built[:-1]
+    sides = moved[assembly.sides]
     turns: Array = sides[..., 2]
     # cos - 1 = -2 sin^2(angle/2): no cancellation for small rotations.
     sine, versine = np.sin(turns)[..., None], 2 * np.sin(turns / 2)[..., None] ** 2
@@ -82,9 +81,10 @@ def joint_motion(assembly: Assembly, poses: Array) -> JointMotion:
     right, up = joints.normal.T
     right, up = (right * cos - up * sin)[:, None], (right * sin + up * cos)[:, None]
     # The tangent is the normal turned by a right angle.
+    slip = y * right - x * up
     return JointMotion(
         gap=x * right + y * up,
-        slip=(y * right - x * up).mean(axis=1),
+        slip=(slip[:, 0] + slip[:, 1]) / 2,
         turn=turns[1] - turns[0],
     )
 
@@ -135,7 +135,7 @@ def _beyond_the_plane(assembly: Assembly, poses: Array) -> tuple[Array, Array]:
     """
     before, after, ends, _, tangent, *_ = assembly.joint_arrays
     middle = ends.mean(axis=1)
-    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+    centres = assembly.built[:, :2]
     beyond = np.vstack([poses[:, PLANAR:], np.zeros(3)])
     depths = np.append(assembly.depths, np.inf)
     half = np.minimum(depths[before], depths[after]) / 2
@@ -206,29 +206,25 @@ def classify(
         All closed where nothing moved.
     """
     motion, joints = joint_motion(assembly, poses), assembly.joint_arrays
-    turn, slip = np.abs(motion.turn), np.abs(motion.slip)
+    turns, slips = np.abs(motion.turn), np.abs(motion.slip)
     if least is None:
-        least = ACTIVE * max(float(turn.max()), float(slip.max()))
+        least = ACTIVE * max(float(turns.max()), float(slips.max()))
     observed: list[ObservedJoint] = []
-    for index, tangent in enumerate(joints.tangent):
-        angle = math.atan2(tangent[0], tangent[1])
-        opening = motion.gap[index]
-        slips = bool(slip[index] > least > 0)
-        length = joints.length[index]
-        if joints.is_corner[index]:
+    every = (joints.tangent, joints.length, joints.is_corner, motion.gap, turns, slips)
+    for index, (tangent, length, is_corner, opening, turn, slip) in enumerate(
+        zip(*(each.tolist() for each in every), strict=True)
+    ):
+        slides = slip > least > 0
+        state = JointState.SLIDES if slides else JointState.CLOSED
+        if is_corner:
             # How far it can slip on its face.
-            length = _left_to_slip(assembly, index, float(motion.slip[index]))
-            parted = bool(opening.min() > least > 0) or slip[index] > length
-            state = JointState.SLIDES if slips else JointState.CLOSED
-            state = JointState.OPEN if parted else state
-        elif opening.min() > LEFT or slip[index] > length:
+            far = slip > _left_to_slip(assembly, index, float(motion.slip[index]))
+            state = JointState.OPEN if far or min(opening) > least > 0 else state
+        elif min(opening) > LEFT or slip > length:
             state = JointState.OPEN
-        elif turn[index] > least > 0:
-            parted = turn[index] * length
-            state = _turning(opening, parted, slips=slips)
-        else:
-            state = JointState.SLIDES if slips else JointState.CLOSED
-        observed.append(ObservedJoint(angle=angle, state=state))
+        elif turn > least > 0:
+            state = _turning(opening, turn * length, slides=slides)
+        observed.append(ObservedJoint(angle=math.atan2(*tangent), state=state))
     return tuple(observed)
 
 
@@ -242,11 +238,11 @@ def _left_to_slip(assembly: Assembly, joint: int, slip: float) -> float:
     return float(abs(ends[1] if sense > 0 else ends[0]))
 
 
-def _turning(opening: Array, parted: float, *, slips: bool) -> JointState:
+def _turning(opening: list[float], parted: float, *, slides: bool) -> JointState:
     """State of a joint that turns: which end stays closed, and does it slip."""
-    if opening.min() > PARTED * parted:
+    if min(opening) > PARTED * parted:
         return JointState.OPEN
-    if slips:
+    if slides:
         return JointState.HINGE_AND_SLIDES
     if opening[0] < opening[1]:
         return JointState.HINGE_INTRADOS

@@ -244,15 +244,20 @@ class Problem(Shown):
             In units of the mean block's weight, and of that times the size. Six columns
             (z, and moments about x and y) where the poses have them.
         """
-        assembly = self.assembly
         columns = PLANAR if poses is None else poses.shape[1]
-        weight = assembly.masses[:, 0]
-        pull = np.zeros((len(assembly.blocks), columns))
-        pull[:, :2] = weight[:, None] * self.gravity[:2]
-        if columns == SPATIAL:
-            pull[:, PLANAR] = weight * self.gravity[2]
-        pull[:, :PLANAR] += self.loads(poses)
+        pull = self._weights[:, :columns].copy()
+        if self.is_loaded:
+            pull[:, :PLANAR] += self.loads(poses)
         return pull
+
+    @cached_property
+    def _weights(self) -> Array:
+        """Gravity on each block, shape (blocks, 6)."""
+        weight = self.assembly.masses[:, :1]
+        found = np.zeros((len(weight), SPATIAL))
+        found[:, :2] = weight * self.gravity[:2]
+        found[:, PLANAR] = weight[:, 0] * self.gravity[2]
+        return found
 
     def loads(self, poses: Array | None = None) -> Array:
         """Sum dead and live loads on each block: `pull` without gravity, shape (blocks, 3)."""

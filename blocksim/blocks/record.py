@@ -7,7 +7,7 @@ inertias and joints are those the engine had.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any, cast
 
@@ -31,8 +31,8 @@ def to_record(value: object) -> Any:
     if isinstance(value, Mapping):
         named = cast("Mapping[str, object]", value)
         return {key: to_record(each) for key, each in named.items()}
-    if isinstance(value, tuple | list):
-        return [to_record(each) for each in cast("list[object]", value)]
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [to_record(each) for each in cast("Sequence[object]", value)]
     if isinstance(value, float) and math.isinf(value):
         return "inf"
     return value

@@ -75,15 +75,14 @@ class Blocks:
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
         self._asked, assembly = problem, problem.assembly
-        size = assembly.size
         self._mass = assembly.masses
         self._step = settings.step
         self._mu, self._friction = problem.mu, problem.friction
-        self._reach = assembly.reach / size
+        self._reach = assembly.reach / assembly.size
         self._neighbours = Neighbours(assembly)
         self._keys = self._neighbours.keys
         self._joints = len(assembly.joints)
-        self._poses = np.column_stack([assembly.centres / size, np.zeros(len(self._mass))])
+        self._poses = assembly.built[:-1]
         self._problem = self._new_problem()
         self._looked, self._velocities = self._poses, np.zeros_like(self._poses)
         self._turning = problem.turns_pull

@@ -205,7 +205,7 @@ class Merging:
             return True, None
         left = self.left(resultants, problem)
         joints = problem.assembly.joints
-        inside = tuple(joints[index] for index in np.flatnonzero(self._inside))
+        inside = tuple(joints[index] for index in np.flatnonzero(self._inside).tolist())
         cones = Cones(replace(problem, assembly=replace(problem.assembly, joints=inside)))
         found = most_common(cones, left)
         if not found.exists:
@@ -289,7 +289,7 @@ def _unless_many(merging: Merging) -> Merging | None:
 def _alike(assembly: Assembly, rates: Array, within: NDArray[np.bool_] | None = None) -> Owner:
     """Return the body of each block, of those that rates do not part across joints `within`."""
     joints = assembly.joint_arrays
-    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+    centres = assembly.built[:, :2]
     moved = np.vstack([rates, np.zeros(PLANAR)])
     ways: list[Array] = []
     for side in (joints.before, joints.after):

@@ -7,7 +7,7 @@ from typing import cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import Array
+from blocksim.blocks.assembly import PLANAR, Array
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
@@ -39,9 +39,8 @@ class Held:
     @property
     def built(self) -> Array:
         """Poses where the blocks were built."""
-        assembly = self.simulation.assembly
         built = np.zeros_like(self.onset.mechanism)
-        built[:, :2] = assembly.centres / assembly.size
+        built[:, :PLANAR] = self.simulation.assembly.built[:-1]
         return built
 
     def release(self, until: float | None = None, progress: Progress = silent) -> Motion:

@@ -208,10 +208,11 @@ def onset(
         total += sweeps
         seen = _look(world, problem, settings, built, accelerations, total)
         falls = seen.verdict is Verdict.COLLAPSES
-        nearly = falls or (
-            total > LATE * allowed and overlap_share(assembly, seen.mechanism) < NEARLY
+        late = total > LATE * allowed
+        slides = unasked and (
+            (falls or (late and overlap_share(assembly, seen.mechanism) < NEARLY))
+            and slip_share(assembly, seen.mechanism) > SLIPS
         )
-        slides = unasked and nearly and slip_share(assembly, seen.mechanism) > SLIPS
         slow = not helped and total >= (settings.unaided or 0)
         decided = seen.verdict is not Verdict.UNDECIDED
         if slides or (slow and not decided):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.rows import column
 from blocksim.common.later import Library
 
 if TYPE_CHECKING:
@@ -72,13 +73,14 @@ class Cones:
         ends_used = joints.ends if width == 1 else middle + width * (joints.ends - middle)
         self._point = point = ends_used.reshape(-1, 2)[self._end]
         # Where each part meets a support: which, and in which sense it acts on it.
-        which = [-1 if each.support is None else each.support for each in assembly.joints]
+        on = column(assembly.joints, "support")
+        which = [-1 if each is None else each for each in on]
         self._support = np.array(which, dtype=np.int64)[self._joint]
         on_after = (joints.after == SUPPORT)[self._joint]
         on_before = (joints.before == SUPPORT)[self._joint]
         self._sense = on_after.astype(np.float64) - on_before
         # The support comes last, as index -1 says, and is left out in the end.
-        centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+        centres = assembly.built[:, :2]
         rows: list[NDArray[np.int64]] = []
         values: list[Array] = []
         for sign, block in ((1.0, joints.after), (-1.0, joints.before)):

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -70,6 +71,10 @@ class LimitState:
     hinges_intrados: tuple[float, ...]
     hinges_extrados: tuple[float, ...]
     slides: tuple[float, ...]
+
+    def stands_at(self, eta: float) -> bool:
+        """Tell whether the arch stands at a thickness-to-radius ratio."""
+        return self.eta is not None and eta >= self.eta
 
 
 def half_joints(half_angle: float, voussoirs: int) -> Array:
@@ -252,6 +257,7 @@ def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[
     joints = joints_of(arch)
     spread = spread_of(arch.eta, arch.weight)
 
+    @cache
     def bounds(share: float) -> tuple[Bound, Bound]:
         return thrust_bounds(joints, share * arch.eta, share * mu, spread)
 
@@ -296,6 +302,7 @@ def least_thickness(
     joints = Joints(angles[None])
     slides = friction_bounds(joints, mu)
 
+    @cache
     def bounds(eta: float) -> tuple[Bound, Bound]:
         return thrust_bounds(joints, eta, mu, spread_of(eta, weight), slides)
 

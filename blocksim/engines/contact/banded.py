@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,35 +50,43 @@ class Bands:
         points: Array | None = None,
     ) -> None:
         self.size = 3 * blocks
-        self.place = self._places_of(before, after)
+        self.place = self._numbered = self._places_of(before, after)
         self._flat = self.place.ravel()
         self._inside = np.minimum(self.place, self.size - 1)[:, :, None]
-        self._order, place = None, self.place
+        self._order = None
         inner = (before >= 0) & (after >= 0)
         order = _order(before[inner], after[inner], blocks, points)
         if order is not None:
             rank = np.append(np.argsort(order), -1)
+            before, after = rank[before], rank[after]
             self._order = (3 * order[:, None] + np.arange(3)).ravel()
-            place = self._places_of(rank[before], rank[after])
-        row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
-        inside = (row < self.size) & (column < self.size)
-        apart = row - column
-        self._width = int(np.abs(apart[inside]).max(initial=0))
-        # Places in LAPACK's band storage, column after column, and one past its end. The
-        # factors of a general matrix need as many rows again above the band.
-        count = self._width + 1
-        lower = column * count + apart
-        self._lower = np.where(inside & (apart >= 0), lower, count * self.size).ravel()
+            self._numbered = self._places_of(before, after)
+        self._width = 3 * int(np.abs(before - after)[inner].max(initial=0)) + 2
         self.rows = 3 * self._width + 1
-        whole = column * self.rows + 2 * self._width + apart
-        self.whole = np.where(inside, whole, self.rows * self.size).reshape(len(place), 36)
+        # Places in LAPACK's band storage, column after column, and one past its end.
+        row, column = self._numbered[:, :, None], self._numbered[:, None, :]
+        kept = (column <= row) & (row < self.size)
+        end = (self._width + 1) * self.size
+        self._lower = np.where(kept, column * self._width + row, end).ravel()
+
+    @cached_property
+    def whole(self) -> NDArray[np.int64]:
+        """The same of a general matrix, shape (joints, 36).
+
+        Its factors need as many rows again above the band.
+        """
+        row, column = self._numbered[:, :, None], self._numbered[:, None, :]
+        at = column * (self.rows - 1) + 2 * self._width + row
+        inside = np.maximum(row, column) < self.size
+        return np.where(inside, at, self.rows * self.size).reshape(len(at), 36)
 
     def _places_of(
         self, before: NDArray[np.int64], after: NDArray[np.int64]
     ) -> NDArray[np.int64]:
         """Unknowns of each joint; those of the ground are one past the end, to be dropped."""
-        pair = np.repeat(np.stack([before, after], axis=1), 3, axis=1)
-        return np.where(pair < 0, self.size, 3 * pair + np.tile(np.arange(3), 2))
+        pair = np.stack([before, after], axis=1)[:, :, None]
+        places = np.where(pair < 0, self.size, 3 * pair + np.arange(3))
+        return places.reshape(len(pair), 6)
 
     @property
     def is_wide(self) -> bool:

@@ -55,24 +55,21 @@ class Geometry:
     """Corners of the joints of an assembly, carried by their blocks."""
 
     def __init__(self, assembly: Assembly) -> None:
-        size, count = assembly.size, len(assembly.joints)
         joints = assembly.joint_arrays
         self.before, self.after = joints.before, joints.after
-        # The ground is a block at the origin that stays, index -1.
-        centres = np.vstack([assembly.centres / size, np.zeros(2)])
-        self._sides = np.concatenate([self.before, self.after])
-        faces = faces_at_joints(assembly)
-        arms = np.concatenate([faces[:, 0], faces[:, 1]]) - centres[self._sides][:, None]
+        sides, tangent = assembly.sides, in_one(joints.tangent)
+        faces, centres = in_one(faces_at_joints(assembly)), in_one(assembly.built)
         # Both corners of each face, then its direction, all of which a block turns alike.
-        axes = np.concatenate([joints.tangent, joints.tangent])[:, None]
-        self._turned = in_one(np.concatenate([arms, axes], axis=1))
-        lengths = ((faces[:, :, 1] - faces[:, :, 0]) * joints.tangent[:, None]).sum(axis=-1)
+        turned = np.empty((*sides.shape, 3), dtype=np.complex128)
+        turned[..., :2] = faces.swapaxes(0, 1) - centres[sides, None]
+        turned[..., 2] = tangent
+        self._sides, self._turned = sides.ravel(), turned.reshape(-1, 3)
+        lengths = ((faces[..., 1] - faces[..., 0]) * tangent[:, None].conj()).real
         self._length = lengths[:, 0]
-        shorter, longer = lengths.min(axis=1), lengths.max(axis=1)
+        shorter, longer = np.minimum(*lengths.T), np.maximum(*lengths.T)
         self._deepest: Array = DEEPEST * np.where(joints.is_corner, longer, shorter)
         # Of `before` less, of `after` more, of the ground nothing.
-        moves = np.where(self._sides == SUPPORT, 0.0, np.repeat([-1.0, 1.0], count))
-        self._moves = moves.reshape(2, count).T
+        self._moves = np.where(sides == SUPPORT, 0.0, [[-1.0], [1.0]]).T
         self._corners = np.flatnonzero(joints.is_corner)
         self._carried_by_after = joints.carrier[self._corners, None] == 1
         self._turns = np.array(

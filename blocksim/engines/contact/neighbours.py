@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.rows import column
 from blocksim.engines.contact.geometry import Geometry, Touch
 from blocksim.engines.contact.meeting import Polygons
 from blocksim.engines.ground import ground_level, standing, standing_at
@@ -46,22 +47,19 @@ class Neighbours:
     """
 
     def __init__(self, assembly: Assembly) -> None:
-        size = assembly.size
         self._joints = Geometry(assembly)
-        self._start = np.column_stack([assembly.centres / size, np.zeros(len(assembly.blocks))])
+        self._start = assembly.built[:-1]
         self._arms = np.ones_like(self._start)
-        self._arms[:, 2] = assembly.reach / size
+        self._arms[:, 2] = assembly.reach / assembly.size
         self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
         self._loose = False
-        # Whose each polygon is: those of the blocks come first, -1 is what stays.
-        parts = [len(block.polygons) for block in assembly.blocks]
-        self.owner = np.repeat(np.arange(self._count), parts)
         none = np.zeros(0, dtype=np.int64)
         self._meet = none, none
         # Pairs of polygons that may meet, once blocks have moved.
         self._watched: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
-        self._list()
+        self.before, self.after = self._joints.before, self._joints.after
+        self.keys = np.arange(len(self._holds))
 
     def touch(self, poses: Array, fastest: Callable[[], float]) -> Touch:
         """Find the contacts of all pairs, and which pairs there are.
@@ -119,6 +117,12 @@ class Neighbours:
         return first, second
 
     @cached_property
+    def owner(self) -> NDArray[np.int64]:
+        """Whose each polygon is: those of the blocks come first, -1 is what stays."""
+        parts = [len(each) or 1 for each in column(self._assembly.blocks, "parts")]
+        return np.repeat(np.arange(self._count), parts)
+
+    @cached_property
     def _polygons(self) -> Polygons:
         """Those of the blocks, then of what they stand on, then the ground."""
         assembly, size = self._assembly, self._assembly.size
@@ -167,6 +171,7 @@ class Neighbours:
         return float(gap[gap > APART].min(initial=4 * LOOSE)) / 4
 
     def _list(self) -> None:
+        """List joints that hold, then pairs of polygons that meet."""
         held, (before, after) = self._holds, self._meet
         owner = np.append(self.owner, SUPPORT)
         count = len(self.owner)
