@@ -28,7 +28,8 @@ class Rows(Sequence[Thing]):
     """
 
     def __init__(self, kind: Callable[..., Thing], **columns: Column) -> None:
-        self._kind, self._columns = kind, columns
+        self._kind = kind
+        self._columns = {name: _read_only(each) for name, each in columns.items()}
         self._made: dict[int, Thing] = {}
 
     @overload
@@ -49,10 +50,22 @@ class Rows(Sequence[Thing]):
         """Count them."""
         return len(next(iter(self._columns.values())))
 
+    def __repr__(self) -> str:
+        """Show them as a tuple does."""
+        return repr(tuple(self))
+
     def column(self, name: str) -> Column:
         """Return one of the parameters for all things."""
         default = getattr(self._kind, name, None)
         return self._columns.get(name, [default] * len(self))
+
+
+def _read_only(values: Column) -> Column:
+    """Return a view of an array that cannot be written to; anything else as it is."""
+    if isinstance(values, np.ndarray):
+        values = values.view()
+        values.setflags(write=False)
+    return values
 
 
 def column(things: Sequence[Thing], name: str) -> Column:
