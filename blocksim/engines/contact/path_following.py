@@ -84,8 +84,10 @@ def put_right(step: Step, guess: Answer, most: int = NEAR_PIECES) -> Answer | No
     Velocities that its contacts may not have and forces that do not balance are taken for
     given, and fall to nothing along the path. It is the shorter the better the guess, a tenth
     of that from all apart. Nothing tells that it arrives: after so many systems a joint it is
-    given up. Steep friction is not asked.
+    given up. So it is with steep friction.
     """
+    if step.friction.some_steep:
+        return None
     x, contacts, velocities = guess.x, guess.contacts.copy(), step.velocities(guess.x)
     held = np.abs(guess.forces[:, 2:])
     pressed = np.maximum(guess.forces, [0.0, 0.0, -math.inf, -math.inf])

@@ -12,20 +12,20 @@ What each contact does is guessed, and mended until all forces and velocities ag
 (`active_set.py`). Guesses are taken in turn, until one leads to a solution:
 
 - what the contacts did in the last step, then the end of a short path from there
-  (`path_following.py`);
+  (`path_following.py`), of friction that is not steep;
 - from nothing, the solution for friction that dilates, to half of its digits (`interior.py`),
   then to the last (`associated.py`): of the two answers that Coulomb's may have, rest and
   motion, that is rest if there is any;
 - the end of an interior-point method for Coulomb friction, steep one taken to be less;
-- from nothing, the end of a path that begins at the last of these guesses, if it is short, or
-  at the first;
+- the end of a short path that begins at the last of these guesses, and from nothing of one
+  that begins at the first;
 - the end of a path that begins with all contacts apart.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -166,26 +166,14 @@ class ContactProblem:
 
     def _solved(self, step: Step, start: Solution | None, precision: float) -> Solution:
         """Take guesses in turn until one leads to a solution."""
-        guesses: list[Answer] = []
-        tried: list[Answer] = []
-        spent = 0
-        for guess in self._guesses(step, start):
-            guesses.append(guess)
-            found = settle(step, guess, precision)
-            tried += found
-            best = found[-1] if found else guess
-            spent += best.systems
-            if best.is_settled and best.residual <= SOLVED:
+        tried = _Tried(step, precision, moves=start is not None)
+        guesses = (
+            self._from_nothing(step, tried) if start is None else self._from(step, start, tried)
+        )
+        for guess in guesses:
+            if guess and tried.settle(guess):
                 break
-        else:
-            best = _best(step, tried)
-            for path in self._paths(step, guesses, known=start is not None):
-                if (best.is_settled or start is not None) and best.residual <= ENOUGH:
-                    break
-                if guess := path():
-                    found = settle(step, guess, precision)
-                    spent += found[-1].systems if found else 0
-                    best = _best(step, [best, *found])
+        best = tried.best
         # From nothing an answer close by may be that of another arch.
         close = SURE * min(1.0, float(np.abs(best.x).max()))
         sure = best.is_settled or start is not None or best.residual <= close
@@ -194,40 +182,94 @@ class ContactProblem:
             forces=best.forces,
             contacts=best.contacts,
             residual=best.residual if sure else math.inf,
-            iterations=spent,
+            iterations=tried.systems,
         )
 
-    def _guesses(self, step: Step, start: Solution | None) -> Iterator[Answer]:
-        """Give what contacts may do, the likeliest and cheapest first."""
-        if start is None:
-            cones = Cones.of(step)
-            x, pressed, systems = central_path(step, cones, dilates=True)
-            yield cones.answer(step, x, pressed, systems)
-            if step.friction.some_steep or float(np.abs(x).max()) < NEAR_REST:
-                x, pressed, systems = minimised(step, cones, x, pressed)
-                answer = cones.answer(step, x, pressed, systems)
-                yield answer
-                yield from _parted(step, answer)
-            for tame in _tamed(step):
-                yield _coulomb(tame)
-        else:
-            x = (start.acceleration * self.root).ravel()
-            last = Answer(x=x, forces=start.forces, contacts=start.contacts)
-            yield last
-            if not step.friction.some_steep and (end := put_right(step, last, LAST_PIECES)):
-                yield end
+    def _from(self, step: Step, start: Solution, tried: _Tried) -> Iterator[Answer | None]:
+        """Give what contacts may do after the last step, the likeliest and cheapest first."""
+        x = (start.acceleration * self.root).ravel()
+        guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
+        yield guess
+        yield put_right(step, guess, LAST_PIECES)
+        for tame in _tamed(step):
+            if not tried.is_enough:
+                yield (guess := _coulomb(tame))
+        if not tried.is_enough:
+            yield put_right(step, guess, LAST_PIECES)
+        if not tried.is_enough:
+            yield come_together(step)
 
-    def _paths(
-        self, step: Step, guesses: list[Answer], *, known: bool
-    ) -> Iterator[Callable[[], Answer | None]]:
-        """Give what takes longer, the shorter one first."""
-        if known:
-            for tame in _tamed(step):
-                yield lambda tame=tame: _coulomb(tame)
-        elif not step.friction.some_steep:
-            yield lambda: put_right(step, guesses[-1], NEAREST_PIECES)
-            yield lambda: put_right(step, guesses[0])
-        yield lambda: come_together(step, None if known else guesses[-1].forces)
+    def _from_nothing(self, step: Step, tried: _Tried) -> Iterator[Answer | None]:
+        """Give what contacts may do at rest, the likeliest and cheapest first."""
+        cones = Cones.of(step)
+        x, pressed, systems = central_path(step, cones, dilates=True)
+        yield (first := cones.answer(step, x, pressed, systems))
+        if step.friction.some_steep or float(np.abs(x).max()) < NEAR_REST:
+            x, pressed, systems = minimised(step, cones, x, pressed)
+            answer = cones.answer(step, x, pressed, systems)
+            yield answer
+            yield from _parted(step, answer)
+        last = first
+        for tame in _tamed(step):
+            yield (last := _coulomb(tame))
+        if not tried.is_enough:
+            yield put_right(step, last, NEAREST_PIECES)
+        if not tried.is_enough:
+            yield put_right(step, first)
+        if not tried.is_enough:
+            yield come_together(step, last.forces)
+
+
+class _Tried:
+    """Answers that guesses have led to.
+
+    Parameters
+    ----------
+    step : Step
+    precision : float
+        Yield of contacts at which it counts as solved [g].
+    moves : bool
+        Whether the last step is known.
+    """
+
+    def __init__(self, step: Step, precision: float, *, moves: bool) -> None:
+        self._step, self._precision, self._moves = step, precision, moves
+        self._answers: list[Answer] = []
+        self.systems = 0
+
+    def settle(self, guess: Answer) -> bool:
+        """Look for the solution near a guess; tell whether it is found."""
+        found = settle(self._step, guess, self._precision)
+        self._answers += found
+        self.systems += found[-1].systems if found else guess.systems
+        return bool(found) and self._is_solution(found[-1])
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether nothing longer need be tried."""
+        best = self.best
+        return (best.is_settled or self._moves) and best.residual <= ENOUGH
+
+    @property
+    def best(self) -> Answer:
+        """The best of them, a settled one if there is any."""
+        if self._answers and self._is_solution(self._answers[-1]):
+            return self._answers[-1]
+        self._answers = [
+            replace(each, residual=self._step.residual(each.x, each.forces))
+            if each.residual == math.inf
+            else each
+            for each in self._answers
+        ]
+        known = [each for each in self._answers if math.isfinite(each.residual)]
+        nothing = Answer.of_nothing(self._step)
+        return min(
+            known, key=lambda each: (not each.is_settled, each.residual), default=nothing
+        )
+
+    @staticmethod
+    def _is_solution(answer: Answer) -> bool:
+        return answer.is_settled and answer.residual <= SOLVED
 
 
 def _tamed(step: Step) -> Iterator[Step]:
@@ -240,19 +282,6 @@ def _coulomb(step: Step) -> Answer:
     """Return the end of the interior-point method for Coulomb friction."""
     cones = Cones.of(step)
     return cones.answer(step, *central_path(step, cones, dilates=False))
-
-
-def _best(step: Step, tried: list[Answer]) -> Answer:
-    """Return the best of answers, a settled one if there is any."""
-    known = [
-        replace(each, residual=step.residual(each.x, each.forces))
-        if each.residual == math.inf
-        else each
-        for each in tried
-    ]
-    known = [each for each in known if math.isfinite(each.residual)]
-    nothing = Answer.of_nothing(step)
-    return min(known, key=lambda each: (not each.is_settled, each.residual), default=nothing)
 
 
 def _parted(step: Step, answer: Answer) -> Iterator[Answer]:
