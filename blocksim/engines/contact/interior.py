@@ -92,9 +92,7 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
 
         _, wider, more = toward(0.0)
         ahead = _length(room, wider, forces, more)
-        # To first order products fall by the share of the way.
-        second = float(np.vdot(wider, more)) / room.size
-        after = (1 - ahead) * product + ahead**2 * second
+        after = float(np.vdot(room + ahead * wider, forces + ahead * more)) / room.size
         aim = max((after / product) ** 3, 0.0 if dilates else CAREFUL) * product
         way, wider, more = toward((aim - wider * more) / room)
         # Near its end the path is straight.
@@ -104,12 +102,10 @@ def central_path(step: Step, cones: Cones, *, dilates: bool) -> tuple[Array, Arr
             break
         x = x + length * way
         room, forces = room + length * wider, forces + length * more
-        if dilates:
-            # All is linear.
-            short = (1 - length) * short
-            continue
-        smooth = SMOOTH * math.sqrt(float(np.vdot(room, forces)) / room.size)
-        lift, turned = _lift(step, x, cones, smooth)
+        if not dilates:
+            smooth = SMOOTH * math.sqrt(float(np.vdot(room, forces)) / room.size)
+            lift, turned = _lift(step, x, cones, smooth)
+        # Not as it follows from the last one: round-off would add up where friction is steep.
         short = bands.along(edges, x) + offset + lift - room
     return x, forces, count
 
