@@ -21,6 +21,8 @@ FINEST = 1e-10
 """HiGHS's own least tolerance."""
 MANY = 1000
 """Unknowns from which on the interior point is faster than the simplex at first."""
+THREADS = 1
+"""HiGHS has one number of threads per process, and refuses to run with another one later."""
 Ends = tuple[Array, Array]
 Matrix: TypeAlias = "sparse.csc_array | Array"
 
@@ -84,6 +86,7 @@ class LinearProgramme:
         for name, value in (
             ("output_flag", False),
             ("parallel", "off"),
+            ("threads", THREADS),
             ("primal_feasibility_tolerance", FINEST),
             ("dual_feasibility_tolerance", FINEST),
         ):
@@ -164,7 +167,7 @@ def choose(
     for name, value in (
         ("output_flag", False),
         ("parallel", "off"),
-        ("threads", 1),
+        ("threads", THREADS),
         ("mip_rel_gap", 0.0),
         ("mip_abs_gap", gap),
         ("mip_feasibility_tolerance", FINEST),
