@@ -232,7 +232,14 @@ PAPER = (182, 273)
 MM = 96 / 25.4
 
 
-@pytest.mark.parametrize("name", ["arch", "thin", "pushed", "wall", "road"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "arch",
+        "pushed",
+        *(pytest.param(each, marks=pytest.mark.long) for each in ("thin", "wall", "road")),
+    ],
+)
 def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
     page = windows.open((pages / f"{name}.html").as_uri(), round(PAPER[0] * MM), 900)
     page.emulate_media(media="print", color_scheme="dark")
