@@ -152,7 +152,7 @@ class Film:
         return self._clock(self.seconds).removeprefix("t = ") if later else ""
 
     def frame(self, number: int) -> NDArray[np.uint8]:
-        """Draw a frame, shape (height, width, 4): red, green, blue, opacity; to be read only."""
+        """Draw a frame, shape (height, width, 4): RGBA, not to be changed."""
         seconds = self._within((number / self.rate - BEFORE) / self.slow)
         # Until it is let go, and once it has ended, one frame is like the other.
         if self._last is None or self._last[0] != seconds:
