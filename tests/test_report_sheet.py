@@ -266,7 +266,7 @@ def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
     assert len(re.findall(rb"/Type /Page\b", printed)) <= 2
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", [pytest.param("light", marks=pytest.mark.long), "dark"])
 def test_it_moves_and_can_be_seen_on_a_screen(
     windows: Windows, pages: Path, scheme: str
 ) -> None:
