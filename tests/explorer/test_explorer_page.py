@@ -258,7 +258,10 @@ def test_a_finger_on_the_map_moves_the_point_and_beside_it_scrolls(open_page: Op
     assert page.input_value("#eta-number") == held
 
 
-@pytest.mark.parametrize(("view", "mu", "eta"), [("middle", 1.9, 0.967), ("thin", 0.5, 0.02)])
+@pytest.mark.parametrize(
+    ("view", "mu", "eta"),
+    [("middle", 1.9, 0.967), pytest.param("thin", 0.5, 0.02, marks=pytest.mark.long)],
+)
 def test_parts_of_the_map_seen_closer(
     page: playwright.Page, view: str, mu: float, eta: float
 ) -> None:
@@ -582,9 +585,10 @@ def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None
     settle(page)
     assert float(page.input_value("#eta-number")) == pytest.approx(0.5, abs=0.01)
     assert text(page, "#verdict").startswith("On the verge")
-    shot = tmp_path / "page.png"
-    page.screenshot(path=shot, full_page=True)
-    assert shot.stat().st_size > 20_000
+    if width == 320:
+        shot = tmp_path / "page.png"
+        page.screenshot(path=shot, full_page=True)
+        assert shot.stat().st_size > 20_000
 
 
 def test_prints_on_paper(page: playwright.Page) -> None:
