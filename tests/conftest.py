@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import shutil
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -15,6 +16,10 @@ from sweeps import SIMULATED, Rows, design_of, rows_of
 from windows import Windows
 
 from blocksim.many import run, sweep
+
+# Compiled once, not in every run and by every process that tests start.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # The same examples in every run, time not asserted; tests of numbers that cost little ask
 # for more.
@@ -55,12 +60,18 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
-    """Chromium, where it is installed."""
+    """Chromium, where it is installed; without windows it takes two thirds of the time."""
     playwright = pytest.importorskip("playwright.sync_api")
-    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+    names = (
+        "chromium-headless-shell",
+        "chromium",
+        "chromium-browser",
+        "google-chrome",
+        "google-chrome-stable",
+    )
     chromium = next((path for path in map(shutil.which, names) if path), None)
     if chromium is None:
-        pytest.skip("no Chromium here (apt-get install chromium)")
+        pytest.skip("no Chromium here (apt-get install chromium-headless-shell)")
     with playwright.sync_playwright() as engine:
         # Chromium's sandbox refuses to work for root.
         arguments = ["--no-sandbox"] if os.geteuid() == 0 else []

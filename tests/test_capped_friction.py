@@ -104,7 +104,7 @@ def test_other_engines_do_not_know_either(friction: float | str) -> None:
         assert found.reason.startswith(LACKING) is not right
 
 
-@pytest.mark.parametrize("method", ["pybullet", "mujoco"])
+@pytest.mark.parametrize("method", ["pybullet", pytest.param("mujoco", marks=pytest.mark.long)])
 def test_a_wall_that_rests_without_bound_on_friction_is_not_said_to_fall(method: str) -> None:
     asked = drawn(random_truth.case(WALL)).problem
     assert math.isinf(asked.mu)

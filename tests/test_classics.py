@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from itertools import product
 
 import numpy as np
 import pytest
@@ -104,8 +105,13 @@ CLASSICS: Mapping[str, Callable[[float], Problem]] = {
 }
 
 
-@pytest.mark.parametrize("name", CLASSICS)
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    ("engine", "name"),
+    [
+        pytest.param(*each, marks=[pytest.mark.long] if each == ("mujoco", "pyramid") else [])
+        for each in product(ENGINES, CLASSICS)
+    ],
+)
 @pytest.mark.parametrize(
     ("share", "expected"), [(0.99, Verdict.STANDS), (1.01, Verdict.COLLAPSES)]
 )

@@ -34,8 +34,8 @@ def exact(problem: Problem, over: str) -> float | None:
     [
         (90.0, math.inf, 13),
         (90.0, 0.35, 16),
-        (60.0, 0.9, 10),
-        (125.0, 0.9, 12),
+        pytest.param(60.0, 0.9, 10, marks=pytest.mark.long),
+        pytest.param(125.0, 0.9, 12, marks=pytest.mark.long),
         (145.0, 1.6, 13),
     ],
 )

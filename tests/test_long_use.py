@@ -140,7 +140,14 @@ def test_a_terminal_of_twenty_columns_in_the_c_locale(words: tuple[str, ...]) ->
         *(pytest.param(each, marks=LONG) for each in (QUESTION, ("doctor",), ("--help",))),
     ],
 )
-@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&-", ">/dev/full"])
+@pytest.mark.parametrize(
+    "closed",
+    [
+        ">&- 2>&-",
+        *(pytest.param(each, marks=LONG) for each in (">&-", "2>&-", "<&-")),
+        ">/dev/full",
+    ],
+)
 def test_streams_that_are_closed_or_full(words: tuple[str, ...], closed: str) -> None:
     program = " ".join(PROGRAM)
     done = subprocess.run(

@@ -206,22 +206,21 @@ HASH = """
 from blocksim.arch.circular import Arch
 from blocksim.arch.motion import simulate
 arch = Arch(half_angle=1.5707963267948966, eta=0.1, voussoirs=13)
-print(simulate(arch, mu=0.6, method="pymunk", duration=2.0).state_hash)
+print(simulate(arch, mu=0.6, method="pymunk", duration=1.0).state_hash)
 """
 
 
 def test_same_motion_in_every_run_and_process() -> None:
     arch = Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13)
     first, second = (
-        simulate(arch, mu=0.6, method="pymunk", duration=2.0).state_hash for _ in range(2)
+        simulate(arch, mu=0.6, method="pymunk", duration=1.0).state_hash for _ in range(2)
     )
     assert first == second
     done = subprocess.run([sys.executable, "-c", HASH], capture_output=True, check=True)
     assert done.stdout.decode().strip() == first
-    other = simulate(arch, mu=0.6000001, method="pymunk", duration=2.0).state_hash
-    sliding = simulate(arch, mu=0.3, method="pymunk", duration=2.0).state_hash
+    sliding = simulate(arch, mu=0.3, method="pymunk", duration=1.0).state_hash
     assert sliding != first
-    assert len(other) == len(first) == 16
+    assert len(first) == 16
 
 
 @settings(max_examples=8)

@@ -287,7 +287,7 @@ def viewer(browser: Any, modules: Path) -> Iterator[Any]:
     context.close()
 
 
-@pytest.mark.parametrize("kind", ["planar", "spatial"])
+@pytest.mark.parametrize("kind", [pytest.param("planar", marks=pytest.mark.long), "spatial"])
 def test_blocks_are_in_three_js_where_they_were_recorded(
     viewer: Any, fall: Recording, spatial: Recording, kind: str
 ) -> None:

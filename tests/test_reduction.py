@@ -225,7 +225,7 @@ def test_resultants_are_those_of_all_voussoirs(voussoirs):
 
 
 @pytest.mark.parametrize(("half_angle_deg", "mu", "voussoirs", "weight"), CASES)
-@pytest.mark.parametrize("ratio", [0.97, 0.999, 1.001])
+@pytest.mark.parametrize("ratio", [pytest.param(0.97, marks=pytest.mark.long), 0.999, 1.001])
 def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
     """All joints but the springing, and one at the crown, taken for none that move."""
     arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
@@ -369,7 +369,8 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
 
 
 @pytest.mark.parametrize(
-    ("half_angle_deg", "mu", "voussoirs"), [(90, 0.7, 27), (90, 0.7, 28), (125, 0.9, 101)]
+    ("half_angle_deg", "mu", "voussoirs"),
+    [(90, 0.7, 27), (90, 0.7, 28), pytest.param(125, 0.9, 101, marks=pytest.mark.long)],
 )
 def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
     pytest.importorskip("pybullet")

@@ -232,7 +232,14 @@ PAPER = (182, 273)
 MM = 96 / 25.4
 
 
-@pytest.mark.parametrize("name", ["arch", "thin", "pushed", "wall", "road"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "arch",
+        "pushed",
+        *(pytest.param(each, marks=pytest.mark.long) for each in ("thin", "wall", "road")),
+    ],
+)
 def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
     page = windows.open((pages / f"{name}.html").as_uri(), round(PAPER[0] * MM), 900)
     page.emulate_media(media="print", color_scheme="dark")
@@ -259,7 +266,7 @@ def test_it_fits_the_paper(windows: Windows, pages: Path, name: str) -> None:
     assert len(re.findall(rb"/Type /Page\b", printed)) <= 2
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", [pytest.param("light", marks=pytest.mark.long), "dark"])
 def test_it_moves_and_can_be_seen_on_a_screen(
     windows: Windows, pages: Path, scheme: str
 ) -> None:

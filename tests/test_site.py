@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -68,31 +69,37 @@ def test_links_are_of_the_site_and_formulas_are_drawn(site: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("width", "scheme"),
+    ("widths", "schemes"),
     [
-        (1280, "light"),
-        (390, "dark"),
-        pytest.param(1280, "dark", marks=pytest.mark.long),
-        pytest.param(390, "light", marks=pytest.mark.long),
+        pytest.param(widths, schemes, marks=[] if quick else pytest.mark.long)
+        for widths, schemes, quick in (
+            ((390, 1280), ("dark", "light"), True),
+            ((1280, 390), ("dark", "light"), False),
+            ((390, 1280), ("light", "dark"), False),
+            ((1280, 390), ("light", "dark"), False),
+        )
     ],
 )
 def test_pages_fit_the_screen_and_ask_nothing_of_the_network(
-    site: Path, browser: Any, width: int, scheme: str
+    site: Path, browser: Any, widths: tuple[int, int], schemes: tuple[str, str]
 ) -> None:
-    context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme)
-    page = context.new_page()
+    """Each in a window of one width and then of the other, in one of the schemes by turns."""
+    pages = {each: browser.new_context(color_scheme=each).new_page() for each in schemes}
     asked: list[str] = []
-    page.on("request", lambda request: asked.append(request.url))
-    grounds = set()
-    for name in SEEN:
+    for page in pages.values():
+        page.on("request", lambda request: asked.append(request.url))
+    for name, (scheme, page) in zip(SEEN, cycle(pages.items())):
+        page.set_viewport_size({"width": widths[0], "height": 800})
         page.goto(f"{(site / name).as_uri()}.html")
-        assert page.evaluate("document.documentElement.scrollWidth") <= width, name
+        for width in widths:
+            page.set_viewport_size({"width": width, "height": 800})
+            assert page.evaluate("document.documentElement.scrollWidth") <= width, name
         broken = "[...document.images].filter(i => i.complete && !i.naturalWidth).length"
         assert page.evaluate(broken) == 0, name
         assert page.locator("h1").count() == 1, name
-        grounds.add(page.evaluate("getComputedStyle(document.body).backgroundColor"))
+        ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+        level = sum(int(part) for part in ground.strip("rgba()").split(",")[:3])
+        assert (level < 200) == (scheme == "dark"), name
     assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
-    (ground,) = grounds
-    level = sum(int(part) for part in ground.strip("rgba()").split(",")[:3])
-    assert (level < 200) == (scheme == "dark")
-    context.close()
+    for page in pages.values():
+        page.context.close()

@@ -89,6 +89,14 @@ def test_a_block_in_a_wedge_must_rest(mu: float) -> None:
     assert may_start(between_walls(0.3, mu)).moves is False
 
 
+def test_linear_programmes_are_solved_before_and_after() -> None:
+    # HiGHS keeps the number of threads it was first asked for, and refuses another.
+    wedged = between_walls(0.3, 0.5)
+    assert equilibrium(wedged).exists
+    assert may_start(wedged).moves is False
+    assert equilibrium(wedged).exists
+
+
 def test_a_wide_arch_of_seven_may_move_up_to_a_third_above_its_least_thickness() -> None:
     # The ends of the band by another method are in analysis/two_answers.py.
     within, above = arch(3.0, 1.38, 7), arch(3.0, 1.39, 7)

@@ -221,13 +221,17 @@ def test_an_array_is_as_long_as_it_says(
         load_recording(path)
 
 
-def test_what_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -> None:
+def test_what_would_fill_the_memory_is_not_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "a.npz"
+    assert recordings.LARGEST_INSIDE == 1 << 28
+    monkeypatch.setattr(recordings, "LARGEST_INSIDE", 1 << 23)
     count = recordings.LARGEST_INSIDE // 72 + 1
     # A million zeros are packed into a thousandth.
     claimed(path, "poses", npy((count, 3, 3)), bytes(72 * count))
     assert path.stat().st_size < recordings.LARGEST_INSIDE / 500
-    with pytest.raises(InputError, match="of at most 268435456 bytes unpacked"):
+    with pytest.raises(InputError, match="of at most 8388608 bytes unpacked"):
         load_recording(path)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal, TypeVar
 
@@ -227,9 +228,14 @@ def read_table(path: AnyPath, schema: type[Table], what: str, allowed: str) -> T
     except ValueError as error:
         raise InputError("file", str(error), "valid TOML", where=str(path)) from None
     try:
-        return TypeAdapter(schema).validate_python(table)
+        return _adapter(schema).validate_python(table)
     except ValidationError as error:
         raise _first_of(error, str(path)) from None
+
+
+@cache
+def _adapter(schema: type[Table]) -> TypeAdapter[Table]:
+    return TypeAdapter(schema)
 
 
 def _first_of(error: ValidationError, where: str) -> InputError:

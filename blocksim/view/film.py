@@ -142,6 +142,7 @@ class Film:
         self._canvas = Canvas(self.width, self.height)
         states = {state for stage in self._stages for state in stage.states}
         self._canvas.keep(*self._still(states, thrust=True))
+        self._last: tuple[float, NDArray[np.uint8]] | None = None
         self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
 
     def ends_before(self, at: float) -> str:
@@ -151,9 +152,13 @@ class Film:
         return self._clock(self.seconds).removeprefix("t = ") if later else ""
 
     def frame(self, number: int) -> NDArray[np.uint8]:
-        """Draw a frame, shape (height, width, 4): red, green, blue, opacity."""
-        self._draw((number / self.rate - BEFORE) / self.slow)
-        return self._canvas.pixels()
+        """Draw a frame, shape (height, width, 4): RGBA, not to be changed."""
+        seconds = self._within((number / self.rate - BEFORE) / self.slow)
+        # Until it is let go, and once it has ended, one frame is like the other.
+        if self._last is None or self._last[0] != seconds:
+            self._draw(seconds)
+            self._last = seconds, self._canvas.pixels()
+        return self._last[1]
 
     def still(self, file: BinaryIO, kind: str, at: float | None = None) -> None:
         """Write one frame as png, svg or pdf.
@@ -181,15 +186,18 @@ class Film:
 
     def _pose(self, at: float | None) -> None:
         """Draw one frame with a legend of what is seen in it."""
-        seconds = min(self.seconds, self.seconds if at is None else at * self._tick)
+        seconds = self._within(self.seconds if at is None else at * self._tick)
         moments = [stage.at(seconds / _unit(stage.recording)) for stage in self._stages]
         seen = {state for moment in moments for state in moment.joints}
         at_rest = any(moment.statics > 0 for moment in moments)
         self._canvas.keep(*self._still(seen, thrust=at_rest))
         self._draw(seconds)
+        self._last = None
+
+    def _within(self, seconds: float) -> float:
+        return min(max(seconds, 0.0), self.seconds)
 
     def _draw(self, seconds: float) -> None:
-        seconds = min(max(seconds, 0.0), self.seconds)
         parts: list[Part] = []
         for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
             parts.append((panel, view.shapes(stage.at(seconds / _unit(stage.recording)))))

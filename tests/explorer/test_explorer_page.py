@@ -117,7 +117,7 @@ def test_sliders_tell_at_once_whether_it_stands_and_why(page: playwright.Page) -
 @pytest.mark.parametrize(
     ("mu", "eta", "mode"),
     [
-        (2.0, 0.3, "rrr"),
+        pytest.param(2.0, 0.3, "rrr", marks=pytest.mark.long),
         (math.inf, 1.4, "r"),
         (1.79, 0.963, "rsr"),
         pytest.param(0.6, 0.3, "srr", marks=pytest.mark.long),
@@ -199,7 +199,7 @@ def test_the_map_by_keyboard(page: playwright.Page) -> None:
     assert page.is_checked("#unbounded")
 
 
-@pytest.mark.parametrize("half", [12, pytest.param(40, marks=pytest.mark.long)])
+@pytest.mark.parametrize("half", [6, pytest.param(40, marks=pytest.mark.long)])
 def test_never_says_nonsense(page: playwright.Page, half: int) -> None:
     """Anywhere in the ranges, both weights: no error, no NaN, and the verdict of theory."""
     random = np.random.default_rng(7)
@@ -258,7 +258,10 @@ def test_a_finger_on_the_map_moves_the_point_and_beside_it_scrolls(open_page: Op
     assert page.input_value("#eta-number") == held
 
 
-@pytest.mark.parametrize(("view", "mu", "eta"), [("middle", 1.9, 0.967), ("thin", 0.5, 0.02)])
+@pytest.mark.parametrize(
+    ("view", "mu", "eta"),
+    [("middle", 1.9, 0.967), pytest.param("thin", 0.5, 0.02, marks=pytest.mark.long)],
+)
 def test_parts_of_the_map_seen_closer(
     page: playwright.Page, view: str, mu: float, eta: float
 ) -> None:
@@ -483,27 +486,22 @@ def test_pictures_are_saved_as_files(open_page: Open, tmp_path: Path, picture: s
     assert (orange < 0.01).sum() > 500
 
 
-@pytest.mark.parametrize("mode", ["verge", "falls", "stands"])
-def test_words_say_what_moves(page: playwright.Page, mode: str) -> None:
+def test_words_say_what_moves(page: playwright.Page) -> None:
     """Nothing that just stands is shown falling without a word."""
     least = limit.least_thickness(math.radians(125), 0.9, 26).eta
     page.fill("#voussoirs", "26")
-    set_arch(
-        page, alpha=125, mu=0.9, eta=least * {"verge": 1, "falls": 0.99, "stands": 1.01}[mode]
-    )
-    told = text(page, "#because")
-    assert "mode srr, sliding-rotational" in told
-    assert ("Any thinner, it falls as shown" in told) is (mode == "verge")
-    assert (
-        text(page, "#verdict").split()[0]
-        == {"verge": "On", "falls": "Collapses:", "stands": "Stands:"}[mode]
-    )
-    assert text(page, "#verdict").endswith("of 26 voussoirs as built")
-    assert text(page, "#joints").startswith(
-        "Mechanism of 26 voussoirs as built at the least thickness: "
-        "each springing slides outwards"
-    )
-    assert page.locator("#play").is_disabled() is (mode == "stands")
+    for share, verdict in ((1, "On"), (0.99, "Collapses:"), (1.01, "Stands:")):
+        set_arch(page, alpha=125, mu=0.9, eta=least * share)
+        told = text(page, "#because")
+        assert "mode srr, sliding-rotational" in told
+        assert ("Any thinner, it falls as shown" in told) is (share == 1)
+        assert text(page, "#verdict").split()[0] == verdict
+        assert text(page, "#verdict").endswith("of 26 voussoirs as built")
+        assert text(page, "#joints").startswith(
+            "Mechanism of 26 voussoirs as built at the least thickness: "
+            "each springing slides outwards"
+        )
+        assert page.locator("#play").is_disabled() is (share > 1)
 
 
 def test_a_phone_on_its_side_shows_map_verdict_and_arch(open_page: Open) -> None:
@@ -552,13 +550,13 @@ CONTRASTS = """() => {
 }"""
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_texts_have_contrast(open_page: Open, scheme: str) -> None:
+def test_texts_have_contrast(page: playwright.Page) -> None:
     """4.5 to 1 for every text of the page (WCAG AA)."""
-    page = open_page(color_scheme=scheme)
     set_arch(page, eta=0.28)
-    lowest = page.evaluate(CONTRASTS)
-    assert lowest[0][0] >= 4.5, lowest
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        lowest = page.evaluate(CONTRASTS)
+        assert lowest[0][0] >= 4.5, lowest
 
 
 def test_controls_and_pictures_have_names(page: playwright.Page) -> None:
@@ -587,9 +585,10 @@ def test_works_at_any_width(open_page: Open, width: int, tmp_path: Path) -> None
     settle(page)
     assert float(page.input_value("#eta-number")) == pytest.approx(0.5, abs=0.01)
     assert text(page, "#verdict").startswith("On the verge")
-    shot = tmp_path / "page.png"
-    page.screenshot(path=shot, full_page=True)
-    assert shot.stat().st_size > 20_000
+    if width == 320:
+        shot = tmp_path / "page.png"
+        page.screenshot(path=shot, full_page=True)
+        assert shot.stat().st_size > 20_000
 
 
 def test_prints_on_paper(page: playwright.Page) -> None:

@@ -283,7 +283,14 @@ def flat_arch(half_angle: float, half_span: float, depth: float, count: int) -> 
 
 
 @pytest.mark.parametrize(
-    ("degrees", "depth", "count"), [(45.0, 0.25, 10), (40.0, 0.2, 6), (55.0, 0.3, 8)]
+    ("degrees", "depth", "count"),
+    [
+        (40.0, 0.2, 6),
+        *(
+            pytest.param(*each, marks=pytest.mark.long)
+            for each in ((45.0, 0.25, 10), (55.0, 0.3, 8))
+        ),
+    ],
 )
 def test_a_flat_arch_slides_out_of_its_springings(
     engine: str, degrees: float, depth: float, count: int
