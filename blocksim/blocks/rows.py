@@ -6,7 +6,8 @@ motion. Between them nobody needs the single ones.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import fields
 from typing import Any, TypeVar, overload
 
 import numpy as np
@@ -27,7 +28,7 @@ class Rows(Sequence[Thing]):
         Its parameters, each for all things; those that are left out have their defaults.
     """
 
-    def __init__(self, kind: Callable[..., Thing], **columns: Column) -> None:
+    def __init__(self, kind: type[Any], **columns: Column) -> None:
         self._kind = kind
         self._columns = {name: _read_only(each) for name, each in columns.items()}
         self._made: dict[int, Thing] = {}
@@ -56,8 +57,10 @@ class Rows(Sequence[Thing]):
 
     def column(self, name: str) -> Column:
         """Return one of the parameters for all things."""
-        default = getattr(self._kind, name, None)
-        return self._columns.get(name, [default] * len(self))
+        if name in self._columns:
+            return self._columns[name]
+        (default,) = (each.default for each in fields(self._kind) if each.name == name)
+        return [default] * len(self)
 
 
 def _read_only(values: Column) -> Column:
