@@ -6,9 +6,9 @@ motion. Between them nobody needs the single ones.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields
-from typing import Any, TypeVar, overload
+from typing import Any, TypeVar, cast, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ class Rows(Sequence[Thing]):
         Its parameters, each for all things; those that are left out have their defaults.
     """
 
-    def __init__(self, kind: type[Any], **columns: Column) -> None:
+    def __init__(self, kind: Callable[..., Thing], **columns: Column) -> None:
         self._kind = kind
         self._columns = {name: _read_only(each) for name, each in columns.items()}
         self._made: dict[int, Thing] = {}
@@ -59,7 +59,7 @@ class Rows(Sequence[Thing]):
         """Return one of the parameters for all things."""
         if name in self._columns:
             return self._columns[name]
-        (default,) = (each.default for each in fields(self._kind) if each.name == name)
+        (default,) = (each.default for each in fields(cast("Any", self._kind)) if each.name == name)
         return [default] * len(self)
 
 
