@@ -59,8 +59,8 @@ class Rows(Sequence[Thing]):
         """Return one of the parameters for all things."""
         if name in self._columns:
             return self._columns[name]
-        (default,) = (each.default for each in fields(cast("Any", self._kind)) if each.name == name)
-        return [default] * len(self)
+        defaults = {each.name: each.default for each in fields(cast("Any", self._kind))}
+        return [defaults[name]] * len(self)
 
 
 def _read_only(values: Column) -> Column:
