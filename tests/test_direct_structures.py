@@ -26,6 +26,7 @@ from blocksim.engines.ground import ground_level
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.files import structure_of as structure_of_kind
+from blocksim.limit import equilibrium
 
 MOVED = [
     "box2d_arch",
@@ -382,6 +383,28 @@ def test_a_path_from_a_guess_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(systems) == 2
     assert systems[0] == 0
     assert 50 < systems[1] < 300
+
+
+@pytest.mark.parametrize("mu", [0.7, math.inf])
+def test_rest_is_found_though_what_contacts_do_is_not(
+    mu: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without bound on friction forces may not tell it; nor is there any need to know."""
+    for name, found in (("settle", []), ("put_right", None), ("come_together", None)):
+        monkeypatch.setattr(solver, name, lambda *_, found=found: found)
+    monkeypatch.setattr(solver, "NEAR_REST", math.inf)
+    table = {"kind": "wall", "length": 2, "courses": 5, "friction": 0.7}
+    upright = replace(structure_of_kind(table), mu=mu)
+    low, high = 0.2, 1.2
+    while high - low > 1e-10:
+        middle = (low + high) / 2
+        rests = equilibrium(upright.tilted(middle)).exists
+        low, high = (middle, high) if rests else (low, middle)
+    for share in (0.99, 1 - 1e-7, 1 + 1e-7, 1.01):
+        world = world_of(upright.tilted(share * low), 1e-3)
+        moves = np.abs(world.hold(1)).max()
+        residual = world.quality().residual or 0.0
+        assert (max(moves, residual) < 1e-11) is (share < 1), share
 
 
 def test_wide_systems_are_solved_by_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -54,6 +54,8 @@ SURE = 1e-6
 what contacts do from being told."""
 NEAR_REST = 1e-4
 """Accelerations below which an arch is so near its limit that half of the digits say little."""
+AT_REST = 1e-11
+"""Accelerations, and residual, of rest: an arch 1e-9 below its limit has 3e-10."""
 SOLVED = 1e-9
 """Residual of a solution."""
 TAME = 10.0, 3.0
@@ -190,6 +192,7 @@ class ContactProblem:
         x = (start.acceleration * self.root).ravel()
         guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
         yield guess
+        yield _at_rest(step, guess)
         yield put_right(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
@@ -208,6 +211,7 @@ class ContactProblem:
             x, pressed, systems = minimised(step, cones, x, pressed)
             answer = cones.answer(step, x, pressed, systems)
             yield answer
+            yield _at_rest(step, answer)
             yield from _parted(step, answer)
         last = first
         for tame in _tamed(step):
@@ -239,7 +243,7 @@ class _Tried:
 
     def settle(self, guess: Answer) -> bool:
         """Look for the solution near a guess; tell whether it is found."""
-        found = settle(self._step, guess, self._precision)
+        found = [guess] if guess.is_settled else settle(self._step, guess, self._precision)
         self._answers += found
         self.systems += found[-1].systems if found else guess.systems
         return bool(found) and self._is_solution(found[-1])
@@ -270,6 +274,17 @@ class _Tried:
     @staticmethod
     def _is_solution(answer: Answer) -> bool:
         return answer.is_settled and answer.residual <= SOLVED
+
+
+def _at_rest(step: Step, guess: Answer) -> Answer | None:
+    """Return a guess as the solution if it is rest.
+
+    At rest Coulomb's friction asks for no more than forces within their cones. Where it has no
+    bound, forces do not tell what contacts do, and what is looked for near by spoils them.
+    """
+    residual = step.residual(guess.x, guess.forces)
+    rests = max(residual, float(np.abs(guess.x).max())) <= AT_REST
+    return replace(guess, residual=residual, is_settled=True) if rests else None
 
 
 def _tamed(step: Step) -> Iterator[Step]:
