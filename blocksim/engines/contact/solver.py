@@ -244,9 +244,10 @@ class _Tried:
     def settle(self, guess: Answer) -> bool:
         """Look for the solution near a guess; tell whether it is found."""
         found = [guess] if guess.is_settled else settle(self._step, guess, self._precision)
-        self._answers += found
-        self.systems += found[-1].systems if found else guess.systems
-        return bool(found) and self._is_solution(found[-1])
+        # What is looked for near a guess may be farther off than the guess.
+        self._answers += [guess, *found]
+        self.systems += self._answers[-1].systems
+        return self._is_solution(self._answers[-1])
 
     @property
     def is_enough(self) -> bool:
@@ -256,7 +257,7 @@ class _Tried:
 
     @property
     def best(self) -> Answer:
-        """The best of them, a settled one if there is any."""
+        """The best of them."""
         if self._answers and self._is_solution(self._answers[-1]):
             return self._answers[-1]
         self._answers = [
@@ -267,9 +268,11 @@ class _Tried:
         ]
         known = [each for each in self._answers if math.isfinite(each.residual)]
         nothing = Answer.of_nothing(self._step)
-        return min(
-            known, key=lambda each: (not each.is_settled, each.residual), default=nothing
-        )
+        return min(known, key=self._wrong, default=nothing)
+
+    def _wrong(self, answer: Answer) -> tuple[bool, float]:
+        """Return how wrong an answer is: at rest what contacts do has to be told, too."""
+        return not (answer.is_settled or self._moves), answer.residual
 
     @staticmethod
     def _is_solution(answer: Answer) -> bool:
