@@ -402,7 +402,7 @@ def test_rest_is_found_though_what_contacts_do_is_not(
         low, high = (middle, high) if rests else (low, middle)
     for share in (0.99, 1 - 1e-7, 1 + 1e-7, 1.01):
         world = world_of(upright.tilted(share * low), 1e-3)
-        moves = np.abs(world.hold(1)).max()
+        moves = float(np.abs(world.hold(1)).max())
         residual = world.quality().residual or 0.0
         assert (max(moves, residual) < 1e-11) is (share < 1), share
 
