@@ -380,6 +380,13 @@ MUTATIONS = (
         "a ratio of nothing is divided by", "cli/question.py", "if not least:",
         "if least is None:", "test_cli.py",
     ),
+    Mutation(
+        "a film stands still",
+        "view/film.py",
+        "if self._last is None or self._last[0] != seconds:",
+        "if self._last is None:",
+        "test_video.py",
+    ),
 )  # fmt: skip
 
 

@@ -233,7 +233,7 @@ def test_what_is_there_is_listed() -> None:
     [
         ("map", "--zoom", "central"),
         pytest.param(("map", "--lines", "--zoom", "lower"), marks=pytest.mark.long),
-        ("render", "fig18_triple_point"),
+        pytest.param(("render", "fig18_triple_point"), marks=pytest.mark.long),
     ],
 )
 def test_pictures_are_written_whole(arguments: tuple[str, ...], tmp_path: Path) -> None:

@@ -145,7 +145,16 @@ def test_drawings_of_arches_tell_their_mode(formatted: Formatted) -> None:
     assert "stands, by direct, μ = 0.7" in engine._repr_svg_()
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("arch", "check", "arch bracket", "recording"),
+        *(
+            pytest.param(each, marks=pytest.mark.long)
+            for each in ("problem", "arch check", "bracket")
+        ),
+    ],
+)
 def test_plot_gives_a_figure_that_can_be_saved(
     shown: dict[str, Any], name: str, tmp_path: Path
 ) -> None:

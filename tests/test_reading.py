@@ -55,7 +55,12 @@ def told(known: Problem) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("version", "unit", "scale"), [("R2010", 6, 1.0), ("R12", 6, 1.0), ("R2018", 4, 1000.0)]
+    ("version", "unit", "scale"),
+    [
+        pytest.param("R2010", 6, 1.0, marks=pytest.mark.long),
+        ("R12", 6, 1.0),
+        ("R2018", 4, 1000.0),
+    ],
 )
 def test_forty_polylines_are_answered_as_the_same_polygons(
     tmp_path: Path, known: Problem, told: np.ndarray, version: str, unit: int, scale: float

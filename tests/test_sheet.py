@@ -80,7 +80,7 @@ CASES = {
 }
 
 
-ALONE = {"five", "many", "flat", "stack", "pointed", "flat-arch"}
+ALONE = {"five", "many", "flat", "stack", "pointed", "flat-arch", "arcade"}
 """Cases that are drawn for how words and scale come out on them, and like others there."""
 SEEN = [pytest.param(each, marks=[pytest.mark.long] * (each in ALONE)) for each in CASES]
 

@@ -97,6 +97,8 @@ def test_linear_programmes_are_solved_before_and_after() -> None:
     assert equilibrium(wedged).exists
 
 
+# In every run test_two_answers has the end of such a band: that of a keystone.
+@pytest.mark.long
 def test_a_wide_arch_of_seven_may_move_up_to_a_third_above_its_least_thickness() -> None:
     # The ends of the band by another method are in analysis/two_answers.py.
     within, above = arch(3.0, 1.38, 7), arch(3.0, 1.39, 7)
@@ -128,7 +130,7 @@ def test_of_another_size_it_is_the_same() -> None:
     ("alpha", "mu"),
     [
         (90, 0.35),
-        (140, 1.6),
+        pytest.param(140, 1.6, marks=pytest.mark.long),
         pytest.param(90, 0.6, marks=pytest.mark.long),
         pytest.param(115, 0.7, marks=pytest.mark.long),
     ],

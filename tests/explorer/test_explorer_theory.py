@@ -28,9 +28,9 @@ COUNT = 500
 TOLERANCE = 1e-9
 
 
-@pytest.fixture(params=[7, pytest.param(1, marks=pytest.mark.long)])
+@pytest.fixture(params=[4, pytest.param(1, marks=pytest.mark.long)])
 def every(request: pytest.FixtureRequest) -> int:
-    """Of the random arches one in so many is asked about."""
+    """Of the random arches one in so many is asked about; by one in 4 all modes are seen."""
     return request.param
 
 
@@ -41,7 +41,8 @@ def sample(seed: int, every: int = 1) -> tuple[np.ndarray, np.ndarray, np.ndarra
     mu = np.tan(random.uniform(0.02, 1.45, COUNT))
     mu[::10] = math.inf
     eta = random.uniform(0.001, 2.0, COUNT)
-    return alpha[::every], mu[::every], eta[::every]
+    chosen = slice(every // 2, None, every)
+    return alpha[chosen], mu[chosen], eta[chosen]
 
 
 CALL = """([rows, weight]) => rows.map(
