@@ -7,6 +7,7 @@ the answer by more, as next to the end of the rotational mode, so much is allowe
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -200,3 +201,15 @@ def test_any_thickness_is_said() -> None:
     found = bracket(half_angle=math.radians(60), mu=0.7, voussoirs=3)
     assert (found.eta_low, found.eta_high, found.eta_limit, found.mode) == (None, 0, 0, None)
     assert bracket_lines(found)[0].startswith("ANY THICKNESS STANDS")
+
+
+@pytest.mark.parametrize("tol", [5e-3, 1e-5, 1e-8])
+def test_as_many_digits_are_printed_as_tell_the_ends_apart(tol: float) -> None:
+    found = bracket(
+        half_angle=math.pi / 2, mu=0.7, voussoirs=7, method="direct", tol=tol, confirm=False
+    )
+    head, *others = bracket_lines(found)
+    (exact,) = (line for line in others if "exact" in line)
+    low, high = (float(each) for each in re.findall(r"0\.\d+", head)[:2])
+    assert low < float(re.findall(r"0\.\d+", exact)[0]) < high
+    assert high - low == pytest.approx((found.eta_high or 0) - (found.eta_low or 0), rel=0.1)

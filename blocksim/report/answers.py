@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from blocksim.arch.modes import Mode
     from blocksim.ask.carried import Carried
 
+SIX = 6
+"""Digits of ratios, where no more are known."""
+
 
 def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str, object]:
     """Return a check as `check --json` prints it."""
@@ -154,17 +157,18 @@ def bracket_lines(answer: Bracket) -> list[str]:
     elif answer.eta_low == answer.eta_high:
         head = f"LEAST ETA {answer.eta_high:.12g}"
     else:
-        head = f"LEAST ETA between {answer.eta_low or 0:.6g} and {answer.eta_high:.6g}"
+        low, high = answer.eta_low or 0.0, answer.eta_high
+        head = f"LEAST ETA between {low:.{_digits(answer)}g} and {high:.{_digits(answer)}g}"
     lines = [
         f"{head}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(answer.half_angle):g} deg, mu {answer.mu:g}, "
         f"{answer.voussoirs} voussoirs, weight {answer.weight}, "
         f"depth {answer.depth:g} r{lean_words(answer.lean)}",
         f"  because {answer.reason}",
-        _exact("exact  ", answer),
+        _exact("exact  ", answer, _digits(answer)),
     ]
     whose = "continuous arch" if answer.method == "theory" else "voussoirs as built"
-    lines += _modes(answer, f"of the {whose}, at eta {ratio(answer.eta_low)}")
+    lines += _modes(answer, f"of the {whose}, at eta {ratio(answer.eta_low, _digits(answer))}")
     if answer.thrust is not None:
         lines.append(f"  thrust  h = {answer.thrust:.9g}, in units of gamma t d r")
     if answer.beta_r is not None:
@@ -176,18 +180,25 @@ def bracket_lines(answer: Bracket) -> list[str]:
     return lines
 
 
-def _exact(label: str, answer: ArchCheck | Bracket) -> str:
+def _exact(label: str, answer: ArchCheck | Bracket, digits: int = SIX) -> str:
     """Tell the least thickness as built and of the continuous arch, each with its mode."""
 
     def least(eta: float | None, mode: Mode | None) -> str:
         if eta == 0:
             return "any"
-        return f"{'none up to 2' if eta is None else ratio(eta)} ({mode or 'mode unnamed'})"
+        told = "none up to 2" if eta is None else ratio(eta, digits)
+        return f"{told} ({mode or 'mode unnamed'})"
 
     return (
         f"  {label} eta {least(answer.eta_limit, answer.mode_limit)} as built, "
         f"{least(answer.eta_theory, answer.mode_theory)} continuous"
     )
+
+
+def _digits(answer: Bracket) -> int:
+    """Digits that tell both ends of a bracket apart, and one or two more; six at least."""
+    low, high = answer.eta_low or 0.0, answer.eta_high or 0.0
+    return SIX if low >= high else max(SIX, 2 - math.floor(math.log10(1 - low / high)))
 
 
 def _modes(answer: ArchCheck | Bracket, of: str) -> list[str]:
@@ -216,8 +227,8 @@ def signed(value: float, digits: int) -> str:
     return said if float(said) else said[1:]
 
 
-def ratio(eta: float | None) -> str:
-    """Return a ratio in six digits, "any" where every one stands, or a dash."""
+def ratio(eta: float | None, digits: int = SIX) -> str:
+    """Return a ratio in so many digits, "any" where every one stands, or a dash."""
     if eta == 0:
         return "any"
-    return "-" if eta is None else f"{eta:.6g}"
+    return "-" if eta is None else f"{eta:.{digits}g}"
