@@ -15,6 +15,7 @@ from structure_cases import case, names, of_each_kind, scenes
 
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
+from blocksim.common.errors import Unsolved
 from blocksim.limit import collapse, equilibrium, least_motion, linear
 
 frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))
@@ -327,3 +328,14 @@ def test_least_motion_wedges_nothing_between_rough_joints() -> None:
     rough, boundless = (least_motion(arch.problem(mu)) for mu in (1e3, math.inf))
     assert rough.accelerations == pytest.approx(boundless.accelerations, abs=1e-9)
     assert np.abs(rough.forces).max() < 20
+
+
+@pytest.mark.parametrize("factor", [1e300, math.inf])
+def test_a_programme_that_is_not_taken_is_no_structure_that_falls(factor: float) -> None:
+    """HiGHS empties one with a factor of 1e15 or more, and says so."""
+    ends = np.zeros(2), np.full(2, math.inf)
+    rows = np.ones(1), np.full(1, 2.0)
+    programme = linear.LinearProgramme()
+    with pytest.raises(Unsolved, match="Empty"):
+        programme.solve(np.ones(2), np.array([[1.0, factor]]), rows, ends)
+    assert programme.solve(np.ones(2), np.array([[1.0, 1e3]]), rows, ends).exists

@@ -93,6 +93,22 @@ class InputError(BlocksimError, ValueError):
         super().__init__(f"{place}{in_line(field)} {is_so}: must be {must}")
 
 
+class Unsolved(BlocksimError):
+    """A linear programme that its solver does not take, or gives up.
+
+    Parameters
+    ----------
+    status : str
+        What the solver says.
+    """
+
+    def __init__(self, status: str) -> None:
+        super().__init__(
+            f"limit analysis: HiGHS says {status!r}; blocks, weights and loads may be too "
+            "unlike each other in size"
+        )
+
+
 class MissingPart(BlocksimError):
     """An optional part that is not installed.
 

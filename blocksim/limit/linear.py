@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
+from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
 
 if TYPE_CHECKING:
@@ -96,6 +97,11 @@ class LinearProgramme:
             Least and greatest value of each row, infinite where there is none.
         bounds : two of (unknowns,) float
             Least and greatest value of each unknown.
+
+        Raises
+        ------
+        Unsolved
+            If HiGHS tells nothing of it.
         """
         columns = sparse.csc_array(matrix)
         again = columns.shape == self._shape and self._basis is not None
@@ -125,9 +131,12 @@ class LinearProgramme:
         )
 
     def _failed(self) -> Optimum:
-        status = self._highs.getModelStatus()
+        status, known = self._highs.getModelStatus(), highspy.HighsModelStatus
         self._basis = None
-        return UNBOUNDED if status == highspy.HighsModelStatus.kUnbounded else NONE
+        if status not in {known.kInfeasible, known.kUnbounded}:
+            # Nothing follows from it, least of all that nothing stands.
+            raise Unsolved(self._highs.modelStatusToString(status))
+        return UNBOUNDED if status == known.kUnbounded else NONE
 
 
 def choose(
