@@ -191,8 +191,8 @@ class ContactProblem:
         """Give what contacts may do after the last step, the likeliest and cheapest first."""
         x = (start.acceleration * self.root).ravel()
         guess = Answer(x=x, forces=start.forces, contacts=start.contacts)
-        yield guess
         yield _at_rest(step, guess)
+        yield guess
         yield put_right(step, guess, LAST_PIECES)
         for tame in _tamed(step):
             if not tried.is_enough:
@@ -206,12 +206,16 @@ class ContactProblem:
         """Give what contacts may do at rest, the likeliest and cheapest first."""
         cones = Cones.of(step)
         x, pressed, systems = central_path(step, cones, dilates=True)
-        yield (first := cones.answer(step, x, pressed, systems))
-        if step.friction.some_steep or float(np.abs(x).max()) < NEAR_REST:
+        first, steep = cones.answer(step, x, pressed, systems), step.friction.some_steep
+        if not steep:
+            yield first
+        if steep or float(np.abs(x).max()) < NEAR_REST:
             x, pressed, systems = minimised(step, cones, x, pressed)
             answer = cones.answer(step, x, pressed, systems)
-            yield answer
             yield _at_rest(step, answer)
+            if steep:
+                yield first
+            yield answer
             yield from _parted(step, answer)
         last = first
         for tame in _tamed(step):
@@ -280,11 +284,13 @@ class _Tried:
 
 
 def _at_rest(step: Step, guess: Answer) -> Answer | None:
-    """Return a guess as the solution if it is rest.
+    """Return a guess as the solution if it is rest, with steep friction.
 
-    At rest Coulomb's friction asks for no more than forces within their cones. Where it has no
-    bound, forces do not tell what contacts do, and what is looked for near by spoils them.
+    At rest Coulomb's friction asks for no more than forces within their cones. Steep friction
+    does not tell what contacts do: near such forces there may be a motion, and nothing else.
     """
+    if not step.friction.some_steep:
+        return None
     residual = step.residual(guess.x, guess.forces)
     rests = max(residual, float(np.abs(guess.x).max())) <= AT_REST
     return replace(guess, residual=residual, is_settled=True) if rests else None
