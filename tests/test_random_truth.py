@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from analysis import random_truth
+from analysis import random_problems, random_truth
 from analysis.certificates import (
     balance,
     certificate,
@@ -17,11 +17,12 @@ from analysis.certificates import (
     needed,
     unbalanced,
 )
-from analysis.random_problems import GROUPS, Case, drawn, mirrored, renumbered
+from analysis.random_problems import GROUPS, Case, Question, drawn, mirrored, renumbered
 from blocksim import Problem, collapse, structure_of
 from blocksim.ask.check import check
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.evidence.verdict import Verdict
+from blocksim.limit import equilibrium
 
 CHANGES = ("", "mirrored", "renumbered")
 
@@ -173,3 +174,21 @@ def test_what_gives_way_and_swings_about_another_place_is_said_to() -> None:
         speed.append(float(np.abs(world.velocities).max()))
     assert 1e-4 < moved[-1] < 0.8 * max(moved) < 1e-3
     assert speed[-1] < 1e-2 * max(speed)
+
+
+def test_a_load_that_nothing_limits_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """HiGHS's dual simplex gets lost in one of these, and says neither of the two."""
+    asked: list[Problem] = []
+
+    def family(problem: Problem, kind: str, over: str) -> Question | None:
+        if over == "load":
+            asked.append(problem)
+        return whole(problem, kind, over)
+
+    whole = random_problems._family
+    monkeypatch.setattr(random_problems, "_family", family)
+    drawn(random_truth.case(1197))
+    assert len(asked) == 2
+    for problem in asked:
+        assert collapse(problem).load_factor == math.inf
+        assert all(equilibrium(problem.with_load(load)).exists for load in (0, 1, 30, 1000))

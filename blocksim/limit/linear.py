@@ -23,6 +23,8 @@ FINEST = 1e-10
 """HiGHS's own least tolerance."""
 MANY = 1000
 """Unknowns from which on the interior point is faster than the simplex at first."""
+DUAL, PRIMAL = 1, 4
+"""HiGHS's numbers of its simplex methods."""
 Ends = tuple[Array, Array]
 Matrix: TypeAlias = "sparse.csc_array | Array"
 
@@ -114,7 +116,21 @@ class LinearProgramme:
             self._shape, self._basis = columns.shape, None
             if columns.shape[1] > MANY and self._run("ipm"):
                 return self._found()
-        return self._found() if self._run("simplex") else self._failed()
+        return self._by_simplex()
+
+    def _by_simplex(self) -> Optimum:
+        """Solve by the dual method, by the primal one where that gets lost: without bound."""
+        known = highspy.HighsModelStatus
+        for strategy in (DUAL, PRIMAL):
+            self._highs.setOptionValue("simplex_strategy", strategy)
+            if self._run("simplex"):
+                return self._found()
+            self._basis, status = None, self._highs.getModelStatus()
+            if status in {known.kInfeasible, known.kUnbounded}:
+                return UNBOUNDED if status == known.kUnbounded else NONE
+            self._highs.clearSolver()
+        # Nothing follows from it, least of all that nothing stands.
+        raise Unsolved(self._highs.modelStatusToString(status))
 
     def _run(self, method: str) -> bool:
         self._highs.setOptionValue("solver", method)
@@ -129,14 +145,6 @@ class LinearProgramme:
             prices=np.array(solution.row_dual),
             unbounded=False,
         )
-
-    def _failed(self) -> Optimum:
-        status, known = self._highs.getModelStatus(), highspy.HighsModelStatus
-        self._basis = None
-        if status not in {known.kInfeasible, known.kUnbounded}:
-            # Nothing follows from it, least of all that nothing stands.
-            raise Unsolved(self._highs.modelStatusToString(status))
-        return UNBOUNDED if status == known.kUnbounded else NONE
 
 
 def choose(
