@@ -13,8 +13,8 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.engines.base import Quality, Settings
-from blocksim.evidence.motion import FINER, MOVED, QUIET, moving_run
-from blocksim.evidence.observation import observe
+from blocksim.evidence.motion import EARLY, FINER, MOVED, QUIET, moving_run
+from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
 
@@ -100,3 +100,13 @@ def test_a_wall_that_stands_does_not_creep_apart_in_bullet() -> None:
     read, problem = case("grid_wall_3"), structure_of(scenes("grid_wall_3")[0])
     seen = observe(problem.with_load(0.95 * read["expected"]["value"]), "pybullet")
     assert seen.verdict is Verdict.STANDS, seen.reason
+
+
+@pytest.mark.parametrize("below", [1e-8, 1e-6, 1e-4, 1e-2])
+def test_few_looks_suffice_and_none_is_too_late_for_the_mechanism(below: float) -> None:
+    """What falls is first seen to have moved while the motion still is the mechanism."""
+    held = hold(arch_at(1 - below, 90, 0.7, 27).problem(0.7), "direct")
+    recording = held.release().recording
+    moved = recording.displacement
+    assert EARLY < moved[moved > EARLY][0] < 1.5 * EARLY
+    assert len(recording.times) < 45
