@@ -185,6 +185,19 @@ MUTATIONS = (
         "test_pivoting.py",
     ),
     Mutation(
+        "rest that steep friction hides", "engines/contact/solver.py",
+        "<= AT_REST", "<= 0.0", "test_direct_structures.py",
+    ),
+    Mutation(
+        "a programme given up by one method", "limit/linear.py",
+        "for strategy in (DUAL, PRIMAL):", "for strategy in (DUAL,):", "test_random_truth.py",
+    ),
+    Mutation(
+        "looks too few", "evidence/motion.py",
+        "< EARLY * min(moved[-2:]) ** ahead", "< 9 * EARLY * min(moved[-2:]) ** ahead",
+        "test_motion.py",
+    ),
+    Mutation(
         "motion where rest is possible", "engines/contact/solver.py",
         "central_path(step, cones, dilates=True)\n        first, steep",
         "central_path(step, cones, dilates=False)\n        first, steep", "test_pivoting.py",
