@@ -332,10 +332,10 @@ def test_least_motion_wedges_nothing_between_rough_joints() -> None:
 
 @pytest.mark.parametrize("factor", [1e300, math.inf])
 def test_a_programme_that_is_not_taken_is_no_structure_that_falls(factor: float) -> None:
-    """HiGHS empties one with a factor of 1e15 or more, and says so."""
+    """HiGHS empties one with a factor of 1e15 or more."""
     ends = np.zeros(2), np.full(2, math.inf)
     rows = np.ones(1), np.full(1, 2.0)
     programme = linear.LinearProgramme()
-    with pytest.raises(Unsolved, match="Empty"):
+    with pytest.raises(Unsolved, match="HiGHS says"):
         programme.solve(np.ones(2), np.array([[1.0, factor]]), rows, ends)
     assert programme.solve(np.ones(2), np.array([[1.0, 1e3]]), rows, ends).exists
