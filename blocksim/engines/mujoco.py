@@ -120,9 +120,7 @@ class _Bodies:
         self._scatter, self._steady = 0.0, True
         self._model = joined(problem)
         self._state = library.MjData(self._model)
-        self._places = np.column_stack(
-            [assembly.centres / assembly.size, np.zeros(len(assembly.blocks))]
-        )
+        self._places = assembly.built[:-1]
         self._zero = np.zeros(self._places.size)
         self._balance = Balance(problem, self._places)
         self._pull()

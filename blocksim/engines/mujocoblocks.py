@@ -72,7 +72,7 @@ def joined(problem: Problem, reaches: Array | None = None) -> Any:
     assembly = problem.assembly
     spec, bodies = _bodies(problem)
     spec.option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
-    centres = np.vstack([assembly.centres / assembly.size, np.zeros(2)])
+    centres = assembly.built[:, :2]
     depth = np.append(uneven_depths(assembly), 2 * assembly.depths.max())
     for k, pair in enumerate(sides_of(assembly)):
         ends = assembly.joint_arrays.ends[k]

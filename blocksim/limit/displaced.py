@@ -87,8 +87,7 @@ class Displaced:
         self._reach = assembly.reach / self.size
         closed = np.ones((len(assembly.joints), 2), dtype=np.bool_)
         closed[self._corner, 1] = False
-        poses = np.column_stack([assembly.centres / self.size, np.zeros(self._count)])
-        self.start = Frame(value=0.0, poses=poses, closed=closed)
+        self.start = Frame(value=0.0, poses=assembly.built[:-1], closed=closed)
 
     def _placed(self, value: float) -> Array:
         """Poses of the supports, as turned about the origin and then shifted."""

@@ -194,7 +194,7 @@ def _solver(**options: float) -> Any:
     """Return a solver that prints nothing and does one thing at a time."""
     found = _quiet()()
     # No number of threads: all solvers of a process have to have the same.
-    for name, value in {"parallel": "off", **options}.items():
+    for name, value in {"output_flag": False, "parallel": "off", **options}.items():
         found.setOptionValue(name, value)
     return found
 

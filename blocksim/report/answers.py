@@ -150,6 +150,7 @@ def check_lines(
 
 def bracket_lines(answer: Bracket) -> list[str]:
     """Return a bracket in words."""
+    digits = _digits(answer)
     if answer.eta_high is None:
         head = "NOTHING STANDS up to eta = 2"
     elif answer.eta_high == 0:
@@ -158,17 +159,17 @@ def bracket_lines(answer: Bracket) -> list[str]:
         head = f"LEAST ETA {answer.eta_high:.12g}"
     else:
         low, high = answer.eta_low or 0.0, answer.eta_high
-        head = f"LEAST ETA between {low:.{_digits(answer)}g} and {high:.{_digits(answer)}g}"
+        head = f"LEAST ETA between {low:.{digits}g} and {high:.{digits}g}"
     lines = [
         f"{head}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(answer.half_angle):g} deg, mu {answer.mu:g}, "
         f"{answer.voussoirs} voussoirs, weight {answer.weight}, "
         f"depth {answer.depth:g} r{lean_words(answer.lean)}",
         f"  because {answer.reason}",
-        _exact("exact  ", answer, _digits(answer)),
+        _exact("exact  ", answer, digits),
     ]
     whose = "continuous arch" if answer.method == "theory" else "voussoirs as built"
-    lines += _modes(answer, f"of the {whose}, at eta {ratio(answer.eta_low, _digits(answer))}")
+    lines += _modes(answer, f"of the {whose}, at eta {ratio(answer.eta_low, digits)}")
     if answer.thrust is not None:
         lines.append(f"  thrust  h = {answer.thrust:.9g}, in units of gamma t d r")
     if answer.beta_r is not None:

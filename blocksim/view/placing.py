@@ -56,17 +56,14 @@ class Placing:
 
     def faces(self, earlier: int, later: int, share: float) -> Array:
         """Return the ends of joints in space, as the blocks on both sides carry them."""
-        before, after, ends, *_ = self._recording.assembly.joint_arrays
+        assembly = self._recording.assembly
         centres, turns = self._placed(earlier, later, share)
         # The support comes last, as index -1 says: it stays.
-        rest = np.vstack(
-            [self._recording.assembly.centres / self._recording.assembly.size, np.zeros(2)]
-        )
         centres = np.vstack([centres, np.zeros(3)])
         turns = np.vstack([turns, [1.0, 0.0, 0.0, 0.0]])
-        sides = np.stack([before, after], axis=1)
+        sides = assembly.sides.T
         local = np.zeros((*sides.shape, 2, 3))
-        local[..., :2] = ends[:, None] - rest[sides][:, :, None]
+        local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
         return centres[sides][:, :, None] + _turned(turns[sides][:, :, None], local)
 
     def _placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:

@@ -93,15 +93,16 @@ def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
                 is_settled = residual <= RELATIVE * largest
         elif yields <= nothing or (ratio > DRIFT and yields <= _unfit(step, largest)):
             residual, is_settled = step.residual(x, forces, rates), True
-        found = Answer(
-            x=x,
-            forces=forces,
-            contacts=contacts,
-            residual=residual,
-            systems=guess.systems + systems,
-            is_settled=is_settled,
+        tried.append(
+            Answer(
+                x=x,
+                forces=forces,
+                contacts=contacts,
+                residual=residual,
+                systems=guess.systems + systems,
+                is_settled=is_settled,
+            )
         )
-        tried.append(found)
         if is_settled or changes > allowed:
             break
         allowed = min(allowed, MORE * changes + FEW)
