@@ -16,7 +16,7 @@ from blocksim.arch.circular import Arch, arch_of
 from blocksim.arch.motion import load_recording
 from blocksim.blocks.assembly import displacement
 from blocksim.blocks.record import to_record
-from blocksim.common.errors import InputError
+from blocksim.common.errors import InputError, MachineError
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines.base import Settings
 from blocksim.evidence.recording import Recording
@@ -275,7 +275,7 @@ def test_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
         file.write(b"half")
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(InputError, match="No space left"):
+    with pytest.raises(MachineError, match="No space left"):
         write_whole(path, fail)
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["run.npz"]

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from reprlib import Repr
 
+from blocksim.common.words import printable
+
 LONGEST = 200
 """Characters shown of a value, a name or a file."""
 LONGEST_WORDS = 600
@@ -32,10 +34,9 @@ _SHORT = _Short()
 
 
 def in_line(text: str, most: int = LONGEST) -> str:
-    """Return text of a stranger as one line that a terminal can be given, cut at a length."""
+    """Return text of a stranger as `printable` does, cut at a length."""
     half = most // 2
-    cut = text if len(text) <= most else f"{text[:half]}...{text[3 - half :]}"
-    return "".join(each if each.isprintable() else "?" for each in cut)
+    return printable(text if len(text) <= most else f"{text[:half]}...{text[3 - half :]}")
 
 
 def perhaps(name: str, known: Iterable[str]) -> str:
@@ -91,6 +92,28 @@ class InputError(BlocksimError, ValueError):
         is_so = said.get(id(value), f"= {_SHORT.repr(value)}")
         must = in_line(allowed, LONGEST_WORDS)
         super().__init__(f"{place}{in_line(field)} {is_so}: must be {must}")
+
+
+class MachineError(BlocksimError):
+    """A failure of the machine, whatever was asked: a full disk, no permission.
+
+    Parameters
+    ----------
+    field : str
+        Name of the option or of what the file is, e.g. ``--out``.
+    value : str
+        The file.
+    why : str
+        As the system says it.
+    """
+
+    def __init__(self, field: str, value: str, why: str) -> None:
+        self.field = field
+        self.value = value
+        self.why = why
+        super().__init__(
+            f"{in_line(field)} = {_SHORT.repr(value)}: the system says {in_line(why)!r}"
+        )
 
 
 class Unsolved(BlocksimError):

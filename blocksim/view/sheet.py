@@ -15,6 +15,7 @@ from blocksim.ask.carried import Carried
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
+from blocksim.common.words import printable
 from blocksim.limit import Reaction, reactions
 from blocksim.view.drawing import friction_words, loading_words
 from blocksim.view.structure import supports_shown
@@ -129,7 +130,7 @@ def sheet_of(
         problem=problem,
         title=title_of(problem),
         facts=tuple(
-            ", ".join(word for word in words if word)
+            printable(", ".join(word for word in words if word))
             for words in (facts, built_words(problem), [unit.note])
             if any(words)
         ),
@@ -212,7 +213,7 @@ def _near(problem: Problem, line: ThrustLine) -> bool:
 def title_of(problem: Problem) -> str:
     """Return the title of a problem, or say what it is."""
     if problem.title and problem.title != problem.origin.get("kind"):
-        return problem.title
+        return printable(problem.title)
     if problem.title:
         return problem.title.replace("-", " ").capitalize()
     if arch_of(problem) is not None:
