@@ -117,18 +117,12 @@ class MachineError(BlocksimError):
 
 
 class Unsolved(BlocksimError):
-    """A linear programme that its solver does not take, or gives up.
+    """A linear programme of which its solver tells nothing."""
 
-    Parameters
-    ----------
-    status : str
-        What the solver says.
-    """
-
-    def __init__(self, status: str) -> None:
+    def __init__(self) -> None:
         super().__init__(
-            f"limit analysis: HiGHS says {status!r}; blocks, weights and loads may be too "
-            "unlike each other in size"
+            "limit analysis: undecided, as its forces or motions are too unlike each other in "
+            "size for the solver; weights, loads and friction nearer to each other would decide"
         )
 
 
