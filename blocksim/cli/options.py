@@ -222,9 +222,7 @@ class Loading:
     ] = None
     patch_load: Annotated[
         list[tuple[float, float, float]] | None,
-        Option(
-            metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2; repeatable."
-        ),
+        Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2; repeatable."),
     ] = None
     load: Annotated[
         float | None,
