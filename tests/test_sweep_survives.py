@@ -75,6 +75,8 @@ def test_a_full_disk_is_one_line_and_the_next_run_goes_on(
     asked, out = written(tmp_path, SIMULATED), tmp_path / "out"
 
     def small() -> None:
+        # Compiled modules would be cut, too.
+        os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
         resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))
 
     done = blocksim(*asked, "--workers", "1", before=small)
