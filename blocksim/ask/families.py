@@ -100,9 +100,7 @@ def family_of(problem: Problem, over: str) -> Family:
 
 def families_of(problem: Problem) -> tuple[str, ...]:
     """Names of the parameters there are: of any problem, of its shaking, and of its kind."""
-    from blocksim.kinds.files import kind_behind
-
-    kind = kind_behind(problem)
+    kind = problem.maker
     still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
     always = [name for name in FAMILIES if name not in still]
     return (*always, *(() if kind is None else kind.bracketed))
@@ -245,9 +243,7 @@ def _over_parameter(problem: Problem, name: str) -> Family:
 
     Its range is where the kind can be built, around the value at hand.
     """
-    from blocksim.kinds.files import kind_behind, with_parameter
-
-    kind = kind_behind(problem)
+    kind = problem.maker
     assert kind is not None  # noqa: S101
     known, low, high = kind.number(name)
     now = kind.value(name)
@@ -255,7 +251,7 @@ def _over_parameter(problem: Problem, name: str) -> Family:
 
     @lru_cache(maxsize=2 * TRIED)
     def at(value: float) -> Problem:
-        return with_parameter(problem, name, value)
+        return problem.but(**{name: value})
 
     values = _built(at, np.geomspace(*ends, TRIED).tolist(), now)
     stands: Stands = known.stands or "high"
