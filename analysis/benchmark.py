@@ -36,11 +36,12 @@ from analysis.command import run
 from blocksim import Arch, bracket, check
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.bulk import which_stand
-from blocksim.arch.motion import simulate
 from blocksim.arch.theory.arrays import least_thicknesses
+from blocksim.ask.archmotion import simulate
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines import ENGINES
 from blocksim.evidence.observation import hold
+from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import structure_of
 from blocksim.report.tables import processor
 from blocksim.view.film import Film
@@ -163,7 +164,7 @@ def tasks(*, quick: bool) -> dict[str, Task]:
             found |= _of_engine(name, below, above)
     found |= _large(quick=quick)
     found[f"direct, collapse of {COLLAPSE:g} s"] = lambda: simulate(
-        below, mu=MU, method="direct", duration=COLLAPSE / below.problem(MU).seconds
+        below, mu=MU, method="direct", duration=COLLAPSE / arch_problem(below, MU).seconds
     )
     falling = simulate(below, mu=MU, method="direct", duration=2.0)
     frames = 2 if quick else 50
@@ -177,7 +178,7 @@ def tasks(*, quick: bool) -> dict[str, Task]:
 def _of_engine(engine: str, below: Arch, above: Arch) -> dict[str, Task]:
     tol = TOLERANCES.get(engine, COARSE)
     return {
-        f"{engine}, onset test": lambda: hold(above.problem(MU), engine),
+        f"{engine}, onset test": lambda: hold(arch_problem(above, MU), engine),
         f"{engine}, check": lambda: check(below, mu=MU, method=engine),
         f"{engine}, bracket to {tol:g}": lambda: bracket(
             half_angle=ALPHA, mu=MU, voussoirs=below.voussoirs, method=engine, tol=tol
@@ -192,7 +193,7 @@ def _large(*, quick: bool) -> dict[str, Task]:
         least = least_thickness(ALPHA, MU, count).eta or 0.1
         arch = Arch(half_angle=ALPHA, eta=1.01 * least, voussoirs=count)
         found[f"direct, onset test at n = {count}"] = lambda arch=arch: hold(
-            arch.problem(MU), "direct"
+            arch_problem(arch, MU), "direct"
         )
     for (length, courses), tilt in list(WALLS.items())[: 1 if quick else None]:
         table = {"kind": "wall", "length": length, "courses": courses, "friction": MU}

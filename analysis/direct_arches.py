@@ -31,6 +31,7 @@ from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
 from blocksim.common.processes import crew
 from blocksim.evidence.observation import observe
+from blocksim.kinds.circular import arch_problem
 from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
@@ -84,7 +85,7 @@ def ask(draw: Draw) -> Outcome:
         tol=TOL,
     )
     below, above = (
-        observe(draw.arch(factor).problem(draw.mu), "direct", moving=False).verdict
+        observe(arch_problem(draw.arch(factor), draw.mu), "direct", moving=False).verdict
         for factor in (1 - ASIDE, 1 + ASIDE)
     )
     return Outcome(

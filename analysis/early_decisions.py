@@ -30,6 +30,7 @@ from analysis.drawing import Draw, draws
 from analysis.saved_answers import Row, answers
 from blocksim import Verdict
 from blocksim.evidence.observation import hold
+from blocksim.kinds.circular import arch_problem
 
 SEED = 2026
 ARCHES = 48
@@ -85,11 +86,11 @@ def cases(count: int, most_voussoirs: int) -> list[Case]:
 def ask(case: Case) -> Row:
     """Let an arch go twice, to the early end and to the late one."""
     draw = case.draw
-    held = hold(draw.arch(case.ratio).problem(draw.mu), "pymunk")
+    held = hold(arch_problem(draw.arch(case.ratio), draw.mu), "pymunk")
     started = time.process_time()
     early = held.release()
     early_cpu_s = time.process_time() - started
-    again = hold(draw.arch(case.ratio).problem(draw.mu), "pymunk")
+    again = hold(arch_problem(draw.arch(case.ratio), draw.mu), "pymunk")
     started = time.process_time()
     late = again.release(until=LONG)
     long_cpu_s = time.process_time() - started

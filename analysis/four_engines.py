@@ -32,6 +32,7 @@ from blocksim.arch.limit import least_thickness
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.recording import Recording
+from blocksim.kinds.circular import arch_problem
 from blocksim.view.canvas import Canvas, Label
 from blocksim.view.drawing import words_of
 from blocksim.view.film import BEFORE, FOOT, HEAD, TALL, Film, ViewName
@@ -98,7 +99,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
     least = least_thickness(HALF_ANGLE, FRICTION, VOUSSOIRS).eta
     assert least is not None  # noqa: S101
     arch = Arch(half_angle=HALF_ANGLE, eta=(1 - THINNER) * least, voussoirs=VOUSSOIRS)
-    problem = arch.problem(FRICTION)
+    problem = arch_problem(arch, FRICTION)
     runs = {
         name: simulate(problem, method=name, duration=LONGEST)
         for name in (QUICK if quick else VIEWS)

@@ -31,6 +31,7 @@ from analysis.drawing import Draw, draws
 from analysis.saved_answers import Row, answers
 from blocksim import Verdict
 from blocksim.evidence.observation import conclude, hold
+from blocksim.kinds.circular import arch_problem
 from blocksim.view.style import FONT, MISS, QUIET, VERDICTS
 
 SEED = 2025
@@ -89,7 +90,7 @@ def ask(case: Case, engine: str) -> Row:
     """Hold an arch at rest, and let it go if that is asked for."""
     draw = case.draw
     started = time.process_time()
-    held = hold(draw.arch(case.ratio).problem(draw.mu), engine)
+    held = hold(arch_problem(draw.arch(case.ratio), draw.mu), engine)
     cpu_s = time.process_time() - started
     ended = conclude(held, moving=case.let_go)
     return {

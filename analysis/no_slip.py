@@ -32,6 +32,7 @@ from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.limit import least_thickness
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 
 SEED = 14
 ARCHES = 1700
@@ -96,7 +97,7 @@ def ask(case: Case) -> Row:
         voussoirs=case.voussoirs,
         weight=case.weight,
     )
-    found = observe(arch.problem(case.mu), "direct", moving=False)
+    found = observe(arch_problem(arch, case.mu), "direct", moving=False)
     return {
         "verdict": found.verdict,
         "reason": found.reason,

@@ -45,6 +45,7 @@ from blocksim.arch.theory import least_thickness as theory_of
 from blocksim.arch.theory.regions import landmarks
 from blocksim.ask.search import ETA_MAX
 from blocksim.evidence.observation import observe
+from blocksim.kinds.circular import arch_problem
 from blocksim.many.answers import version_of
 from blocksim.view.mapregions import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
@@ -130,7 +131,7 @@ def ask(fine: Fine, engine: str) -> Row:
     else:
         mu *= below
     arch = Arch(half_angle=alpha, eta=eta, voussoirs=fine.voussoirs)
-    seen = observe(arch.problem(mu), engine, moving=False)
+    seen = observe(arch_problem(arch, mu), engine, moving=False)
     mode = observed_mode(seen.joints, arch)
     there = mechanism(arch, mu).mode
     return {

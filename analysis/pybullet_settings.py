@@ -37,6 +37,7 @@ from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.engines import bulletblocks, bulletspace
 from blocksim.evidence.simulation import Simulation
+from blocksim.kinds.circular import arch_problem
 from blocksim.view.style import FONT
 
 ARCHES = {"semicircle": (90.0, 0.35, 27), "thin": (45.0, 0.9, 13)}
@@ -86,7 +87,7 @@ def simulation(arch: str, ratio: float) -> Simulation:
     alpha = math.radians(degrees)
     least = least_thickness(alpha, mu, voussoirs).eta or 0.0
     built = Arch(half_angle=alpha, eta=least * ratio, voussoirs=voussoirs)
-    return Simulation.of(built.problem(mu), "pybullet")
+    return Simulation.of(arch_problem(built, mu), "pybullet")
 
 
 def left_over(arch: str, name: str, sweeps: Array) -> list[float]:

@@ -26,6 +26,7 @@ from blocksim.blocks.assembly import SUPPORT, Array, Joint, Support
 from blocksim.blocks.problem import Load, Problem
 from blocksim.common.errors import InputError
 from blocksim.kinds import KINDS
+from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import structure_of
 from blocksim.limit import equilibrium
 
@@ -177,7 +178,7 @@ def _ring(random: Generator, most: int) -> Question | None:
     return Question(
         kind="arch of the map",
         over="thickness",
-        at=lambda value: arch(value)[0].problem(mu),
+        at=lambda value: arch_problem(arch(value)[0], mu),
         critical=eta,
         stands="high",
         known="statics",
@@ -294,7 +295,7 @@ def _over(problem: Problem, kind: str, random: Generator) -> Question | None:
         return None
     over = str(random.choice(list(OVER), p=list(OVER.values())))
     plain = problem if over == "load" else replace(problem, live=())
-    table = plain.origin
+    table = {} if plain.maker is None else plain.maker.table()
     if over == "tilt" and table.get("kind") == "column" and table.get("top_width") is None:
         return _column(plain, table)
     return _family(plain, kind, over)
@@ -363,7 +364,7 @@ def mirrored(problem: Problem) -> Problem:
         gravity=problem.gravity * [-1, 1, 1],
         dead=tuple(_pulled(load) for load in problem.dead),
         live=tuple(_pulled(load) for load in problem.live),
-        origin={},
+        maker=None,
     )
 
 
@@ -407,7 +408,7 @@ def renumbered(problem: Problem, seed: int) -> Problem:
         ),
         dead=tuple(on(load) for load in problem.dead),
         live=tuple(on(load) for load in problem.live),
-        origin={},
+        maker=None,
     )
 
 

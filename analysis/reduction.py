@@ -34,6 +34,7 @@ from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
 from blocksim.evidence.observation import Observation, observe
 from blocksim.evidence.onset import PROBE, Onset
+from blocksim.kinds.circular import arch_problem
 from blocksim.view.style import FONT, INK, METHODS
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (154, 2.6))
@@ -141,7 +142,7 @@ def pair(draw: Draw, ratio: float) -> tuple[Arch, Observation, Observation]:
     arch = draw.arch(ratio)
     whole, reduced = (
         observe(
-            arch.problem(draw.mu),
+            arch_problem(arch, draw.mu),
             "direct",
             moving=False,
             reduction=Reduction.of(arch, draw.mu) if reduce else None,

@@ -28,6 +28,7 @@ from blocksim.arch import limit
 from blocksim.ask.search import Answer, Bisection
 from blocksim.engines import ENGINES
 from blocksim.evidence.simulation import Simulation
+from blocksim.kinds.circular import arch_problem
 from blocksim.report.chart import write_chart
 from blocksim.studies.chart import START, ChartArch, cases, gain, measure
 from blocksim.studies.refinement import STEP, TOL, let_go
@@ -96,7 +97,7 @@ def lenient_error(case: ChartArch) -> float:
 
     def judge(eta: float) -> Answer:
         arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
-        simulation = Simulation.of(arch.problem(case.mu), "pymunk", settings=settings)
+        simulation = Simulation.of(arch_problem(arch, case.mu), "pymunk", settings=settings)
         return Answer(let_go(simulation, moved=SETTLED, until=LATE).verdict, math.nan)
 
     search = Bisection(judge)

@@ -51,6 +51,7 @@ from blocksim.evidence.onset import onset
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 
 RATIOS = (0.98, 0.995, 1.005, 1.02)
 COLLAPSING, WATCHED = 0.9, 1.5
@@ -100,7 +101,7 @@ def arch_at(case: Case, ratio: float) -> Arch:
 
 def simulation_of(engine: str, case: Case, ratio: float) -> Simulation:
     """Return such an arch in an engine."""
-    return Simulation.of(arch_at(case, ratio).problem(case[1]), engine)
+    return Simulation.of(arch_problem(arch_at(case, ratio), case[1]), engine)
 
 
 def judged(verdict: Verdict, ratio: float) -> str:
@@ -175,7 +176,7 @@ def lines(engine: str, grid: Grid) -> Iterator[Row]:
     for name, value, case, radius in asked:
         for ratio in RATIOS:
             arch = replace(arch_at(case, ratio), radius=radius, depth=radius)
-            seen = observe(arch.problem(case[1]), engine)
+            seen = observe(arch_problem(arch, case[1]), engine)
             yield Row(
                 "lines",
                 engine,

@@ -42,6 +42,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.contact import ContactProblem, Solution
 from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS
 from blocksim.engines.direct import ENGINE
+from blocksim.kinds.circular import arch_problem
 from blocksim.limit.starting import LEAST_POWER, Start, may_start, rates_of
 from blocksim.view.drawing import save_figure
 
@@ -90,7 +91,7 @@ class Case:
             voussoirs=self.voussoirs,
             weight=self.weight,
         )
-        return arch.problem(self.mu)
+        return arch_problem(arch, self.mu)
 
 
 @dataclass(frozen=True)

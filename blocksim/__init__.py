@@ -13,11 +13,11 @@ if interrupts.is_program():
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from blocksim.arch.bracket import Bracket, bracket
-    from blocksim.arch.check import ArchCheck, check
     from blocksim.arch.circular import Arch
     from blocksim.arch.modes import Mode
-    from blocksim.arch.motion import load_recording, simulate
+    from blocksim.ask.archbracket import Bracket, bracket
+    from blocksim.ask.archcheck import ArchCheck, check
+    from blocksim.ask.archmotion import simulate
     from blocksim.blocks.assembly import Assembly, Block, Joint
     from blocksim.blocks.joints import JointState
     from blocksim.blocks.problem import Load, Problem
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from blocksim.evidence.recording import Recording
     from blocksim.evidence.verdict import Verdict
     from blocksim.kinds.files import load_structure, structure_of
+    from blocksim.kinds.recorded import load_recording
     from blocksim.limit import collapse, equilibrium
 
 __all__ = [
@@ -61,11 +62,11 @@ __all__ = [
 ]
 
 _PLACES = {
-    "arch.bracket": ("Bracket", "bracket"),
-    "arch.check": ("ArchCheck", "check"),
+    "ask.archbracket": ("Bracket", "bracket"),
+    "ask.archcheck": ("ArchCheck", "check"),
     "arch.circular": ("Arch",),
     "arch.modes": ("Mode",),
-    "arch.motion": ("load_recording", "simulate"),
+    "ask.archmotion": ("simulate",),
     "blocks.assembly": ("Assembly", "Block", "Joint"),
     "blocks.joints": ("JointState",),
     "blocks.problem": ("Load", "Problem"),
@@ -73,6 +74,7 @@ _PLACES = {
     "evidence.recording": ("Recording",),
     "evidence.verdict": ("Verdict",),
     "kinds.files": ("load_structure", "structure_of"),
+    "kinds.recorded": ("load_recording",),
     "limit": ("collapse", "equilibrium"),
 }
 """Where the public names are; each is loaded when it is first used."""

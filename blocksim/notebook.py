@@ -15,10 +15,10 @@ from functools import lru_cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
-from blocksim.arch.bracket import Bracket as ArchBracket
-from blocksim.arch.check import ArchCheck
-from blocksim.arch.circular import Arch, arch_of
+from blocksim.arch.circular import Arch
 from blocksim.arch.theory import least_thickness
+from blocksim.ask.archbracket import Bracket as ArchBracket
+from blocksim.ask.archcheck import ArchCheck
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.check import ProblemCheck
 from blocksim.ask.search import ETA_MAX
@@ -27,6 +27,7 @@ from blocksim.blocks.structure import structure_record
 from blocksim.common.files import json_text
 from blocksim.common.words import printable
 from blocksim.evidence.recording import Recording
+from blocksim.kinds.circular import arch_problem, plain_arch
 from blocksim.report import answers, structures
 from blocksim.report.recordings import recording_lines, recording_record
 from blocksim.report.sizes import size_lines, size_record
@@ -142,7 +143,7 @@ def html_of(shown: object) -> str:
 
 
 def _recording_lines(recording: Recording) -> list[str]:
-    return recording_lines(recording, "L" if arch_of(recording.problem) is None else "r")
+    return recording_lines(recording, "L" if plain_arch(recording.problem) is None else "r")
 
 
 def _arch_words(arch: Arch) -> str:
@@ -165,7 +166,7 @@ def _arch_record(arch: Arch) -> dict[str, object]:
 def _arch_figure(arch: Arch) -> Figure:
     from blocksim.view.structure import problem_figure
 
-    titled = replace(arch.problem(math.inf), title=_arch_words(arch))
+    titled = replace(arch_problem(arch, math.inf), title=_arch_words(arch))
     # An arch alone has no friction to tell.
     return problem_figure(titled, facts=())
 
@@ -182,7 +183,7 @@ def _arch_check_figure(answer: ArchCheck) -> Figure:
 
     if answer.method == "limit" and not answer.lean:
         return arch_figure([picture_of_arch(answer.arch, answer.mu)])
-    problem = answer.arch.problem(answer.mu, answer.lean)
+    problem = arch_problem(answer.arch, answer.mu, answer.lean)
     states = tuple(joint.state for joint in answer.joints)
     return problem_figure(
         problem, verdict=f"{answer.verdict}, by {answer.method}", states=states

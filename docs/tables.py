@@ -17,9 +17,9 @@ from format_tables import of_format
 from markdown_table import table
 from validation_tables import of_validation
 
+from blocksim.blocks.maker import parameters_of
 from blocksim.cli import app
 from blocksim.kinds import KINDS
-from blocksim.kinds.base import parameters_of
 
 ROOT = Path(__file__).resolve().parent.parent
 ROWS = ROOT / "analysis" / "figures"

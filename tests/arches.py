@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from blocksim.arch import limit
-from blocksim.arch.bracket import Bracket, bracket
 from blocksim.arch.circular import Arch, Weight
+from blocksim.ask.archbracket import Bracket, bracket
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine

@@ -12,6 +12,7 @@ from blocksim.arch.modes import Mode
 from blocksim.engines.base import Settings
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 from blocksim.studies.agreement import Validation
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)
@@ -24,7 +25,7 @@ def sliding() -> Recording:
     moved = np.zeros((11, 8, 3))
     moved[:, 4:, 1] = -0.02 * np.linspace(0, 1, 11)[:, None] ** 2
     return Recording(
-        problem=ARCH.problem(0.7),
+        problem=arch_problem(ARCH, 0.7),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),

@@ -23,6 +23,7 @@ from blocksim.arch.circular import Arch
 from blocksim.blocks.record import to_record
 from blocksim.engines.base import Settings
 from blocksim.evidence.recording import Recording
+from blocksim.kinds.circular import arch_problem
 from blocksim.view.explorer.results import Result
 
 
@@ -318,8 +319,8 @@ def _recording() -> tuple[dict[str, Any], Any, Any]:
     poses = rest + times[:, None, None] ** 2 * np.array([0.3, -0.5, 0.4])
     settings = Settings(step=0.005, sweeps=250, hold_sweeps=50_000)
     made = Recording(
-        problem=arch.problem(0.7), engine="pymunk", engine_version="7.3", settings=settings,
-        times=times, poses=poses,
+        problem=arch_problem(arch, 0.7), engine="pymunk", engine_version="7.3",
+        settings=settings, times=times, poses=poses,
     )  # fmt: skip
     header = {
         "format": 2, "problem": to_record(made.problem), "engine": "pymunk",

@@ -14,14 +14,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from blocksim.arch import limit, theory
-from blocksim.arch.bracket import bracket
-from blocksim.arch.circular import arch_of
 from blocksim.arch.modes import Mode
+from blocksim.ask.archbracket import bracket
 from blocksim.ask.search import ETA_MAX, Answer, Bisection
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.observation import Held, hold
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import plain_arch
 
 tolerances = st.floats(1e-4, 0.3)
 thresholds = st.floats(1e-3, 1.99)
@@ -196,12 +196,12 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
     held: list[float] = []
 
     def counted(problem: Problem, engine: str, **asked: object) -> Held:
-        arch = arch_of(problem)
+        arch = plain_arch(problem)
         assert arch
         held.append(arch.eta)
         return hold(problem, engine, **asked)
 
-    monkeypatch.setattr(sys.modules["blocksim.arch.bracket"], "hold", counted)
+    monkeypatch.setattr(sys.modules["blocksim.ask.archbracket"], "hold", counted)
     asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}
     found = bracket(**asked, confirm=confirm)
     assert found.runs == len(held) == len(set(held))

@@ -9,13 +9,14 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from blocksim.arch import limit, theory
-from blocksim.arch.check import check
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
+from blocksim.ask.archcheck import check
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.errors import InputError
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 
 
 @given(
@@ -79,7 +80,7 @@ def test_wrong_values(field: str, mu: float, method: str) -> None:
     assert caught.value.field == field
 
 
-LEANING = Arch(half_angle=1.0, eta=0.2, voussoirs=9).problem(0.7, lean=0.1)
+LEANING = arch_problem(Arch(half_angle=1.0, eta=0.2, voussoirs=9), 0.7, lean=0.1)
 
 
 @pytest.mark.parametrize(

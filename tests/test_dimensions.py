@@ -15,10 +15,11 @@ from running import inside
 
 from blocksim import load_recording
 from blocksim.arch import limit
-from blocksim.arch.circular import Arch, arch_of
+from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import LINES, At, Dimensions, Line, dimensions_of
 from blocksim.arch.scenario import load_scenario
 from blocksim.common.errors import InputError
+from blocksim.kinds.circular import plain_arch
 
 EXACT = 1e-14
 SIZE = ("--span", "8", "--rise", "3", "--thickness", "0.45")
@@ -290,7 +291,7 @@ def test_arches_in_metres_are_let_go_and_drawn(tmp_path: Path) -> None:
     options = (*SIZE[:4], "--thickness", "0.2", "--mu", "0.7", "--depth", "2")
     done = inside("simulate", *options, "--seconds", "0.05", "--out", str(run))
     assert done.returncode == 0, done.stderr
-    arch = arch_of(load_recording(run).problem)
+    arch = plain_arch(load_recording(run).problem)
     assert arch is not None
     assert (arch.radius, arch.depth) == (pytest.approx(25 / 6 + 0.1), 2)
     picture = tmp_path / "arch.svg"

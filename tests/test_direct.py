@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from arches import arch_at, bracket_at
 
-from blocksim.arch.motion import load_recording, simulate
+from blocksim.ask.archmotion import simulate
 from blocksim.ask.search import Answer, Bisection
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
@@ -18,6 +18,8 @@ from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.recorded import load_recording
 
 CASES = [
     (90, 0.9, 27, "centreline"),
@@ -36,7 +38,7 @@ CASES = [
 
 
 def held(arch, mu):
-    return observe(arch.problem(mu), "direct", moving=False).verdict
+    return observe(arch_problem(arch, mu), "direct", moving=False).verdict
 
 
 def world_of(arch, mu, step=0.01):
@@ -131,7 +133,7 @@ def test_it_is_repeatable_bit_by_bit():
 
 
 def test_over_its_residual_the_answer_is_undecided():
-    simulation = Simulation.of(arch_at(0.9, 90, 0.9, 20).problem(0.9), "direct")
+    simulation = Simulation.of(arch_problem(arch_at(0.9, 90, 0.9, 20), 0.9), "direct")
     settings = replace(simulation.settings, residual=0.0)
     world = replace(simulation, settings=settings).world()
     assert (
@@ -152,7 +154,7 @@ def test_a_recording_keeps_its_quality(tmp_path):
 
 def test_onset_and_motion_agree_close_to_the_limit():
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
-        seen = observe(arch_at(ratio, 90, 0.9, 12).problem(0.9), "direct")
+        seen = observe(arch_problem(arch_at(ratio, 90, 0.9, 12), 0.9), "direct")
         assert seen.verdict is expected
         assert seen.motion.verdict is expected
 

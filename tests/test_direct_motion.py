@@ -8,7 +8,7 @@ import pytest
 from arches import arch_at
 
 from blocksim.arch.circular import Arch
-from blocksim.arch.motion import simulate
+from blocksim.ask.archmotion import simulate
 from blocksim.blocks.assembly import displacement
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
@@ -17,6 +17,7 @@ from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.motion import moving_run
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 
 
 def world_of(assembly, mu, step):
@@ -91,7 +92,7 @@ def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
 
-    simulation = Simulation.of(arch_at(0.9, 90, 0.9, 12).problem(0.9), "direct")
+    simulation = Simulation.of(arch_problem(arch_at(0.9, 90, 0.9, 12), 0.9), "direct")
     # Below the round-off of corners at rest nothing could pass.
     strict = replace(simulation, settings=replace(simulation.settings, penetration=-1.0))
     world = strict.world()

@@ -20,7 +20,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds import KINDS
-from blocksim.kinds.files import structure_of, with_parameter
+from blocksim.kinds.files import structure_of
 
 MU = {"semicircle_40_mu315": 0.315, "semicircle_40_mu35": 0.35}
 
@@ -92,7 +92,7 @@ def test_other_parameters() -> None:
     thin = exact(portal, "arch.thickness")
     assert thin is not None
     for share, verdict in ((0.9999, Verdict.COLLAPSES), (1.0001, Verdict.STANDS)):
-        built = with_parameter(portal, "arch.thickness", share * thin)
+        built = portal.but(**{"arch.thickness": share * thin})
         assert check(built, method="limit").verdict is verdict
 
 
@@ -158,7 +158,7 @@ def test_direct_finds_it_again(name: str, joints: str) -> None:
     least = exact(arch, "thickness")
     assert least
     for share, verdict in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
-        built = with_parameter(arch, "thickness", share * least)
+        built = arch.but(thickness=share * least)
         assert check(built, method="direct").verdict is verdict
 
 
@@ -168,10 +168,10 @@ def test_what_slips_may_come_to_rest_again() -> None:
     arch = structure_of(table)
     least = exact(arch, "thickness")
     assert least
-    seen = check(with_parameter(arch, "thickness", 0.999 * least), method="direct")
+    seen = check(arch.but(thickness=0.999 * least), method="direct")
     assert seen.verdict is Verdict.UNDECIDED
     assert "gave way and came to rest again" in seen.reason
-    thicker = with_parameter(arch, "thickness", 1.001 * least)
+    thicker = arch.but(thickness=1.001 * least)
     assert check(thicker, method="direct").verdict is Verdict.STANDS
 
 
@@ -215,7 +215,7 @@ def test_a_kind_on_the_command_line(tmp_path: Path) -> None:
     assert (
         blocksim("simulate", str(path), "--seconds", "0.1", "--out", str(run)).returncode == 0
     )
-    assert load_recording(run).problem.origin["radius"] == 1.25
+    assert load_recording(run).problem.maker.radius == 1.25  # type: ignore[union-attr]
     assert blocksim("render", str(path), "--out", str(picture)).returncode == 0
     assert "Pointed arch" in picture.read_text(encoding="utf-8")
     path.write_text(json.dumps({**table, "thickness": 9}))

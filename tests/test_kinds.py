@@ -20,14 +20,15 @@ from blocksim.arch.circular import Arch
 from blocksim.blocks import structure
 from blocksim.blocks.assembly import Block
 from blocksim.blocks.entries import AROUND
+from blocksim.blocks.maker import parameters_of
 from blocksim.blocks.polygons import assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.record import from_record, to_record
 from blocksim.common.errors import InputError
 from blocksim.kinds import KINDS
 from blocksim.kinds.archkind import ArchKind, CurvedArch
-from blocksim.kinds.base import parameters_of
-from blocksim.kinds.files import load_structure, structure_of, with_parameter
+from blocksim.kinds.files import load_structure, structure_of
+from blocksim.kinds.recorded import maker_of
 from blocksim.limit import collapse, equilibrium
 
 LOOSER = {
@@ -78,7 +79,7 @@ def test_arches_whose_least_thickness_is_known(name: str) -> None:
         assert_same_blocks(made, read, name)
         assert equilibrium(made).exists == told["expected"]
     for share, stands in ((1 + 1e-6, True), (1 - 1e-6, False)):
-        assert equilibrium(with_parameter(made, "thickness", share * least)).exists == stands
+        assert equilibrium(made.but(thickness=share * least)).exists == stands
 
 
 def test_a_catenary_stands_however_thin() -> None:
@@ -108,7 +109,7 @@ def test_piers_whose_least_width_is_known(name: str) -> None:
         assert_same_blocks(made, read, name)
         assert equilibrium(made).exists == told["expected"]
     for share, stands in ((1 + 1e-6, True), (1 - 1e-6, False)):
-        assert equilibrium(with_parameter(made, "pier_width", share * least)).exists == stands
+        assert equilibrium(made.but(pier_width=share * least)).exists == stands
 
 
 @pytest.mark.parametrize("name", of_each_kind(STACKS))
@@ -406,24 +407,22 @@ def test_origins_are_kept_and_read_back() -> None:
     portal = structure_of(
         {"kind": "portal", "friction": 0.6, "density": 2.0, "pier_width": 0.4}
     )
-    back = from_record(json.loads(json.dumps(to_record(portal))))
-    wider = with_parameter(back, "pier_width", 0.8)
-    assert wider.origin["pier_width"] == 0.8
+    back = from_record(json.loads(json.dumps(to_record(portal))), maker_of)
+    wider = back.but(pier_width=0.8)
+    assert wider.maker.pier_width == 0.8  # type: ignore[union-attr]
     assert wider.assembly.blocks[0].mass == pytest.approx(2 * portal.assembly.blocks[0].mass)
-    thick = with_parameter(back, "arch.thickness", 0.3)
+    thick = back.but(**{"arch.thickness": 0.3})
     same = structure_of(
         {"kind": "portal", "friction": 0.6, "density": 2.0, "pier_width": 0.4,
          "arch": {"kind": "circular-arch", "thickness": 0.3}}
     )  # fmt: skip
     assert to_record(thick.assembly) == to_record(same.assembly)
     pushed = structure_of(FACTORS["two_spans_load_b6"] | {"friction": 0.7}).with_load(0.3)
-    moved = with_parameter(pushed, "pier_width", 0.7)
+    moved = pushed.but(pier_width=0.7)
     assert moved.load == 0.3
     assert to_record(moved.live) == to_record(pushed.live)
     with pytest.raises(InputError, match="leaves 33 blocks"):
-        with_parameter(
-            structure_of({"kind": "wall", "friction": 1.0, "length": 1.9}), "courses", 7
-        )
+        structure_of({"kind": "wall", "friction": 1.0, "length": 1.9}).but(courses=7)
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -433,8 +432,8 @@ def test_every_kind_stands_as_it_comes(name: str) -> None:
     assert equilibrium(problem).exists
     assert problem.title == name
     assert not {*parameters_of(KINDS[name])} & {*AROUND, "kind", "blocks"}
-    table = {key: value for key, value in problem.origin.items() if key != "density"}
-    assert structure_of({**table, "friction": 0.7}).origin == problem.origin
+    assert problem.maker is not None
+    assert structure_of({**problem.maker.table(), "friction": 0.7}).maker == problem.maker
     again = structure.structure_of(structure.structure_record(problem))
     assert again.assembly.centres == pytest.approx(problem.assembly.centres, abs=1e-12)
     assert len(again.assembly.joints) == len(problem.assembly.joints)

@@ -21,6 +21,7 @@ from blocksim.cli.tables import validation_lines, validation_table
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text
 from blocksim.engines import get_engine
+from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import load_structure
 from blocksim.many import load_design
 from blocksim.report.answers import signed
@@ -29,7 +30,7 @@ from blocksim.studies.validate import unasked
 
 def test_paths_may_be_texts_and_the_header_is_strict_json(tmp_path: Path) -> None:
     path = str(tmp_path / "a.npz")
-    recording = replace(sliding(), problem=ARCH.problem(math.inf))
+    recording = replace(sliding(), problem=arch_problem(ARCH, math.inf))
     recording.save(path)
     with np.load(path) as inside:
         header = json.loads(str(inside["header"]), parse_constant=pytest.fail)

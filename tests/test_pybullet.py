@@ -19,11 +19,11 @@ from structure_cases import case, scenes
 
 from analysis import rubble
 from blocksim.arch import limit
-from blocksim.arch.check import check
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
-from blocksim.arch.motion import load_recording, simulate
 from blocksim.arch.observed import observed_mode
+from blocksim.ask.archcheck import check
+from blocksim.ask.archmotion import simulate
 from blocksim.ask.simulate import simulate as simulate_problem
 from blocksim.blocks.assembly import SPATIAL, Array, Assembly
 from blocksim.blocks.problem import Problem
@@ -33,6 +33,8 @@ from blocksim.engines.base import Engine
 from blocksim.evidence.motion import lie_still
 from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.recorded import load_recording
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 
@@ -72,7 +74,7 @@ def test_both_sides_of_the_least_thickness(
 ) -> None:
     """Onset test and moving run, 1 % below and above."""
     assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    seen = observe(arch_at(ratio, angle, mu, count, weight).problem(mu), "pybullet")
+    seen = observe(arch_problem(arch_at(ratio, angle, mu, count, weight), mu), "pybullet")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -82,7 +84,7 @@ def test_mode_just_below_the_least_thickness(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     arch = arch_at(0.995, angle, mu, count, weight)
-    seen = observe(arch.problem(mu), "pybullet", moving=False)
+    seen = observe(arch_problem(arch, mu), "pybullet", moving=False)
     assert seen.verdict is Verdict.COLLAPSES
     assert observed_mode(seen.joints, arch) is mode
 
@@ -241,7 +243,7 @@ def test_each_joint_has_two_contacts_at_its_ends(name: str) -> None:
     assert np.isfinite(resultants).all()
 
 
-NARROW_INTRADOS = Arch(half_angle=math.radians(120), eta=1.99, voussoirs=11).problem(1.5)
+NARROW_INTRADOS = arch_problem(Arch(half_angle=math.radians(120), eta=1.99, voussoirs=11), 1.5)
 """Its voussoirs are narrower there than the boxes on their faces."""
 
 
@@ -266,8 +268,10 @@ def test_blocks_stay_in_the_plane() -> None:
 
 def test_the_reason_names_bounded_friction() -> None:
     thick = replace(THIN, eta=0.3)
-    assert "as friction" not in observe(thick.problem(0.7), "pybullet", moving=False).reason
-    rough = observe(thick.problem(20.0), "pybullet", moving=False)
+    assert (
+        "as friction" not in observe(arch_problem(thick, 0.7), "pybullet", moving=False).reason
+    )
+    rough = observe(arch_problem(thick, 20.0), "pybullet", moving=False)
     assert "pybullet took 10 as friction" in rough.reason
 
 
@@ -281,9 +285,9 @@ def test_planar_methods_take_no_lean(method: str) -> None:
 
 def test_other_spaces_do_not_disturb_a_held_one() -> None:
     """Bullet has settings that all its spaces share."""
-    alone, beside = (hold(THIN.problem(0.7), "pybullet") for _ in range(2))
+    alone, beside = (hold(arch_problem(THIN, 0.7), "pybullet") for _ in range(2))
     undisturbed = alone.release(0.5).recording
-    hold(replace(THIN, eta=1.0).problem(0.7), "pybullet")
+    hold(arch_problem(replace(THIN, eta=1.0), 0.7), "pybullet")
     assert beside.release(0.5).recording.state_hash == undisturbed.state_hash
 
 
@@ -302,7 +306,7 @@ def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
 def test_the_thinnest_arches_are_given_up_soon() -> None:
     """Sweeps would grow without end as joints shorten; what few can tell is undecided."""
     arch = Arch(half_angle=math.radians(60), eta=1e-9, voussoirs=3)
-    assert observe(arch.problem(1.0), "pybullet").verdict is Verdict.UNDECIDED
+    assert observe(arch_problem(arch, 1.0), "pybullet").verdict is Verdict.UNDECIDED
 
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1), (0.6, 0, 0.8), (1, 0, 0)])
@@ -319,7 +323,7 @@ def test_whole_turns_are_counted(axis: tuple[float, ...], end: float) -> None:
 
 def test_an_arch_that_falls_stays_symmetric_and_falls_as_direct_has_it() -> None:
     """Its springings are level joints, which turn by more in a step than blocks overlap."""
-    problem = arch_at(0.93, 90, 0.7, 15).problem(0.7)
+    problem = arch_problem(arch_at(0.93, 90, 0.7, 15), 0.7)
     bullet, direct = (
         simulate_problem(problem, method=name, duration=2.0) for name in ("pybullet", "direct")
     )
@@ -339,7 +343,7 @@ def test_contacts_are_kept_where_an_arch_begins_to_turn() -> None:
 
 def test_a_block_on_its_head_lies_still() -> None:
     """Turned by half a turn it may be seen as turned either way, and would rock in numbers."""
-    world = Bodies(THIN.problem(0.6), ENGINE.rule(THIN.assembly()))
+    world = Bodies(arch_problem(THIN, 0.6), ENGINE.rule(THIN.assembly()))
     body, place = world._bodies[0], world._built[0].place
     poses: list[Array] = []
     for angle in [*np.arange(0.0, math.pi, 0.1), *[math.pi + 1e-4, math.pi - 1e-4] * 30]:

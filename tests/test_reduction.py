@@ -17,13 +17,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from blocksim.arch import limit
-from blocksim.arch.bracket import bracket
-from blocksim.arch.check import check
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import weakest_joints
 from blocksim.arch.limit.statics import half_joints
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
+from blocksim.ask.archbracket import bracket
+from blocksim.ask.archcheck import check
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
@@ -32,6 +32,7 @@ from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 
 CASES = [
     (90, 0.7, 27, "centreline"),
@@ -72,7 +73,7 @@ def every_joint(arch, mu):
     an unsymmetric one; of the half, merging must not change any.
     """
     joints = tuple(range(arch.voussoirs // 2 + 1))
-    return hold(arch.problem(mu), "direct", reduction=Reduction(arch.assembly(), joints))
+    return hold(arch_problem(arch, mu), "direct", reduction=Reduction(arch.assembly(), joints))
 
 
 def unbalanced(assembly, resultants, rates):
@@ -203,7 +204,7 @@ def test_nothing_holds_a_block_on_a_smooth_slope(engine):
 def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
     arch = arch_at(ratio, 125, 0.9, voussoirs)
     for reduction in (None, Reduction.of(arch, 0.9)):
-        world = Simulation.of(arch.problem(0.9), engine, reduction=reduction).world()
+        world = Simulation.of(arch_problem(arch, 0.9), engine, reduction=reduction).world()
         rates = world.hold(SWEEPS[engine])[:, :3]
         left = unbalanced(arch.assembly(), world.resultants(), rates)
         # Bodies that overlap have two places for one force.
@@ -214,8 +215,10 @@ def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
 def test_resultants_are_those_of_all_voussoirs(voussoirs):
     """In a collapse hinges fix the resultants; at rest there is a choice."""
     arch = arch_at(0.97, 90, 0.7, voussoirs)
-    every = Simulation.of(arch.problem(0.7), "direct").world()
-    few = Simulation.of(arch.problem(0.7), "direct", reduction=Reduction.of(arch, 0.7)).world()
+    every = Simulation.of(arch_problem(arch, 0.7), "direct").world()
+    few = Simulation.of(
+        arch_problem(arch, 0.7), "direct", reduction=Reduction.of(arch, 0.7)
+    ).world()
     every.hold(1)
     few.hold(1)
     assert few.resultants() == pytest.approx(every.resultants(), abs=1e-7)
@@ -231,8 +234,8 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
     arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
     crown = () if voussoirs % 2 else (voussoirs // 2,)
     wrong = Reduction(arch.assembly(), (0, *crown))
-    held = hold(arch.problem(mu), "direct", reduction=wrong)
-    assert held.onset.verdict is hold(arch.problem(mu), "direct").onset.verdict
+    held = hold(arch_problem(arch, mu), "direct", reduction=wrong)
+    assert held.onset.verdict is hold(arch_problem(arch, mu), "direct").onset.verdict
     assert held.simulation.blocks < 10
     half = every_joint(arch, mu)
     scale = max(half.onset.acceleration, 1e-6)
@@ -242,14 +245,14 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
 def test_without_a_second_look_a_wrong_guess_would_stand():
     arch = arch_at(0.98, 90, 0.7, 28)
     wrong = Reduction(arch.assembly(), (0, 14))
-    simulation = Simulation.of(arch.problem(0.7), "direct", reduction=wrong)
+    simulation = Simulation.of(arch_problem(arch, 0.7), "direct", reduction=wrong)
     world = simulation.world()
     assert (
         onset(world, simulation.engine, simulation.taken, simulation.settings).verdict
         is Verdict.STANDS
     )
     assert wrong.overstrained(world.resultants(), 0.7, 1e-9)
-    held = hold(arch.problem(0.7), "direct", reduction=wrong)
+    held = hold(arch_problem(arch, 0.7), "direct", reduction=wrong)
     assert held.onset.verdict is Verdict.COLLAPSES
     assert held.splits > 0
 
@@ -260,7 +263,7 @@ def test_joints_that_slide_are_split_again():
     right = Reduction.of(arch, mu).kept
     assert len(right) == 4
     merged = tuple(joint for joint in right if joint != right[2])
-    held = hold(arch.problem(mu), "direct", reduction=Reduction(arch.assembly(), merged))
+    held = hold(arch_problem(arch, mu), "direct", reduction=Reduction(arch.assembly(), merged))
     assert held.splits > 0
     assert accelerations(held) == pytest.approx(accelerations(every_joint(arch, mu)), abs=1e-9)
 
@@ -292,7 +295,7 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
     arch = Arch(half_angle=math.radians(146.91), eta=0.5742, voussoirs=5)
     few, every = (
         observe(
-            arch.problem(2.43),
+            arch_problem(arch, 2.43),
             "direct",
             moving=False,
             reduction=Reduction.of(arch, 2.43) if reduce else None,
@@ -324,7 +327,7 @@ def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight)
     for ratio, expected in ((1 - 1e-9, Verdict.COLLAPSES), (1 + 1e-9, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
         seen = observe(
-            arch.problem(mu), "direct", moving=False, reduction=Reduction.of(arch, mu)
+            arch_problem(arch, mu), "direct", moving=False, reduction=Reduction.of(arch, mu)
         )
         assert seen.verdict is expected
         assert seen.blocks <= 6
@@ -345,7 +348,7 @@ def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
     arch = Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
     few, every = (
         observe(
-            arch.problem(mu),
+            arch_problem(arch, mu),
             "direct",
             moving=False,
             reduction=Reduction.of(arch, mu) if reduce else None,
@@ -361,7 +364,7 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
     """All 301 voussoirs would take it minutes."""
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = observe(arch.problem(mu), "pymunk", reduction=Reduction.of(arch, mu))
+        seen = observe(arch_problem(arch, mu), "pymunk", reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected, seen.reason
         if expected is Verdict.COLLAPSES:
             state = limit.least_thickness(arch.half_angle, mu, voussoirs, weight)
@@ -376,7 +379,7 @@ def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
     pytest.importorskip("pybullet")
     for ratio, expected in ((0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
-        seen = observe(arch.problem(mu), "pybullet", reduction=Reduction.of(arch, mu))
+        seen = observe(arch_problem(arch, mu), "pybullet", reduction=Reduction.of(arch, mu))
         assert seen.verdict is expected, seen.reason
         assert seen.motion.recording.poses.shape[1:] == (voussoirs, 6)
 
@@ -409,7 +412,9 @@ def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
     arch = arch_at(0.98, 125, 0.9, voussoirs)
     few, every = (
         observe(
-            arch.problem(0.9), "direct", reduction=Reduction.of(arch, 0.9) if reduce else None
+            arch_problem(arch, 0.9),
+            "direct",
+            reduction=Reduction.of(arch, 0.9) if reduce else None,
         )
         for reduce in (True, False)
     )
@@ -438,7 +443,8 @@ def test_scale_and_density_change_nothing():
     arch = arch_at(0.98, 125, 0.9, 27)
     other = replace(arch, radius=64.0, depth=0.25, specific_weight=16_000.0)
     one, two = (
-        hold(a.problem(0.9), "direct", reduction=Reduction.of(a, 0.9)) for a in (arch, other)
+        hold(arch_problem(a, 0.9), "direct", reduction=Reduction.of(a, 0.9))
+        for a in (arch, other)
     )
     assert accelerations(one) == pytest.approx(accelerations(two), abs=1e-12)
 

@@ -15,11 +15,11 @@ from scipy.integrate import quad
 
 from blocksim import load_recording
 from blocksim.arch.circular import Arch
-from blocksim.arch.structure import arch_behind, structure_of_arch
 from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.road import on_road
-from blocksim.kinds.files import fill_of, structure_of, with_fill, with_parameter, with_road
+from blocksim.blocks.road import fill_of, on_road, with_fill, with_road
+from blocksim.kinds.circular import CircularArch, weighed_arch
+from blocksim.kinds.files import structure_of
 from blocksim.limit import collapse, equilibrium
 
 HEAVY, FILL = 22_000.0, 18_000.0
@@ -78,6 +78,11 @@ def weights(problem: Problem) -> np.ndarray:
     return total
 
 
+def structure_of_arch(arch: Arch, mu: float) -> Problem:
+    """An arch with supports drawn."""
+    return CircularArch.of(arch, friction=mu).between_supports().problem()
+
+
 def above(outer: float, half_angle: float, height: float) -> float:
     """Area between an extrados and the road, by quadrature [m^2]."""
     reach = outer * math.sin(half_angle)
@@ -107,7 +112,7 @@ def test_an_arch_under_fill_and_loads_is_held_by_what_it_weighs() -> None:
 
 
 def vars_of(problem: Problem) -> dict[str, Any]:
-    names = ("assembly", "mu", "gravity", "dead", "origin")
+    names = ("assembly", "mu", "gravity", "dead", "maker")
     return {name: getattr(problem, name) for name in names}
 
 
@@ -145,7 +150,7 @@ def test_an_arch_and_its_kind_are_the_same_blocks(weight: Any) -> None:
         assert other.inner == pytest.approx(mine.inner, abs=1e-12)
         assert other.outer == pytest.approx(mine.outer, abs=1e-12)
     assert made.mu == math.inf
-    assert arch_behind(made) == arch
+    assert weighed_arch(made) == arch
 
 
 def test_the_command_line_says_the_same() -> None:
@@ -238,8 +243,8 @@ def test_a_weight_stays_where_it_is_as_an_arch_grows_thinner() -> None:
     """The ends of radial joints move along the road: another voussoir may come below it."""
     thick = Arch(half_angle=1.2, eta=0.4, voussoirs=9)
     built = with_road(structure_of_arch(thick, 0.7), [(0.45, 0.45, 5.0), (-0.2, 0.1, 3.0)])
-    thin = with_parameter(built, "thickness", 0.05)
-    assert thin.origin["road"] == [[0.45, 0.45, 5.0], [-0.2, 0.1, 3.0]]
+    thin = built.but(thickness=0.05)
+    assert thin.road == ((0.45, 0.45, 5.0), (-0.2, 0.1, 3.0))
     for problem, outer in ((built, 1.2), (thin, 1.025)):
         angle = math.asin(0.45 / outer)
         place = int(np.searchsorted(thick.joint_angles, angle)) - 1
@@ -339,7 +344,7 @@ def test_what_is_on_the_road_is_let_go_drawn_and_bracketed(tmp_path: Path) -> No
     problem = load_recording(run).problem
     assert problem.load == 1
     assert [each.force[1] for each in problem.live] == [-300_000]
-    assert problem.origin["road"] == [[2, 2, 300_000]]
+    assert problem.road == ((2, 2, 300_000),)
     assert inside("render", *UNDER, *load, "--out", str(picture)).returncode == 0
     drawn = picture.read_text()
     assert len(re.findall('id="live-', drawn)) == 1

@@ -17,6 +17,7 @@ from blocksim.ask.check import check
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
+from blocksim.kinds.circular import arch_problem
 from blocksim.limit import equilibrium
 from blocksim.limit.starting import Start, may_start, rates_of
 
@@ -46,7 +47,7 @@ def arch(mu: float, times: float, voussoirs: int = 3) -> Problem:
     """A wide arch of so many times its least thickness."""
     eta = least_thickness(HALF_ANGLE, mu, voussoirs).eta
     assert eta is not None
-    return Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=voussoirs).problem(mu)
+    return arch_problem(Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=voussoirs), mu)
 
 
 def wrong(problem: Problem, start: Start) -> float:
@@ -119,7 +120,9 @@ def test_its_motion_is_none_with_other_friction() -> None:
 def test_of_another_size_it_is_the_same() -> None:
     powers = [
         may_start(
-            Arch(eta=1.286, radius=radius, half_angle=HALF_ANGLE, voussoirs=3).problem(3.0)
+            arch_problem(
+                Arch(eta=1.286, radius=radius, half_angle=HALF_ANGLE, voussoirs=3), 3.0
+            )
         ).power
         for radius in (1.0, 250.0)
     ]
@@ -139,7 +142,7 @@ def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
     half_angle = math.radians(alpha)
     eta = least_thickness(half_angle, mu, 7).eta
     assert eta is not None
-    problem = Arch(half_angle=half_angle, eta=1.001 * eta, voussoirs=7).problem(mu)
+    problem = arch_problem(Arch(half_angle=half_angle, eta=1.001 * eta, voussoirs=7), mu)
     assert may_start(problem).moves is False
 
 

@@ -22,14 +22,15 @@ from running import inside as blocksim
 from strangers import packed
 
 from blocksim.arch.circular import Arch
-from blocksim.arch.motion import load_recording
 from blocksim.blocks.assembly import Block
 from blocksim.blocks.problem import Load, Move
 from blocksim.common.checks import FACTOR, FRICTION, LENGTH, Range
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_of, read_file, toml_of
 from blocksim.evidence import recording as recordings
+from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import load_structure
+from blocksim.kinds.recorded import load_recording
 from blocksim.view import video
 from blocksim.view.explorer import read_results
 from blocksim.view.video import write_film
@@ -91,8 +92,11 @@ def test_blocks_in_python_have_sizes_of_real_things(field: str, value: float) ->
         (lambda: Load(force=np.array([1e200, 0]), blocks=(0,)), "force"),
         (lambda: Load(force=np.array([1, 0]), blocks=(0,), point=np.array([0, 1e99])), "point"),
         (lambda: Move(support=0, direction=np.array([math.nan, 0])), "direction"),
-        (lambda: Arch(half_angle=1, eta=0.1, voussoirs=9).problem(1e-300), "mu"),
-        (lambda: Arch(half_angle=1, eta=0.1, voussoirs=9).problem(0.7).with_load(1e99), "load"),
+        (lambda: arch_problem(Arch(half_angle=1, eta=0.1, voussoirs=9), 1e-300), "mu"),
+        (
+            lambda: arch_problem(Arch(half_angle=1, eta=0.1, voussoirs=9), 0.7).with_load(1e99),
+            "load",
+        ),
     ],
 )
 def test_so_have_loads_and_motions(made: Any, words: str) -> None:

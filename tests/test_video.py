@@ -22,13 +22,14 @@ from running import inside
 from scipy.spatial.transform import Rotation
 
 from blocksim.arch.circular import GRAVITY, Arch
-from blocksim.arch.motion import load_recording
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, classify, joint_motion
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
 from blocksim.evidence.recording import Recording
+from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.recorded import load_recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
 from blocksim.view.film import Film
 from blocksim.view.order import painting_order
@@ -49,7 +50,7 @@ def rest(arch: Arch = ARCH) -> Array:
 def recording(moved: Array, times: Array, arch: Arch = ARCH) -> Recording:
     """Record given displacements, (frames, blocks, 3)."""
     return Recording(
-        problem=arch.problem(0.7),
+        problem=arch_problem(arch, 0.7),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
@@ -513,7 +514,7 @@ def test_lengths_and_times_have_units_where_a_radius_was_given() -> None:
     assert "t = 0.300 s" in metric
     assert "1 m" in metric
     assert "10 times slower" in metric
-    free = replace(falling(), problem=replace(ARCH, radius=1.0, depth=0.5).problem(0.7))
+    free = replace(falling(), problem=arch_problem(replace(ARCH, radius=1.0, depth=0.5), 0.7))
     film = Film([free], slow=10)
     words = drawn_words(film, 0.3)
     assert "t = 0.30 √(r/g)" in words

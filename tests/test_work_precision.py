@@ -20,6 +20,7 @@ from blocksim.engines import ENGINES
 from blocksim.evidence.motion import QUIET
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 from blocksim.report import chart
 from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.studies import refinement
@@ -157,7 +158,9 @@ def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
 def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     """What stands is watched to the end."""
     simulation = Simulation.of(
-        arch(SMALL, 1.5).problem(SMALL.mu), method, settings={"step": 1 / 480, "sweeps": 20}
+        arch_problem(arch(SMALL, 1.5), SMALL.mu),
+        method,
+        settings={"step": 1 / 480, "sweeps": 20},
     )
     seen = let_go(simulation)
     assert seen.verdict is Verdict.STANDS

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from blocksim.arch.circular import Arch, arch_of
+from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import (
     Bound,
     joints_of,
@@ -16,20 +16,20 @@ from blocksim.arch.limit.statics import (
     spread_of,
     thrust_bounds,
 )
-from blocksim.ask.carried import Carried, carried_by, inverse
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit import Thrust
+from blocksim.limit.carried import Carried, inverse
 
 
-def carried_by_arch(arch: Arch, mu: float, joint: int | None = None) -> Carried:
+def carried_by_arch(arch: Arch, problem: Problem, joint: int | None = None) -> Carried:
     """Find what an arch carries under its own weight; any joint has the same thrust.
 
     Parameters
     ----------
     arch : Arch
-    mu : float
-        Friction coefficient, inf allowed.
+    problem : Problem
+        Of this arch, under its own weight.
     joint : int, optional
         Where thrust is told; by default the crown, or the joint to its left.
 
@@ -37,7 +37,7 @@ def carried_by_arch(arch: Arch, mu: float, joint: int | None = None) -> Carried:
     -------
     Carried
     """
-    problem = arch.problem(mu)
+    mu = problem.mu
     least = least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight).eta
     needed = least_friction(arch)
     used = 1 - slack(arch, mu)
@@ -70,27 +70,6 @@ def _thrust(arch: Arch, thrust: float, unit: float) -> Thrust:
     if math.isinf(thrust):
         return Thrust(thrust=thrust, forces=None)
     return Thrust(thrust=thrust * unit, forces=unit * joint_forces(arch, thrust))
-
-
-def carried_of(problem: Problem) -> Carried | None:
-    """Find what anything carries, an arch under its own weight by its own statics.
-
-    None where gravity leans out of the plane, or the ground shakes: statics in the plane do
-    not tell what happens then.
-    """
-    if not problem.is_planar or problem.shaking is not None:
-        return None
-    arch = arch_of(problem)
-    if arch is not None and is_plain_arch(problem):
-        return carried_by_arch(arch, problem.mu)
-    return carried_by(problem)
-
-
-def is_plain_arch(problem: Problem) -> bool:
-    """Whether a problem is an arch under its own weight, upright, its joints all alike."""
-    upright = not problem.gravity[0] and not problem.gravity[2]
-    alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
-    return arch_of(problem) is not None and upright and alike and not problem.is_loaded
 
 
 def joint_forces(arch: Arch, thrust: float, share: float = 1.0) -> Array:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY as GRAVITY
-from blocksim.blocks.problem import Problem
 from blocksim.blocks.rows import Rows
 from blocksim.common.checks import (
     ETA,
-    FRICTION,
     HALF_ANGLE,
     LENGTH,
     PER_VOLUME,
@@ -28,8 +26,6 @@ WEIGHTS: tuple[str, ...] = get_args(Weight)
 
 SMALL = 0.1
 """Angle below which a series is better than a difference [rad]."""
-KIND = "circular-arch"
-"""How problems made from an arch are told."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,30 +151,6 @@ class Arch(Shown):
         # They are alike: what is wrong with the first is so with all, and told at once.
         _ = blocks[0]
         return Assembly(blocks=blocks, joints=joints, size=self.radius)
-
-    def problem(self, mu: float, lean: float = 0.0) -> Problem:
-        """Return the problem of this arch under its own weight.
-
-        Parameters
-        ----------
-        mu : float
-            Friction coefficient of every joint, 1e-6 to 1e6 or inf.
-        lean : float
-            Angle by which gravity leans out of the plane [rad].
-        """
-        FRICTION.require("mu", mu)
-        upright = Problem(
-            assembly=self.assembly(), mu=mu, origin={"kind": KIND, **asdict(self)}
-        )
-        return upright.leaning(lean) if lean else upright
-
-
-def arch_of(problem: Problem) -> Arch | None:
-    """Return the arch a problem was made from; None where it was no arch."""
-    made = dict(problem.origin)
-    # A circular arch of a structure file has other parameters.
-    mine = made.pop("kind", None) == KIND and "half_angle" in made
-    return Arch(**made) if mine else None  # type: ignore[arg-type]
 
 
 def centroid_factor(eta: float, weight: Weight) -> float:

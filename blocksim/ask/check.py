@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from blocksim.ask.carried import Carried, carried_by
 from blocksim.ask.methods import choose, chosen_words, merges
 from blocksim.ask.rest import Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
@@ -19,6 +18,7 @@ from blocksim.common.shown import Shown
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import Equilibrium, collapse, equilibrium
+from blocksim.limit.carried import Carried, carried_by
 from blocksim.limit.programme import NEAR
 
 if TYPE_CHECKING:

@@ -118,9 +118,7 @@ def family_of(problem: Problem, over: str) -> Family:
 
 def families_of(problem: Problem) -> tuple[str, ...]:
     """Names of the parameters there are: of any problem, of its shaking, and of its kind."""
-    from blocksim.kinds.files import kind_behind
-
-    kind = kind_behind(problem)
+    kind = problem.maker
     still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
     always = [name for name in FAMILIES if name not in still]
     return (*always, *(() if kind is None else kind.bracketed))
@@ -251,14 +249,12 @@ def _over_parameter(problem: Problem, name: str) -> Family:
 
     Its range is where the kind can be built, around the value at hand.
     """
-    from blocksim.kinds.files import kind_behind, with_parameter
-
-    kind = kind_behind(problem)
+    kind = problem.maker
     assert kind is not None  # noqa: S101
     known, low, high = kind.number(name)
     now = kind.value(name)
     ends = max(low, now / WIDEST), min(high, now * WIDEST)
-    scan = Scan(lambda value: with_parameter(problem, name, value), ends, now)
+    scan = Scan(lambda value: problem.but(**{name: value}), ends, now)
     return Family(
         name=name,
         unit=known.unit,

@@ -125,7 +125,7 @@ def _beyond(method: Method, problem: Problem | None) -> str:
     if problem.shaking and not (isinstance(method, Engine) and method.shakes):
         able = ", ".join(each.name for each in ENGINES.values() if each.shakes)
         return f"one of {able}: {method.name} knows no ground that shakes"
-    if method.name == "theory" and "half_angle" not in problem.origin:
+    if method.name == "theory" and problem.length_name != "r":
         return "limit or an engine: theory is of symmetric circular arches only"
     return ""
 

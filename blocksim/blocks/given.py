@@ -1,4 +1,4 @@
-"""Joints that are given, not found: which faces they lie on, and in which sense."""
+"""Blocks as they are written down, and joints given with them, not found."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import following
@@ -18,6 +19,37 @@ OFF = 0.01
 
 SQUARE = 0.999
 """Least cosine between a given normal and the one across the ends, to be the same."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Body:
+    """A block as it is written down.
+
+    Parameters
+    ----------
+    polygons : tuple of (k, 2) array-like
+        Corners [m] in either direction; several polygons move as one. None has to be convex.
+    name : str
+    fixed : bool
+        Whether it stays where it is.
+    weight : float or None
+        [N]; None for `density` times area and depth.
+    centre : (2,) array-like or None
+        Where the weight acts [m]; None for the centroid.
+    inertia : float or None
+        Moment of inertia [kg m^2]; None for that of the polygons about their centroid, of
+        uniform density: where the weight acts says nothing of how a block turns.
+    depth : float
+        Out of the plane [m].
+    """
+
+    polygons: tuple[ArrayLike, ...]
+    name: str = ""
+    fixed: bool = False
+    weight: float | None = None
+    centre: ArrayLike | None = None
+    inertia: float | None = None
+    depth: float = 1.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -17,6 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
+from blocksim.blocks.given import Body as Body
 from blocksim.blocks.given import GivenJoint, as_given
 from blocksim.blocks.outlines import is_convex, joined, mended, moments
 from blocksim.blocks.problem import STANDARD_GRAVITY
@@ -38,37 +39,6 @@ MOST_BLOCKS = 100_000
 MOST_CORNERS = 1_000
 """Of one block."""
 _ROUNDING = 64 * np.finfo(float).eps
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Body:
-    """A block as it is written down.
-
-    Parameters
-    ----------
-    polygons : tuple of (k, 2) array-like
-        Corners [m] in either direction; several polygons move as one. None has to be convex.
-    name : str
-    fixed : bool
-        Whether it stays where it is.
-    weight : float or None
-        [N]; None for `density` times area and depth.
-    centre : (2,) array-like or None
-        Where the weight acts [m]; None for the centroid.
-    inertia : float or None
-        Moment of inertia [kg m^2]; None for that of the polygons about their centroid, of
-        uniform density: where the weight acts says nothing of how a block turns.
-    depth : float
-        Out of the plane [m].
-    """
-
-    polygons: tuple[ArrayLike, ...]
-    name: str = ""
-    fixed: bool = False
-    weight: float | None = None
-    centre: ArrayLike | None = None
-    inertia: float | None = None
-    depth: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)

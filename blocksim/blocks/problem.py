@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,11 @@ from blocksim.common.checks import (
     require_all,
     require_lean,
 )
+from blocksim.common.errors import InputError
 from blocksim.common.shown import Shown, short
+
+if TYPE_CHECKING:
+    from blocksim.blocks.maker import Maker
 
 STANDARD_GRAVITY = 9.81
 """To turn weight into mass [m/s^2]."""
@@ -110,9 +114,11 @@ class Problem(Shown):
         How the ground shakes from the release on.
     title, source : str
         What it is, and where it comes from.
-    origin : mapping
-        The parameters it was made from, and by which `kind` of generator; empty where its
-        blocks were given.
+    maker : Maker or None
+        What made it, with its parameters; None where its blocks were given.
+    road : tuple of (float, float, float)
+        Live loads on the road above, which stay where they are as blocks are made otherwise:
+        from one x to another [m], and the weight [N].
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
         forces have a meaning.
@@ -135,7 +141,8 @@ class Problem(Shown):
     shaking: Shaking | None = None
     title: str = ""
     source: str = ""
-    origin: Mapping[str, object] = field(default_factory=dict[str, object])
+    maker: Maker | None = None
+    road: tuple[tuple[float, float, float], ...] = ()
     weighed: bool = True
     notes: tuple[str, ...] = ()
 
@@ -197,6 +204,51 @@ class Problem(Shown):
         require(finite, "tilt", tilt, "a finite angle")
         (x, y, z), cos, sin = self.gravity, math.cos(tilt), math.sin(tilt)
         return replace(self, gravity=np.array([x * cos - y * sin, x * sin + y * cos, z]))
+
+    def but(self, **changes: Any) -> Problem:
+        """Return the same, made with other parameters under the same loads.
+
+        Parameters
+        ----------
+        **changes
+            Parameters of its maker; `**{"arch.thickness": 0.2}` is one of its arch.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range, changes the number of blocks, or there is no maker.
+        """
+        name, value = next(iter(changes.items()))
+        if self.maker is None:
+            raise InputError(name, value, "left out: the blocks were given")
+        made, blocks = self.remade(self.maker.but(**changes)), len(self.assembly.blocks)
+        same = len(made.assembly.blocks) == blocks
+        require(same, name, value, f"a value that leaves {blocks} blocks, on which loads act")
+        return made
+
+    def remade(self, maker: Maker) -> Problem:
+        """Return the same by another maker, or by one with other parameters.
+
+        Loads stay as they are but for the weight of fill, which comes first among the dead
+        ones, and for those on the road.
+        """
+        # It knows of problems, which know nothing of roads.
+        from blocksim.blocks.road import with_road
+
+        before = 0 if self.maker is None else len(self.maker.built.fills)
+        built = maker.built
+        remade = replace(
+            self,
+            assembly=built.assembly,
+            dead=(*built.fills, *self.dead[before:]),
+            maker=maker,
+        )
+        return with_road(remade, self.road) if self.road else remade
+
+    @property
+    def length_name(self) -> str:
+        """What the unit of length of engines is called: the radius r, or the size L."""
+        return "L" if self.maker is None else self.maker.length_name
 
     def with_load(self, load: float) -> Problem:
         """Return the same under another load factor."""

@@ -7,9 +7,9 @@ inertias and joints are those the engine had.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -18,12 +18,17 @@ from blocksim.blocks.problem import Load, Move, Problem
 from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH
 
+if TYPE_CHECKING:
+    from blocksim.blocks.maker import Maker
+
 
 def to_record(value: object) -> Any:
     """Return a problem, or a part of one, as dicts, lists, strings and numbers.
 
     Infinity, which JSON has not, is the string ``inf``.
     """
+    if isinstance(value, Problem):
+        return _problem(value)
     if is_dataclass(value):
         return {each.name: to_record(getattr(value, each.name)) for each in fields(value)}
     if isinstance(value, np.ndarray):
@@ -38,8 +43,27 @@ def to_record(value: object) -> Any:
     return value
 
 
-def from_record(record: Mapping[str, Any]) -> Problem:
+def _problem(problem: Problem) -> dict[str, Any]:
+    """Return a problem; of its maker the parameters, and where they stand loads on the road."""
+    names = [each.name for each in fields(problem) if each.name not in {"maker", "road"}]
+    maker = problem.maker
+    origin: dict[str, Any] = {} if maker is None else to_record(maker.origin())
+    if problem.road:
+        origin["road"] = to_record(problem.road)
+    return {**{name: to_record(getattr(problem, name)) for name in names}, "origin": origin}
+
+
+def from_record(
+    record: Mapping[str, Any],
+    maker_of: Callable[[Mapping[str, object]], Maker | None] = lambda _: None,
+) -> Problem:
     """Return the problem that `to_record` was given.
+
+    Parameters
+    ----------
+    record : mapping
+    maker_of : callable, optional
+        Parameters and name of a kind to the maker; by default the problem has none.
 
     Raises
     ------
@@ -61,6 +85,12 @@ def from_record(record: Mapping[str, Any]) -> Problem:
     known = all(each in range(len(assembly.blocks)) for each in on)
     known &= all(move.support in range(len(assembly.supports)) for move in moves)
     words = all(isinstance(given.get(name, ""), str) for name in ("title", "source"))
+    origin = _numbers(given.pop("origin"))
+    road = tuple(
+        (float(low), float(high), float(weight))
+        for low, high, weight in cast("list[list[float]]", origin.pop("road", []))
+    )
+    known &= all(math.isfinite(each) for load in road for each in load)
     if not known or not words:
         message = "no problem"
         raise ValueError(message)
@@ -71,7 +101,8 @@ def from_record(record: Mapping[str, Any]) -> Problem:
         live=live,
         moves=moves,
         shaking=_shaking(given.pop("shaking", None)),
-        origin=_numbers(given.pop("origin")),
+        maker=maker_of(origin),
+        road=road,
         notes=tuple(str(each) for each in given.pop("notes")),
         **given,
     )

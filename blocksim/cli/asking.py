@@ -7,9 +7,9 @@ from typing import Annotated
 
 import click
 
-from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.carried import carried_by_arch
-from blocksim.arch.check import check as ask_check
+from blocksim.ask.archbracket import bracket as ask_bracket
+from blocksim.ask.archcheck import check as ask_check
 from blocksim.cli.arguments import Option
 from blocksim.cli.options import (
     EXIT_CODES,
@@ -31,6 +31,7 @@ from blocksim.cli.options import (
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.question import arch_of, joint_of, question, thickness_words
 from blocksim.common.checks import require
+from blocksim.kinds.circular import arch_problem
 from blocksim.report.answers import (
     bracket_lines,
     bracket_record,
@@ -86,7 +87,7 @@ def check(
     at = asked.line and asked.line.at
     told = answer.carried
     if told is not None and at_joint is not None:
-        told = carried_by_arch(arch, asked.mu, at_joint)
+        told = carried_by_arch(arch, arch_problem(arch, asked.mu), at_joint)
     answer_with(check_record(answer, told), check_lines(answer, at, told), as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 

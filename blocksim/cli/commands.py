@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.drawing import write_still
 from blocksim.cli.filming import (
@@ -42,6 +41,7 @@ from blocksim.cli.structures import (
 from blocksim.common.checks import is_number, require
 from blocksim.common.files import require_place
 from blocksim.engines import ENGINES
+from blocksim.kinds.circular import plain_arch
 
 FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0
@@ -64,7 +64,7 @@ def simulate(
 ) -> None:
     """Let it go and record its motion."""
     problem = problem_asked(scene, given, loading, thick=True, out=out)
-    size = "L" if arch_of_problem(problem) is None else "r"
+    size = "L" if plain_arch(problem) is None else "r"
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require_place(out)

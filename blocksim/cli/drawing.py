@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.check import ProblemCheck, check
@@ -18,6 +17,7 @@ from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import plain_arch
 
 
 def write_still(
@@ -89,7 +89,7 @@ def _write_sheet(
 
 def verdict_words(answer: ProblemCheck) -> str:
     """Say the verdict and its method, and how an arch falls of its own weight."""
-    arch = arch_of_problem(answer.problem)
+    arch = plain_arch(answer.problem)
     mode = None
     falls = answer.verdict is Verdict.COLLAPSES
     if arch is not None and falls and answer.problem.is_planar and not answer.shaken:

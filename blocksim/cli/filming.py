@@ -10,8 +10,6 @@ from typing import Annotated, Literal
 
 from blocksim.arch.asked import Scenario
 from blocksim.arch.circular import Arch
-from blocksim.arch.circular import arch_of as arch_of_problem
-from blocksim.arch.motion import load_recording
 from blocksim.ask.methods import SPATIAL
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY
@@ -27,6 +25,8 @@ from blocksim.evidence.motion import MOVED
 from blocksim.evidence.observation import conclude, hold
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem, plain_arch
+from blocksim.kinds.recorded import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 
 FALL = 12.0
@@ -164,7 +164,7 @@ def export(out: Path, kind: str, recording: Recording) -> None:
         write = write_recording_csv if kind == "csv" else write_recording_json
         write_whole(out, lambda file: write(recording, file))
     # A radius of 1 stands for none given.
-    no_radius = recording.assembly.size == 1 and arch_of_problem(recording.problem)
+    no_radius = recording.assembly.size == 1 and plain_arch(recording.problem)
     radius = " if r = 1 m" if no_radius else ""
     say(
         f"wrote {out}: {counted(len(recording.assembly.blocks), 'block')}, "
@@ -176,7 +176,7 @@ def export(out: Path, kind: str, recording: Recording) -> None:
 def _motionless(recording: Recording) -> str:
     """Say that nothing is seen to move in a recording, and what to do where it falls."""
     moved = float(recording.displacement.max())
-    built = arch_of_problem(recording.problem)
+    built = plain_arch(recording.problem)
     arch = f"eta {built.eta:g}, {recording.engine}" if built else recording.engine
     if moved > MOVED:
         return (
@@ -197,7 +197,7 @@ def picture_of_leaning(
     from blocksim.view.film import Film
 
     with named_options(), progress() as report:
-        held = hold(arch.problem(asked.mu, asked.lean), SPATIAL, progress=report)
+        held = hold(arch_problem(arch, asked.mu, asked.lean), SPATIAL, progress=report)
         seen = conclude(held, moving=True, progress=report)
     run = seen.motion.recording if seen.motion else held.release(STILL).recording
     falls = seen.verdict is Verdict.COLLAPSES

@@ -6,12 +6,12 @@ import math
 from typing import Annotated
 
 from blocksim.arch.scenario import load_scenario, shipped
+from blocksim.blocks.maker import parameters_of
 from blocksim.cli.arguments import Argument
 from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
 from blocksim.kinds import KINDS
-from blocksim.kinds.base import parameters_of
 from blocksim.studies.structures import structures
 
 NUMBERS = {"alpha", "mu", "n", "eta"}

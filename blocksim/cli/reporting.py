@@ -10,7 +10,6 @@ from typing import Annotated
 
 import click
 
-from blocksim.arch.circular import arch_of as arch_of_problem
 from blocksim.arch.observed import observed_mode
 from blocksim.ask.check import check
 from blocksim.cli.arguments import Option
@@ -31,6 +30,7 @@ from blocksim.cli.structures import is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import require_place, write_whole
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import plain_arch
 
 
 def report(
@@ -58,7 +58,7 @@ def report(
     if not is_structure(scene):
         said = thickness_words(question(scene, given), given.ratio)
         answer = replace(answer, reason=answer.reason + said)
-    arch = arch_of_problem(problem)
+    arch = plain_arch(problem)
     falls = answer.verdict is Verdict.COLLAPSES and problem.is_planar
     page = structure_page(
         answer,

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from blocksim.arch.dimensions import require_unit_weight
-from blocksim.arch.structure import LEAST_DENSITY
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.road import with_fill, with_road
 from blocksim.cli.options import Loading, option_of
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import MISSING, InputError
-from blocksim.kinds.files import density_of, with_fill, with_road
+from blocksim.kinds.circular import LEAST_DENSITY
 
 HIGHEST_FILL = 1000.0
 """[m]"""
@@ -41,7 +41,8 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
     if height is not None:
         ok = height == 0 or is_number(height, 0, HIGHEST_FILL)
         require(ok, "--fill", height, f"0 to {HIGHEST_FILL:g} m")
-        share = 1.0 if heavy is None else 1000 * heavy / density_of(problem)
+        maker = problem.maker
+        share = 1.0 if heavy is None or maker is None else 1000 * heavy / maker.unit_weight
         problem = with_fill(problem, height, share)
     placed = [("--point-load", (x, x, weight)) for x, weight in loading.point_load or ()]
     placed += [("--patch-load", load) for load in loading.patch_load or ()]

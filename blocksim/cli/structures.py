@@ -11,9 +11,7 @@ import click
 from blocksim.arch.asked import Scenario
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import require_unit_weight
-from blocksim.arch.structure import structure_of_arch
 from blocksim.ask.bracket import bracket
-from blocksim.ask.carried import carried_by
 from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
 from blocksim.ask.simulate import simulate
@@ -39,6 +37,7 @@ from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import read_file, toml_of
 from blocksim.evidence.recording import Recording
 from blocksim.kinds import KINDS
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import (
     changed,
     is_drawing,
@@ -47,6 +46,7 @@ from blocksim.kinds.files import (
     structure_of,
     weighed,
 )
+from blocksim.limit.carried import carried_by
 from blocksim.report.recordings import recording_lines
 from blocksim.report.structures import (
     bracket_lines,
@@ -98,8 +98,10 @@ def problem_asked(
 def problem_of_arch(arch: Arch, asked: Scenario, loading: Loading) -> Problem:
     """Return an arch asked about, with what the options put on it."""
     # Fill and loads on the road are borne by a structure, of the arch's kind.
-    made = structure_of_arch if loading.on_road else Arch.problem
-    return loaded(made(arch, asked.mu, asked.lean), Given(), loading)
+    made = CircularArch.of(arch, friction=asked.mu)
+    if loading.on_road:
+        made = made.between_supports()
+    return loaded(made.problem().leaning(asked.lean), Given(), loading)
 
 
 def structure(scene: str, given: Given, loading: Loading) -> Problem:

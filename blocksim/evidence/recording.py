@@ -9,9 +9,9 @@ import struct
 import tokenize
 import zipfile
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.lib.format import read_array_header_1_0, read_magic
@@ -24,6 +24,9 @@ from blocksim.common.errors import InputError, in_line
 from blocksim.common.files import AnyPath, json_of, json_text, opened, write_whole
 from blocksim.common.shown import Shown
 from blocksim.engines.base import Quality, Settings
+
+if TYPE_CHECKING:
+    from blocksim.blocks.maker import Maker
 
 FORMAT = 2
 WRITTEN = "written by blocksim simulate"
@@ -168,7 +171,11 @@ Header = dict[str, Any]
 """What a recording says beside its arrays."""
 
 
-def read_recording(path: AnyPath, renew: Callable[[Header], Header] = dict) -> Recording:
+def read_recording(
+    path: AnyPath,
+    renew: Callable[[Header], Header] = dict,
+    maker_of: Callable[[Mapping[str, object]], Maker | None] = lambda _: None,
+) -> Recording:
     """Read a recording and check that it is one.
 
     Parameters
@@ -176,6 +183,8 @@ def read_recording(path: AnyPath, renew: Callable[[Header], Header] = dict) -> R
     path : str or path
     renew : callable, optional
         Makes the header of an older format one of today's.
+    maker_of : callable, optional
+        As of `from_record`.
 
     Raises
     ------
@@ -189,7 +198,7 @@ def read_recording(path: AnyPath, renew: Callable[[Header], Header] = dict) -> R
         header = renew(header)
         require(header.get("format") == FORMAT, "recording", where, f"of format {FORMAT}")
         recording = Recording(
-            problem=from_record(header["problem"]),
+            problem=from_record(header["problem"], maker_of),
             engine=str(header["engine"]),
             engine_version=str(header["engine_version"]),
             settings=_settings(header["settings"]),

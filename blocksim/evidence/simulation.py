@@ -203,7 +203,7 @@ class Simulation:
     @property
     def length(self) -> str:
         """What the unit of length is called: the radius of an arch, or the size of others."""
-        return "r" if "half_angle" in self.problem.origin else "L"
+        return self.problem.length_name
 
     @property
     def blocks(self) -> int:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from blocksim.common.later import Later
 
 if TYPE_CHECKING:
-    from blocksim.kinds.base import Kind
+    from blocksim.blocks.maker import Maker
 
 
-def _kind(place: str) -> type[Kind]:
+def _kind(place: str) -> type[Maker]:
     """Load a kind, given as file and class."""
     file, _, name = place.partition(".")
     return getattr(import_module(f"blocksim.kinds.{file}"), name)

@@ -7,16 +7,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from blocksim.blocks.polygons import Body
+from blocksim.blocks.given import Body
+from blocksim.blocks.maker import Fill, Made, Maker, count, metres, parameter
 from blocksim.common.errors import InputError
 from blocksim.kinds.archkind import ArchKind
-from blocksim.kinds.base import Fill, Kind, Made, count, metres, parameter
 from blocksim.kinds.blockwork import floor, pier
 from blocksim.kinds.portal import LEVEL, SEMICIRCLE, require_bearing
 
 
 @dataclass(frozen=True, kw_only=True)
-class Arcade(Kind):
+class Arcade(Maker):
     """Equal arches side by side; the origin is the middle of its springing line."""
 
     name: ClassVar[str] = "arcade"

@@ -10,11 +10,10 @@ from typing import ClassVar
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.given import GivenJoint
-from blocksim.blocks.polygons import Body
+from blocksim.blocks.given import Body, GivenJoint
+from blocksim.blocks.maker import FARTHEST, Fill, Made, Maker, count, metres, parameter
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.errors import InputError
-from blocksim.kinds.base import FARTHEST, Fill, Kind, Made, count, metres, parameter
 from blocksim.kinds.curves import Curve, where
 from blocksim.kinds.strips import Voussoirs, chords, strips
 
@@ -26,7 +25,7 @@ NEARLY = 1 - 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArchKind(Kind):
+class ArchKind(Maker):
     """An arch of voussoirs between two springings, which are fixed."""
 
     is_arch: ClassVar[bool] = True

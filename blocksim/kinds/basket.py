@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.maker import metres, parameter
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.base import metres, parameter
 from blocksim.kinds.curves import Curve
 
 

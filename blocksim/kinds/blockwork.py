@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.polygons import Body
+from blocksim.blocks.given import Body
 
 
 def box(

@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 from scipy.optimize import brentq
 
+from blocksim.blocks.maker import metres
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.base import metres
 from blocksim.kinds.curves import Curve
 
 STEEPEST = 100.0

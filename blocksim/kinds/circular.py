@@ -3,23 +3,63 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from blocksim.arch.circular import Arch, Weight
+from blocksim.arch.dimensions import At, Dimensions, Line
+from blocksim.blocks.maker import Built, metres, parameter, parameters_of
+from blocksim.blocks.problem import Problem
+from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, Range, require
+from blocksim.common.errors import MISSING
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.base import metres, parameter
 from blocksim.kinds.curves import Curve
 from blocksim.kinds.strips import Voussoirs
 
+FEWEST = 3
+"""Voussoirs of an arch."""
+HALF_ANGLE_DEG = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
 ROUND = 360.0
+
+
+SPRINGINGS = "left_deg", "right_deg"
+WEIGHTS: dict[str, Weight] = {"centreline": "centreline", "curved": "sector"}
+"""What an arch calls the weights of a kind that it has, too."""
+LEAST_DENSITY = 100.0
+"""Weight per volume below which weights are taken for ratios, not for newtons [N/m^3]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CircularArch(CurvedArch):
-    """A circular arch; the origin is the centre of the circle."""
+    """A circular arch; the origin is the centre of the circle.
+
+    It is made in one of three ways: by the angles to its springings (`left_deg`, `right_deg`),
+    by its half-angle and thickness-to-radius ratio (`half_angle_deg`, or `half_angle` in
+    radians, and `eta`), or by what can be measured (`span`, `rise` and `thickness` [m]). The
+    first draws supports, which may move; the unit of length of engines is then half its larger
+    side. Of the others it is the radius, and supports are the planes of the springings.
+
+    Parameters
+    ----------
+    half_angle : float or None
+        Crown to springing [rad].
+    half_angle_deg : float or None
+        The same [deg].
+    eta : float or None
+        Thickness-to-radius ratio.
+    span, rise : float or None
+        Of the line `at`, which stays where it is as the thickness changes [m].
+    at : {"intrados", "centreline", "extrados"}
+
+    Examples
+    --------
+    >>> arch = CircularArch(span=8, rise=3, thickness=0.45, voussoirs=31, friction=0.7)
+    >>> round(arch.radius, 3), arch.but(thickness=0.2).span
+    (4.392, 8)
+    """
 
     name: ClassVar[str] = "circular-arch"
     about: ClassVar[str] = "part of a ring between any two springings"
@@ -37,6 +77,138 @@ class CircularArch(CurvedArch):
         "arc of the centreline",
         choices=("curved", "chord", "centreline"),
     )
+    half_angle: float | None = None
+    half_angle_deg: float | None = None
+    eta: float | None = None
+    span: float | None = None
+    rise: float | None = None
+    at: At = "intrados"
+
+    @classmethod
+    def of(cls, arch: Arch, friction: float | None = None) -> Self:
+        """Return what makes an arch, exactly."""
+        return cls(
+            half_angle=arch.half_angle,
+            eta=arch.eta,
+            voussoirs=arch.voussoirs,
+            weight="centreline" if arch.weight == "centreline" else "curved",
+            radius=arch.radius,
+            depth=arch.depth,
+            density=arch.specific_weight,
+            friction=friction,
+        )
+
+    def __post_init__(self) -> None:
+        """Work out radius, springings and thickness, and check all."""
+        if self.span is not None or self.rise is not None:
+            for name in ("span", "rise"):
+                require(getattr(self, name) is not None, name, MISSING, "given")
+            self._measure(Line(span=self.span or 0, rise=self.rise or 0, at=self.at))
+        elif self.half_angle_deg is not None:
+            HALF_ANGLE_DEG.require("half_angle_deg", self.half_angle_deg)
+            self._derive("half_angle", math.radians(self.half_angle_deg))
+        if self.half_angle is not None:
+            HALF_ANGLE.require("half_angle", self.half_angle)
+            for name in SPRINGINGS:
+                self._derive(name, math.degrees(self.half_angle))
+        if self.eta is not None:
+            ETA.require("eta", self.eta)
+            self._derive("thickness", self.eta * self.radius)
+        if not self.is_plain:
+            super().__post_init__()
+        else:
+            # Its ranges are wider than those of its kind.
+            _ = self.shape
+            self._check_forces()
+
+    def _measure(self, line: Line) -> None:
+        """Work out what follows from the line that was measured."""
+        if self.eta is None:
+            radius = Dimensions(**vars(line), thickness=self.thickness).radius
+        else:
+            radius = line.mean_radius(self.eta)
+        self._derive("radius", radius)
+        self._derive("half_angle", line.half_angle)
+
+    def _derive(self, name: str, value: float) -> None:
+        """Set what follows from others; another value that was given is refused."""
+        given, usual = getattr(self, name), type(self).__dataclass_fields__[name].default
+        same = given in (usual, value)
+        require(same, name, given, f"left out: from the others it is {value:.6g}")
+        object.__setattr__(self, name, value)
+
+    def but(self, **changes: Any) -> Self:
+        """Return the same with other values; the line that was measured stays where it is."""
+        given: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
+        follow = {
+            ("span", "rise"): ("radius", "half_angle"),
+            ("half_angle_deg",): ("half_angle",),
+            ("half_angle",): SPRINGINGS,
+            ("eta",): ("thickness",),
+        }
+        for leading, following in follow.items():
+            if getattr(self, leading[0]) is not None:
+                left = leading if {*following} & {*changes} else following
+                given = {name: value for name, value in given.items() if name not in left}
+        for name, value in changes.items():
+            known = name in type(self).__dataclass_fields__
+            require(known, name, value, f"one of {', '.join(parameters_of(type(self)))}")
+        return type(self)(**{**given, **changes})
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is a symmetric ring by its half-angle, without fill."""
+        ring = self.half_angle is not None and self.weight in WEIGHTS
+        return ring and self.fill is None and self.joints != "vertical"
+
+    @cached_property
+    def shape(self) -> Arch | None:
+        """The symmetric arch it is; None where it is none, or its joints are not radial."""
+        angle, eta = self.half_angle, self.eta
+        if angle is None:
+            angle = math.radians(self.left_deg)
+            equal = self.left_deg == self.right_deg and HALF_ANGLE.has(angle)
+            if not equal or self.voussoirs < FEWEST:
+                return None
+        if self.weight not in WEIGHTS or self.joints == "vertical":
+            return None
+        if eta is None:
+            eta = self.thickness / self.radius
+        return Arch(
+            half_angle=angle,
+            eta=min(ETA.high, eta) if self.span is not None else eta,
+            voussoirs=self.voussoirs,
+            weight=WEIGHTS[self.weight],
+            radius=self.radius,
+            depth=self.depth,
+            specific_weight=self.unit_weight,
+        )
+
+    def between_supports(self) -> CircularArch:
+        """Return the same by the angles to its springings: with supports that can move."""
+        given = {name: getattr(self, name) for name in parameters_of(type(self))}
+        return CircularArch(**given, friction=self.friction, density=self.density)
+
+    def problem(self) -> Problem:
+        """Return the arch under its own weight and that of its fill."""
+        made = super().problem()
+        return replace(made, title="") if self.is_plain else made
+
+    def built_of(self, size: float | None = None) -> Built:
+        """Make the blocks."""
+        plain = self.shape if self.is_plain and size is None else None
+        return super().built_of(size) if plain is None else Built(assembly=plain.assembly())
+
+    @property
+    def length_name(self) -> str:
+        """What the unit of length of engines is called."""
+        return "r" if self.is_plain else "L"
+
+    def origin(self) -> dict[str, object]:
+        """Return what a recording keeps of it."""
+        if self.is_plain and self.shape is not None:
+            return {"kind": self.name, **asdict(self.shape)}
+        return super().origin()
 
     @property
     def tightest(self) -> float:
@@ -87,3 +259,42 @@ def circle(shift: float, radius: float, start: float, end: float) -> Curve:
         first=lambda s: (radius * np.cos(s), -radius * np.sin(s)),
         second=lambda s: (-radius * np.sin(s), -radius * np.cos(s)),
     )
+
+
+def arch_problem(arch: Arch, mu: float, lean: float = 0.0) -> Problem:
+    """Return the problem of an arch under its own weight.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float
+        Friction coefficient of every joint, 1e-6 to 1e6 or inf.
+    lean : float
+        Angle by which gravity leans out of the plane [rad].
+    """
+    FRICTION.require("mu", mu)
+    upright = CircularArch.of(arch, friction=mu).problem()
+    return upright.leaning(lean) if lean else upright
+
+
+def plain_arch(problem: Problem) -> Arch | None:
+    """Return the arch of a problem in whose radius it is measured; None of any other."""
+    maker = problem.maker
+    return maker.shape if isinstance(maker, CircularArch) and maker.is_plain else None
+
+
+def is_plain_arch(problem: Problem) -> bool:
+    """Whether a problem is an arch under its own weight, upright, its joints all alike."""
+    upright = not problem.gravity[0] and not problem.gravity[2]
+    alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
+    return plain_arch(problem) is not None and upright and alike and not problem.is_loaded
+
+
+def weighed_arch(problem: Problem) -> Arch | None:
+    """Return the symmetric circular arch of a problem, however it was made, else None.
+
+    One whose density was not given is none: its weights are ratios.
+    """
+    maker = problem.maker
+    known = isinstance(maker, CircularArch) and maker.unit_weight >= LEAST_DENSITY
+    return maker.shape if known or plain_arch(problem) else None  # type: ignore[union-attr]

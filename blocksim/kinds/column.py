@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from blocksim.blocks.maker import FARTHEST, Made, Maker, count, metres, parameter
 from blocksim.common.errors import InputError
-from blocksim.kinds.base import FARTHEST, Kind, Made, count, metres, parameter
 from blocksim.kinds.blockwork import floor, pier
 
 
 @dataclass(frozen=True, kw_only=True)
-class Column(Kind):
+class Column(Maker):
     """Drums on each other; the origin is the middle of the foot."""
 
     name: ClassVar[str] = "column"

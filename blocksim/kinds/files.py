@@ -12,27 +12,21 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, cast
 
-import numpy as np
-
 from blocksim.blocks import structure
-from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
 from blocksim.blocks.entries import AROUND, Around, around_of
-from blocksim.blocks.given import GivenJoint
-from blocksim.blocks.polygons import Body, assembly_of_bodies
-from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
-from blocksim.blocks.road import on_road
+from blocksim.blocks.maker import Maker, kind_of
+from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.files import AnyPath, json_of, read_file, shipped_files, toml_of
 from blocksim.kinds import KINDS
-from blocksim.kinds.base import Kind, kind_of, parameters_of
 from blocksim.reading.compas import is_compas, read_compas
 from blocksim.reading.dxf import read_dxf
 from blocksim.reading.svg import read_svg
@@ -231,216 +225,29 @@ def structure_of(data: object) -> Problem:
 ALL = tuple(KINDS.values())
 
 
-def problem_of(kind: Kind, around: Around) -> Problem:
+def problem_of(kind: Maker, around: Around) -> Problem:
     """Ask about a kind of structure.
 
     Parameters
     ----------
-    kind : Kind
+    kind : Maker
     around : Around
         Friction, loads and the like.
 
     Returns
     -------
     Problem
-        Dead loads begin with the weight of fill; its origin is the kind's table.
+        Dead loads begin with the weight of fill.
     """
-    made = kind.made(around.unit_weight)
-    if made.joints is None:
-        found = assembly_of_bodies(made.bodies, density=around.unit_weight, size=around.size)
-    else:
-        found = assembly_as_made(made.bodies, made.joints, around.size), ()
-    problem = structure.problem_of(around, made.bodies, *found)
-    place = np.cumsum([not body.fixed for body in made.bodies]) - 1
-    fills = tuple(
-        Load(
-            force=np.array([0.0, -fill.weight]),
-            blocks=(int(place[fill.body]),),
-            point=np.array(fill.point),
-        )
-        for fill in made.fills
-    )
+    friction = math.inf if around.friction == "inf" else around.friction
+    kind = replace(kind, density=around.density, friction=friction)
+    built = kind.built if around.size is None else kind.built_of(around.size)
+    problem = structure.problem_of(around, built.bodies, built.assembly, built.notes)
     return replace(
         problem,
-        dead=(*fills, *problem.dead),
+        dead=(*built.fills, *problem.dead),
         title=problem.title or kind.name,
-        origin={**kind.table(), "density": around.unit_weight},
+        maker=kind,
         # Kinds weigh their blocks, whatever the unit weight.
         weighed=around.density is not None,
     )
-
-
-def assembly_as_made(
-    bodies: Sequence[Body], joints: Sequence[GivenJoint], size: float | None
-) -> Assembly:
-    """Build an assembly of bodies with weights, whose joints are whole faces of both.
-
-    Nothing is looked for: a search for the least thickness builds dozens of them.
-    """
-    moving = [body for body in bodies if not body.fixed]
-    place = np.cumsum([not body.fixed for body in bodies]) - 1
-    bed = np.cumsum([body.fixed for body in bodies]) - 1
-    corners = np.concatenate([np.asarray(body.polygons[0]) for body in moving])
-    return Assembly(
-        blocks=tuple(
-            Block(
-                vertices=np.asarray(body.polygons[0]),
-                centre=np.asarray(body.centre),
-                mass=(body.weight or 0.0) / STANDARD_GRAVITY,
-                inertia=body.inertia or 0.0,
-                depth=body.depth,
-                name=body.name,
-            )
-            for body in moving
-        ),
-        joints=tuple(
-            Joint(
-                before=SUPPORT if bodies[joint.a].fixed else int(place[joint.a]),
-                after=SUPPORT if bodies[joint.b].fixed else int(place[joint.b]),
-                inner=joint.ends[0],
-                outer=joint.ends[1],
-                support=next(
-                    (int(bed[each]) for each in (joint.a, joint.b) if bodies[each].fixed), None
-                ),
-            )
-            for joint in joints
-        ),
-        size=float(np.ptp(corners, axis=0).max()) / 2 if size is None else size,
-        supports=tuple(
-            Support((np.asarray(body.polygons[0]),), body.name) for body in bodies if body.fixed
-        ),
-    )
-
-
-ASIDE = ("density", "road")
-"""What the origin of a problem says beside the table of its kind: its density [N/m^3], and
-live loads on its road, each from one x to another [m] and its weight [N]."""
-
-
-def kind_behind(problem: Problem) -> Kind | None:
-    """Return the kind a problem was made from; None where its blocks were given."""
-    table = {key: value for key, value in problem.origin.items() if key not in ASIDE}
-    try:
-        return kind_of(table, ALL)
-    except InputError:
-        return None
-
-
-def with_parameter(problem: Problem, name: str, value: float) -> Problem:
-    """Return a problem of a kind with another value of one parameter, under the same loads.
-
-    Parameters
-    ----------
-    problem : Problem
-    name : str
-        Of the parameter; `arch.thickness` where a kind has an arch.
-    value : float
-
-    Raises
-    ------
-    InputError
-        If it is out of range, or changes the number of blocks.
-    """
-    kind = cast(Kind, kind_behind(problem)).changed(name, value)
-    made = _remade(problem, kind)
-    blocks = len(problem.assembly.blocks)
-    same = len(made.assembly.blocks) == blocks
-    require(same, name, value, f"a value that leaves {blocks} blocks, on which loads act")
-    return made
-
-
-def with_fill(problem: Problem, height: float, share: float) -> Problem:
-    """Return a problem of an arch or of arches on piers with fill above them.
-
-    Parameters
-    ----------
-    problem : Problem
-        Made from a kind.
-    height : float
-        Of the fill over the highest point of the extrados [m].
-    share : float
-        Density of the fill over that of the blocks.
-
-    Raises
-    ------
-    InputError
-        If it is of no arch, or a value is out of range.
-    """
-    kind = kind_behind(problem)
-    known = {} if kind is None else parameters_of(type(kind))
-    own = "fill" in known
-    require(own or "arch" in known, "fill", height, "left out: it is for arches and portals")
-    path = "" if own else "arch."
-    kind = cast(Kind, kind).changed(f"{path}fill", height).changed(f"{path}fill_density", share)
-    before = cast(Kind, kind_behind(problem)).made(1.0).fills
-    return _remade(problem, kind, len(before))
-
-
-@dataclass(frozen=True, kw_only=True)
-class FillAbove:
-    """Fill: its height over the highest point of the extrados [m], its weight [N]."""
-
-    height: float
-    weight: float
-
-
-def fill_of(problem: Problem) -> FillAbove | None:
-    """Return the fill on a structure; None where it has none."""
-    kind = kind_behind(problem)
-    height = getattr(getattr(kind, "arch", kind), "fill", None)
-    if kind is None or height is None:
-        return None
-    fills = kind.made(density_of(problem)).fills
-    return FillAbove(height=height, weight=sum(each.weight for each in fills))
-
-
-def _remade(problem: Problem, kind: Kind, fills: int | None = None) -> Problem:
-    """Return a problem of another kind, or of other parameters, under the same loads.
-
-    The first of its dead loads are the weight of fill, as many as before unless said.
-    """
-    made = problem_of(kind, Around(friction=0.0, density=density_of(problem)))
-    others = problem.dead[len(made.dead) if fills is None else fills :]
-    road = cast(Mapping[str, Any], problem.origin).get("road")
-    remade = replace(
-        problem, assembly=made.assembly, dead=(*made.dead, *others), origin=made.origin
-    )
-    return remade if road is None else with_road(remade, road)
-
-
-def with_road(
-    problem: Problem,
-    loads: Sequence[tuple[float, float, float]],
-    fields: Sequence[str] = (),
-) -> Problem:
-    """Return a problem with these live loads on the road in place of any others.
-
-    Where it was made from a kind they stay where they are as its parameters change, on
-    whatever blocks are uppermost there then.
-
-    Parameters
-    ----------
-    problem : Problem
-    loads : sequence of (float, float, float)
-        From one x to another [m], the same at a point, and the weight [N].
-    fields : sequence of str
-        What to call each in messages.
-
-    Raises
-    ------
-    InputError
-        If one is not above blocks that move.
-    """
-    names = fields or ["road"] * len(loads)
-    live = [
-        each
-        for (low, high, weight), name in zip(loads, names, strict=True)
-        for each in on_road(problem.assembly, weight, low, high, name)
-    ]
-    kept = {"road": [list(load) for load in loads]} if "kind" in problem.origin else {}
-    return replace(problem, live=tuple(live), origin={**problem.origin, **kept})
-
-
-def density_of(problem: Problem) -> float:
-    """Weight per volume of a problem made from a kind [N/m^3]; 1 where none was given."""
-    return float(cast(Mapping[str, Any], problem.origin)["density"])

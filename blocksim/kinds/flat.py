@@ -9,9 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from blocksim.blocks.maker import metres, parameter
 from blocksim.common.checks import require
 from blocksim.kinds.archkind import ArchKind
-from blocksim.kinds.base import metres, parameter
 from blocksim.kinds.strips import Voussoirs, chords
 
 

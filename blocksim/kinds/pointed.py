@@ -10,9 +10,9 @@ from typing import ClassVar
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.maker import count, metres
 from blocksim.common.checks import require
 from blocksim.kinds.archkind import NEARLY, CurvedArch
-from blocksim.kinds.base import count, metres
 from blocksim.kinds.circular import circle
 from blocksim.kinds.curves import Curve, where
 from blocksim.kinds.strips import Voussoirs, chords, strips

@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.polygons import Body
+from blocksim.blocks.given import Body
+from blocksim.blocks.maker import FARTHEST, Fill, Made, Maker, count, metres, parameter
 from blocksim.common.errors import InputError
 from blocksim.kinds.archkind import ArchKind
-from blocksim.kinds.base import FARTHEST, Fill, Kind, Made, count, metres, parameter
 from blocksim.kinds.blockwork import floor, pier
 from blocksim.kinds.circular import CircularArch
 
@@ -23,7 +23,7 @@ SEMICIRCLE = CircularArch()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Portal(Kind):
+class Portal(Maker):
     """An arch on piers that are free to tip and to slide."""
 
     name: ClassVar[str] = "portal"

@@ -9,14 +9,14 @@ import numpy as np
 from scipy.spatial import Voronoi
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.given import Body
+from blocksim.blocks.maker import Made, Maker, count, metres, parameter
 from blocksim.blocks.outlines import signed_area
-from blocksim.blocks.polygons import Body
-from blocksim.kinds.base import Kind, Made, count, metres, parameter
 from blocksim.kinds.blockwork import floor
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rubble(Kind):
+class Rubble(Maker):
     """Voronoi cells in a rectangle; the origin is its lower left corner."""
 
     name: ClassVar[str] = "rubble"

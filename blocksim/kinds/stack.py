@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from blocksim.blocks.polygons import Body
-from blocksim.kinds.base import Kind, Made, count, metres, parameter
+from blocksim.blocks.given import Body
+from blocksim.blocks.maker import Made, Maker, count, metres, parameter
 from blocksim.kinds.blockwork import box
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stack(Kind):
+class Stack(Maker):
     """Rows of blocks; the origin is the edge of the table, or the middle of the foot.
 
     Patterns, from the lowest row up:

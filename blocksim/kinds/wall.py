@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from blocksim.blocks.polygons import Body
+from blocksim.blocks.given import Body
+from blocksim.blocks.maker import Made, Maker, Table, count, metres, parameter
 from blocksim.common.checks import require
-from blocksim.kinds.base import Kind, Made, Table, count, metres, parameter
 from blocksim.kinds.blockwork import box, floor
 
 SLIVER = 1e-6
@@ -26,7 +26,7 @@ class Opening(Table):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wall(Kind):
+class Wall(Maker):
     """A wall on a floor; the origin is its lower left corner."""
 
     name: ClassVar[str] = "wall"

@@ -12,9 +12,9 @@ from functools import cache
 from typing import NamedTuple, cast
 
 import blocksim
-from blocksim.arch.bracket import bracket
-from blocksim.arch.check import check
 from blocksim.arch.circular import Arch
+from blocksim.ask.archbracket import bracket
+from blocksim.ask.archcheck import check
 from blocksim.ask.methods import STATIC
 from blocksim.common.errors import MissingPart
 from blocksim.engines import get_engine

@@ -11,9 +11,9 @@ from typing import Annotated, ClassVar, Protocol, cast
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from blocksim.arch.bracket import ETA_MAX
 from blocksim.arch.circular import WEIGHTS, Weight
 from blocksim.arch.scenario import read_table
+from blocksim.ask.archbracket import ETA_MAX
 from blocksim.ask.methods import CHOICES, METHODS, STATIC
 from blocksim.common.checks import ETA, FRICTION, Range, is_number, require
 from blocksim.common.errors import InputError

@@ -14,12 +14,12 @@ import numpy as np
 from blocksim.arch.scenario import read_table
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES, METHODS
+from blocksim.blocks.maker import Maker, Parameter, parameters_of
 from blocksim.blocks.shaking import SHAPES
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.evidence.simulation import SETTINGS, setting_of
 from blocksim.kinds import KINDS
-from blocksim.kinds.base import Kind, Parameter, parameters_of
 from blocksim.kinds.circular import CircularArch
 from blocksim.many.axis import DRAWN_AT_ONCE, Axis, AxisField, Number, require_axis
 from blocksim.many.design import RandomTable, SettingsTable, Words, require_asked
@@ -191,7 +191,7 @@ def load_kind_design(path: Any, table: Mapping[str, Any]) -> KindDesign:
     return design
 
 
-def _kind(table: Mapping[str, Any], name: str) -> type[Kind]:
+def _kind(table: Mapping[str, Any], name: str) -> type[Maker]:
     named = table.get("kind")
     arches = [each.name for each in KINDS.values() if each.is_arch]
     known = list(KINDS) if name == "kind" else arches
@@ -200,7 +200,7 @@ def _kind(table: Mapping[str, Any], name: str) -> type[Kind]:
     return KINDS[named]
 
 
-def _schema(kind: type[Kind], table: Mapping[str, Any]) -> type[Any]:
+def _schema(kind: type[Maker], table: Mapping[str, Any]) -> type[Any]:
     """Make the table that a design of a kind is, for pydantic to check."""
     rows: list[tuple[str, Any, Any]] = [
         *_fields(kind, table),
@@ -216,7 +216,7 @@ def _schema(kind: type[Kind], table: Mapping[str, Any]) -> type[Any]:
     return _dataclass("KindDesignTable", rows)
 
 
-def _fields(kind: type[Kind], table: Mapping[str, Any]) -> list[tuple[str, Any, Any]]:
+def _fields(kind: type[Maker], table: Mapping[str, Any]) -> list[tuple[str, Any, Any]]:
     rows: list[tuple[str, Any, Any]] = [("kind", str, field())]
     for name, known in parameters_of(kind).items():
         what: Any = Any
@@ -244,7 +244,7 @@ def _dataclass(name: str, rows: list[tuple[str, Any, Any]]) -> type[Any]:
 
 
 def _axes(
-    kind: type[Kind], written: Any, path: str = ""
+    kind: type[Maker], written: Any, path: str = ""
 ) -> tuple[dict[str, Axis | tuple[str, ...]], dict[str, Any]]:
     """Tell axes from what all cases have in common."""
     axes: dict[str, Axis | tuple[str, ...]] = {}
@@ -264,7 +264,7 @@ def _axes(
     return axes, rest
 
 
-def _bracketed(kind: type[Kind], rest: Mapping[str, Any]) -> list[str]:
+def _bracketed(kind: type[Maker], rest: Mapping[str, Any]) -> list[str]:
     """Names of the parameters that may be bracketed over."""
     names: list[str] = []
     for name, known in parameters_of(kind).items():
@@ -276,7 +276,7 @@ def _bracketed(kind: type[Kind], rest: Mapping[str, Any]) -> list[str]:
     return names
 
 
-def _require_ranges(design: KindDesign, kind: type[Kind]) -> None:
+def _require_ranges(design: KindDesign, kind: type[Maker]) -> None:
     """Raise `InputError` where a value is out of range by itself.
 
     What is so beside other parameters only becomes a row that says so.

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from blocksim.arch.bracket import ETA_MAX
 from blocksim.arch.circular import Weight
 from blocksim.arch.limit.bulk import joints_of, least_thickness_of_joints, which_stand
 from blocksim.arch.theory.arrays import least_thicknesses
+from blocksim.ask.archbracket import ETA_MAX
 from blocksim.ask.methods import STATIC
 from blocksim.blocks.assembly import Array
 from blocksim.evidence.verdict import Verdict

@@ -13,12 +13,12 @@ from importlib.util import find_spec
 from itertools import chain, islice
 from typing import Any, BinaryIO, cast
 
+from blocksim.blocks.maker import Parameter, parameters_of
 from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.sheets import write_sheet
 from blocksim.evidence.simulation import SETTINGS
 from blocksim.kinds import KINDS
-from blocksim.kinds.base import Parameter, parameters_of
 from blocksim.many.shards import read_rows
 
 ROWS_AT_ONCE = 50_000

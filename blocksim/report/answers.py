@@ -14,11 +14,11 @@ from blocksim.report.carried import carried_lines, carried_record
 from blocksim.report.sizes import size_lines, size_record, unit_lines
 
 if TYPE_CHECKING:
-    from blocksim.arch.bracket import Bracket
-    from blocksim.arch.check import ArchCheck
     from blocksim.arch.dimensions import At
     from blocksim.arch.modes import Mode
-    from blocksim.ask.carried import Carried
+    from blocksim.ask.archbracket import Bracket
+    from blocksim.ask.archcheck import ArchCheck
+    from blocksim.limit.carried import Carried
 
 SIX = 6
 """Digits of ratios, where no more are known."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from blocksim.ask.carried import Carried
+from blocksim.limit.carried import Carried
 
 KILO = 1e3
 FIELDS = (

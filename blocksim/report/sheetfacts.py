@@ -9,13 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.arch import limit, theory
-from blocksim.arch.carried import is_plain_arch
-from blocksim.arch.circular import arch_of
-from blocksim.arch.structure import arch_behind
-from blocksim.ask.carried import Carried
 from blocksim.ask.check import ProblemCheck
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import fill_of
+from blocksim.kinds.circular import is_plain_arch, plain_arch, weighed_arch
 from blocksim.limit import reactions, resultants
+from blocksim.limit.carried import Carried
 from blocksim.report.structures import joint_names, tilt_and_lean
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
@@ -54,7 +53,7 @@ class JointRow:
 def built_facts(sheet: Sheet) -> list[Fact]:
     """Tell dimensions and weights of what is built."""
     problem, unit = sheet.problem, sheet.unit
-    assembly, arch = problem.assembly, arch_behind(problem)
+    assembly, arch = problem.assembly, weighed_arch(problem)
     corners = np.concatenate([block.vertices for block in assembly.blocks])
     facts: list[Fact] = []
     for each in dimensions_of(problem, corners, 1.0):
@@ -101,14 +100,14 @@ def _friction(problem: Problem) -> tuple[str, str]:
 def load_words(problem: Problem) -> list[str]:
     """Say what acts."""
     words = ["Own weight acts at each block's centre of mass."]
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     if arch is not None:
         at = {
             "centreline": "at the centroid of the voussoir's part of the centreline",
             "sector": "at the centroid of the voussoir",
         }
         words = [f"Own weight acts {at[arch.weight]}."]
-    if problem.origin.get("fill") is not None:
+    if fill_of(problem) is not None:
         words.append("Fill is weight alone: it does not press from the side.")
     elif problem.dead:
         count = len(problem.dead)
@@ -153,7 +152,7 @@ def factor_facts(answer: ProblemCheck, sheet: Sheet) -> list[Fact]:
         at = f"asked at {problem.load:g}; " if problem.load else ""
         value = "∞" if math.isinf(answer.load_factor) else f"{answer.load_factor:.6g}"
         facts.append(Fact("load factor", value, f"{at}largest factor on the live loads"))
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     if arch is not None and is_plain_arch(problem) and carried is not None:
         facts += _least_facts(problem)
     return facts
@@ -186,7 +185,7 @@ def _margin_facts(problem: Problem, carried: Carried) -> list[Fact]:
 
 
 def _least_facts(problem: Problem) -> list[Fact]:
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     assert arch is not None  # noqa: S101
     built = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight)
     whole = theory.least_thickness(arch.half_angle, problem.mu, arch.weight)

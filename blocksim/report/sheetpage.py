@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
 from blocksim.arch import limit
-from blocksim.arch.circular import arch_of
 from blocksim.arch.modes import Mode
 from blocksim.ask.check import ProblemCheck, check
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.version import __version__
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem, plain_arch
 from blocksim.limit import equilibrium
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
@@ -143,7 +143,7 @@ def _verdicts(answer: ProblemCheck, sheet: Sheet) -> list[tuple[str, Verdict, st
 def _active(answer: ProblemCheck) -> list[Fact]:
     """Joints that take part as it falls."""
     problem = answer.problem
-    is_arch = arch_of(problem) is not None
+    is_arch = plain_arch(problem) is not None
     names = joint_names(problem.assembly)
     return [
         Fact(names[index], words_of(joint.state, is_arch=is_arch)[0], str(index))
@@ -165,13 +165,13 @@ def _fall(answer: ProblemCheck) -> Fall | None:
     if factor is not None and 0 < factor < float("inf") and not problem.shaking:
         over = problem.with_load(factor * (1 + 1e-3))
         return _asked(over, f"how it would start to fall at load factor {factor:.4g}")
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     if arch is None or problem.is_loaded or not problem.is_planar or problem.shaking:
         return None
     least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
     if not least:
         return None
-    thin = replace(arch, eta=BELOW * least).problem(problem.mu)
+    thin = arch_problem(replace(arch, eta=BELOW * least), problem.mu)
     metres = least * arch.radius
     words = f"how it would start to fall at its least thickness as built, {metres:.3f} m"
     return _asked(replace(thin, gravity=problem.gravity), words)

@@ -9,8 +9,8 @@ from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import At, dimensions_of, friction_angle
 
 if TYPE_CHECKING:
-    from blocksim.arch.bracket import Bracket
     from blocksim.arch.scenario import Scenario
+    from blocksim.ask.archbracket import Bracket
 
 
 def size_record(arch: Arch, mu: float | None = None) -> dict[str, object]:

@@ -6,9 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 
-from blocksim.arch.circular import arch_of
 from blocksim.ask.bracket import Bracket
-from blocksim.ask.carried import Carried
 from blocksim.ask.check import SOUGHT, ProblemCheck
 from blocksim.ask.ends import End
 from blocksim.ask.rest import rest_words
@@ -18,7 +16,8 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import shaking_record
 from blocksim.common.version import __version__
 from blocksim.common.words import counted
-from blocksim.kinds.files import kind_behind
+from blocksim.kinds.circular import plain_arch
+from blocksim.limit.carried import Carried
 from blocksim.report.carried import carried_lines, carried_record
 from blocksim.report.sizes import is_metric, unit_lines
 from blocksim.report.structuresizes import problem_size_lines, problem_size_record
@@ -100,7 +99,7 @@ def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[st
         at = f", asked at {problem.load:g}" if problem.load else ""
         lines.append(f"  load    factor at collapse {_number(answer.load_factor)}{at}")
     lines += carried_lines(carried, joint_names(problem.assembly))
-    lines += unit_lines(arch) if carried and (arch := arch_of(problem)) else []
+    lines += unit_lines(arch) if carried and (arch := plain_arch(problem)) else []
     if carried is None and len(problem.assembly.joints) > SOUGHT:
         lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
     if rest := rest_words(answer.rest, asked=answer.asked_rest):
@@ -186,8 +185,8 @@ def joint_names(assembly: Assembly) -> list[str]:
 
 def _state_words(problem: Problem) -> Callable[[JointState], str]:
     """Return what says a joint's state: only an arch has an intrados and an extrados."""
-    kind = kind_behind(problem)
-    if arch_of(problem) is not None or (kind is not None and kind.is_arch):
+    kind = problem.maker
+    if kind is not None and kind.is_arch:
         return lambda state: state.value
     return lambda state: HINGE if state in HINGED else state.value
 
@@ -297,7 +296,7 @@ def described(problem: Problem) -> str:
         )
     if problem.shaking is not None:
         said.append(problem.shaking.words)
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     said.append(f"L = {assembly.size:g} m" if not arch or is_metric(arch) else "L = r")
     return ", ".join(said)
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from blocksim.arch.dimensions import friction_angle
-from blocksim.arch.structure import arch_behind
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.kinds.files import fill_of
+from blocksim.blocks.road import fill_of
+from blocksim.kinds.circular import weighed_arch
 from blocksim.report.sizes import size_lines, size_record
 
 
 def problem_size_record(problem: Problem) -> dict[str, object]:
     """Return weights of a structure, and of a circular arch its dimensions, for JSON."""
-    arch, fill = arch_behind(problem), fill_of(problem)
+    arch, fill = weighed_arch(problem), fill_of(problem)
     return {
         **({} if arch is None else size_record(arch, problem.mu)),
         "friction_angle_deg": friction_angle(problem.mu),
@@ -24,7 +24,7 @@ def problem_size_record(problem: Problem) -> dict[str, object]:
 
 def problem_size_lines(problem: Problem) -> list[str]:
     """Return the dimensions of a circular arch, and what lies on its road, in words."""
-    arch, fill = arch_behind(problem), fill_of(problem)
+    arch, fill = weighed_arch(problem), fill_of(problem)
     lines = [] if arch is None else size_lines(arch, problem.mu)
     live = -_live(problem)
     said: list[str] = []

@@ -23,6 +23,7 @@ from blocksim.evidence.motion import FRAME, MOVED, QUIET
 from blocksim.evidence.observation import observe
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 
 STEP = 1 / 60
 """Usual time step, at which sweeps are varied [sqrt(r/g)]."""
@@ -133,9 +134,9 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
     """
     if knob in {"step", "sweeps"}:
         given = {"step": STEP, "sweeps": ENGINES[method].usual_sweeps, knob: value}
-        return let_go(Simulation.of(arch.problem(mu), method, settings=given))
+        return let_go(Simulation.of(arch_problem(arch, mu), method, settings=given))
     given = {knob: value} if knob == "hold_sweeps" else {}
-    seen = observe(arch.problem(mu), method, moving=False, settings=given)
+    seen = observe(arch_problem(arch, mu), method, moving=False, settings=given)
     work = ENGINES[method].contacts * (arch.voussoirs + 1) * seen.onset.sweeps
     return Look(verdict=seen.verdict, acceleration=seen.onset.acceleration, work=work)
 

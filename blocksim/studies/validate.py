@@ -8,12 +8,12 @@ from concurrent.futures import as_completed
 from dataclasses import replace
 
 from blocksim.arch import limit
-from blocksim.arch.bracket import ETA_MAX, Bracket, bracket
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import Scenario, load_scenario, shipped
+from blocksim.ask.archbracket import ETA_MAX, Bracket, bracket
 from blocksim.ask.methods import METHODS, SPATIAL, missing
 from blocksim.common.checks import require
 from blocksim.common.processes import crew
@@ -21,6 +21,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines import get_engine
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
 from blocksim.studies.agreement import Unasked, Validation, agree
 
 TOLS = {"direct": 1e-6, "pymunk": 0.001, "pybullet": 0.004, "mujoco": 0.004}
@@ -132,13 +133,13 @@ def validate_one(scenario: Scenario, engine: str) -> Validation:
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
         arch = scenario.arch(under)
-        seen = observe(arch.problem(scenario.mu), engine)
+        seen = observe(arch_problem(arch, scenario.mu), engine)
         in_motion, below = observed_mode(seen.joints_in_motion, arch), seen.verdict
         recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
         over = found.centre * (1 + ASIDE)
-        above = observe(scenario.arch(over).problem(scenario.mu), engine).verdict
+        above = observe(arch_problem(scenario.arch(over), scenario.mu), engine).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
     middle = found.centre or (None if found.undecided else found.eta_low)
@@ -167,7 +168,7 @@ def validate_one(scenario: Scenario, engine: str) -> Validation:
 def _judged(scenario: Scenario, arch: Arch, engine: str) -> Validation:
     """Compare the verdict on an arch as it is with the one its scenario claims."""
     started = time.perf_counter()
-    seen = observe(arch.problem(scenario.mu, scenario.lean), engine)
+    seen = observe(arch_problem(arch, scenario.mu, scenario.lean), engine)
     right = seen.verdict is scenario.expected_verdict
     return replace(
         _asked(scenario, engine),

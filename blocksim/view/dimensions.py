@@ -7,12 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.files import kind_behind
+from blocksim.kinds.circular import CircularArch, plain_arch
 from blocksim.view.units import length_words
 
 OFF, ARC_OFF = 8.0, 6.0
@@ -144,8 +142,8 @@ def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length |
 
 def is_arch(problem: Problem) -> bool:
     """Whether it is one arch, whose joints follow each other from left to right."""
-    kind = kind_behind(problem)
-    return arch_of(problem) is not None or (kind is not None and kind.is_arch)
+    kind = problem.maker
+    return kind is not None and kind.is_arch
 
 
 def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angle]:
@@ -184,10 +182,10 @@ def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angl
 
 def _top(problem: Problem, crown: Array) -> Array:
     """Highest point of the intrados, which the chord of a keystone is below [m]."""
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     if arch is not None:
         return np.array([0.0, arch.radius - arch.thickness / 2])
-    kind = kind_behind(problem)
+    kind = problem.maker
     if isinstance(kind, CircularArch) and min(kind.left_deg, kind.right_deg) >= 0:
         return np.array([0.0, kind.radius - kind.thickness / 2])
     return crown
@@ -195,10 +193,10 @@ def _top(problem: Problem, crown: Array) -> Array:
 
 def thickness_of(problem: Problem) -> float | None:
     """Thickness of an arch that is as thick everywhere [m]."""
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     if arch is not None:
         return arch.thickness
-    kind = kind_behind(problem)
+    kind = problem.maker
     return kind.thickness if isinstance(kind, CurvedArch) else None
 
 
@@ -225,10 +223,10 @@ def _thickness(problem: Problem) -> list[Length | Angle]:
 
 def half_angle_of(problem: Problem) -> float | None:
     """Half-angle of embrace of a symmetric circular arch [rad]."""
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     if arch is not None:
         return arch.half_angle
-    kind = kind_behind(problem)
+    kind = problem.maker
     if isinstance(kind, CircularArch) and kind.left_deg == kind.right_deg:
         return math.radians(kind.right_deg)
     return None

@@ -11,11 +11,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from blocksim.arch.circular import GRAVITY, arch_of
+from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.joints import JointState
 from blocksim.common.words import counted, printable
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import plain_arch
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.drawing import (
     ARCH_WORDS,
@@ -268,7 +269,7 @@ class Film:
     def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
         """Say what it is, outcome, loading and engine, above a panel."""
         size, problem = self._size, stage.recording.problem
-        arch, blocks = arch_of(problem), len(stage.assembly.blocks)
+        arch, blocks = plain_arch(problem), len(stage.assembly.blocks)
         count = counted(blocks, "block")
         facts = [verdict, *against(stage.recording)]
         if arch:

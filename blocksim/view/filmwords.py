@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from blocksim.arch import limit
-from blocksim.arch.circular import arch_of
 from blocksim.evidence.motion import MOVED, UNMOVED
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.shaken import outcome
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import plain_arch
 from blocksim.view.canvas import width_of
 from blocksim.view.drawing import loading_words
 
@@ -23,7 +23,7 @@ def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
         return Verdict.COLLAPSES.value
     if moved <= UNMOVED:
         return "at rest"
-    if arch_of(recording.problem) is None:
+    if plain_arch(recording.problem) is None:
         return f"has moved {moved * recording.assembly.size:.1g} m"
     return f"has moved {moved:.1g} r"
 
@@ -41,7 +41,7 @@ def against(recording: Recording) -> list[str]:
     """Say what it is up against: gravity that tilts or leans, loads; an arch its own weight."""
     problem = recording.problem
     words = loading_words(problem)
-    arch = arch_of(problem)
+    arch = plain_arch(problem)
     if words or arch is None:
         return words
     least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta

@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from blocksim.arch.carried import carried_of
-from blocksim.arch.circular import arch_of
-from blocksim.ask.carried import Carried
+from blocksim.ask.carried import carried_of
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.words import printable
+from blocksim.kinds.circular import plain_arch
 from blocksim.limit import Reaction, reactions
+from blocksim.limit.carried import Carried
 from blocksim.view.drawing import friction_words, loading_words
 from blocksim.view.structure import supports_shown
 from blocksim.view.thrustlines import is_chained, thrust_lines, thrust_of
@@ -212,18 +212,18 @@ def _near(problem: Problem, line: ThrustLine) -> bool:
 
 def title_of(problem: Problem) -> str:
     """Return the title of a problem, or say what it is."""
-    if problem.title and problem.title != problem.origin.get("kind"):
+    if problem.title and problem.title != (problem.maker and problem.maker.name):
         return printable(problem.title)
     if problem.title:
         return problem.title.replace("-", " ").capitalize()
-    if arch_of(problem) is not None:
+    if plain_arch(problem) is not None:
         return "Circular arch"
     return "Structure of blocks"
 
 
 def built_words(problem: Problem) -> list[str]:
     """Say of what it is built, and what acts on it."""
-    arch, count = arch_of(problem), len(problem.assembly.blocks)
+    arch, count = plain_arch(problem), len(problem.assembly.blocks)
     noun = "voussoir" if arch else "block"
     words = [f"{count} {noun}{'s' * (count != 1)}", friction_words(problem.mu)]
     if 0 < problem.mu < math.inf:

@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.recording import Recording
+from blocksim.kinds.circular import plain_arch
 from blocksim.view.archfigure import lines_of, picture_of_arch
 from blocksim.view.drawing import Part, clipped, outer_parts
 from blocksim.view.placing import Placing
@@ -95,7 +95,7 @@ class Stage:
         self.assembly = recording.assembly
         size = self.assembly.size
         self.depth = float(self.assembly.depths.max())
-        self.is_arch = arch_of(recording.problem) is not None
+        self.is_arch = plain_arch(recording.problem) is not None
         rest = np.concatenate([block.vertices for block in self.assembly.blocks]) / size
         self._low, self._high = rest.min(axis=0), rest.max(axis=0)
         self.middle = 0.0 if self.is_arch else float(self._low[0] + self._high[0]) / 2
@@ -169,7 +169,7 @@ class Stage:
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
         """Line of thrust of the arch at rest, by limit analysis, (k, 2); none if not whole."""
-        arch = arch_of(self.recording.problem)
+        arch = plain_arch(self.recording.problem)
         if arch is None or not self.recording.problem.is_planar:
             return ()
         line, _ = lines_of(picture_of_arch(arch, self.recording.mu))

@@ -18,11 +18,11 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from blocksim.arch.circular import arch_of
 from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.words import counted
+from blocksim.kinds.circular import plain_arch
 from blocksim.view.arrows import draw_forces, draw_gravity, draw_loads
 from blocksim.view.drawing import (
     HINGES,
@@ -247,7 +247,7 @@ def draw_mechanism(
 
 def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> None:
     """Colour joints that take part; dots mark the ends that stay closed, bars what slides."""
-    is_arch = arch_of(problem) is not None
+    is_arch = plain_arch(problem) is not None
     for index, (joint, state) in enumerate(zip(problem.assembly.joints, states, strict=True)):
         if state is JointState.CLOSED:
             continue

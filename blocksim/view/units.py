@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blocksim.arch.circular import arch_of
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.kinds.files import density_of, kind_behind
+from blocksim.kinds.circular import plain_arch
 
 KILO = 1e3
 NOT_GIVEN = (0.8, 1.25)
@@ -60,12 +59,12 @@ def unit_weight(problem: Problem) -> float | None:
 
     The median, where blocks differ; None where none was given.
     """
-    arch, kind = arch_of(problem), kind_behind(problem)
+    arch, kind = plain_arch(problem), problem.maker
     if arch is not None:
         return arch.specific_weight
     low, high = NOT_GIVEN
     if kind is not None:
-        density = density_of(problem)
+        density = kind.unit_weight
         return None if low <= density <= high else density
     weights = [
         block.mass

@@ -18,6 +18,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
 from blocksim.evidence.observation import Held, hold, reduced_words
 from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
+from blocksim.kinds.circular import arch_problem
 
 ANY_THICKNESS = "two joints on each half, and a line of thrust through the middle of both"
 
@@ -176,7 +177,7 @@ def bracket(
     FRICTION.require("mu", mu)
     require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
     arch = Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight, depth=depth)
-    leaning = arch.problem(mu, lean) if lean else None
+    leaning = arch_problem(arch, mu, lean) if lean else None
     rung = choose(method, tol, problem=leaning, settings=settings, reduce=reduce)
     built = limit.least_thickness(half_angle, mu, voussoirs, weight)
     continuous = theory.least_thickness(half_angle, mu, weight)
@@ -290,7 +291,7 @@ class _Thinning:
         else:
             reduction = Reduction.of(built, self._mu) if self._reduce else None
         held = hold(
-            built.problem(self._mu, self._lean),
+            arch_problem(built, self._mu, self._lean),
             self._engine,
             settings=self._settings,
             reduction=reduction,

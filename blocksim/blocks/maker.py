@@ -1,4 +1,8 @@
-"""What every kind of structure is: a table of parameters, and the bodies it makes of them."""
+"""What makes problems: a table of parameters, and the blocks it makes of them.
+
+Every kind of structure is one. So is a class of a user's own, which needs a name, parameters
+(`parameter`, `metres`, `count`) and `made`.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +11,23 @@ import sys
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, Literal, Self, cast
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, cast
 
-from blocksim.blocks.given import GivenJoint
-from blocksim.blocks.polygons import Body
-from blocksim.common.checks import LENGTH, is_number, require
-from blocksim.common.errors import InputError, perhaps
+from blocksim.blocks.problem import Load, Problem
+from blocksim.common.checks import (
+    LENGTH,
+    PER_VOLUME,
+    SMOOTH_OR_ROUGH,
+    is_number,
+    require,
+)
+from blocksim.common.errors import MISSING, InputError, perhaps
+from blocksim.common.shown import Shown
+
+if TYPE_CHECKING:
+    from blocksim.blocks.assembly import Assembly
+    from blocksim.blocks.given import Body, GivenJoint
 
 Array = Any
 Stands = Literal["low", "high"]
@@ -20,6 +35,8 @@ FARTHEST = LENGTH.high
 """Largest length [m]."""
 MOST = 1000
 """Largest number of voussoirs, courses or stones."""
+UNIT_WEIGHT = 1.0
+"""Weight per volume where none is given: only ratios of forces have a meaning [N/m^3]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +104,7 @@ class Parameter:
     def words(self, value: object) -> tuple[str, str]:
         """Say a value and which ones there may be, for tables."""
         if self.table:
-            return cast(Kind, value).name, "a table with a kind of arch"
+            return cast(Maker, value).name, "a table with a kind of arch"
         if self.tables:
             return "none", "a list of tables"
         said = f"{value:g}" if isinstance(value, float) else str(value)
@@ -186,14 +203,74 @@ class Table:
         return {name: _plain(getattr(self, name)) for name in parameters_of(type(self))}
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Built:
+    """Blocks as engines and limit analysis take them.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    fills : tuple of Load
+        What presses on blocks besides gravity.
+    notes : tuple of str
+        What was mended or assumed.
+    bodies : tuple of Body
+        Of which the blocks were made; none where they were made of nothing else.
+    """
+
+    assembly: Assembly
+    fills: tuple[Load, ...] = ()
+    notes: tuple[str, ...] = ()
+    bodies: tuple[Body, ...] = ()
+
+
 @dataclass(frozen=True, kw_only=True)
-class Kind(Table, ABC):
-    """A kind of structure."""
+class Maker(Shown, Table, ABC):
+    """What makes a problem of its parameters.
+
+    A class of one's own has a `name`, parameters, and `made`.
+
+    Parameters
+    ----------
+    friction : float or None
+        Friction coefficient of every joint, inf allowed; needed for a problem.
+    density : float or None
+        Weight per volume [N/m^3]; without it only ratios of forces have a meaning.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, kw_only=True)
+    ... class Cube(Maker):
+    ...     name = "cube"
+    ...     side: float = metres(1.0, "side of the cube")
+    ...     def made(self, density: float) -> Made:
+    ...         a = self.side
+    ...         bed = [[-a, -a], [2 * a, -a], [2 * a, 0], [-a, 0]]
+    ...         cube = [[0, 0], [a, 0], [a, a], [0, a]]
+    ...         return Made(bodies=(Body(polygons=(bed,), fixed=True), Body(polygons=(cube,))))
+    >>> Cube(side=2.0, friction=0.5).problem().assembly.size
+    1.0
+    """
 
     name: ClassVar[str]
-    about: ClassVar[str]
+    about: ClassVar[str] = ""
     is_arch: ClassVar[bool] = False
     row_types: ClassVar[Mapping[str, type[Table]]] = {}
+
+    friction: float | None = None
+    density: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters, then friction and density."""
+        super().__post_init__()
+        self._check_forces()
+
+    def _check_forces(self) -> None:
+        if self.friction is not None:
+            SMOOTH_OR_ROUGH.require("friction", self.friction)
+        if self.density is not None:
+            PER_VOLUME.require("density", self.density)
 
     @abstractmethod
     def made(self, density: float) -> Made:
@@ -205,30 +282,78 @@ class Kind(Table, ABC):
             Weight per volume [N/m^3].
         """
 
+    def problem(self) -> Problem:
+        """Return what is made, under its own weight and that of its fill.
+
+        Raises
+        ------
+        InputError
+            If there is no friction, or nothing can be built of the parameters.
+        """
+        if self.friction is None:
+            raise InputError("friction", MISSING, "given")
+        built = self.built
+        return Problem(
+            assembly=built.assembly,
+            mu=self.friction,
+            dead=built.fills,
+            title=self.name,
+            maker=self,
+            weighed=self.density is not None,
+            notes=built.notes,
+        )
+
+    @cached_property
+    def built(self) -> Built:
+        """The blocks, made once."""
+        return self.built_of()
+
+    def built_of(self, size: float | None = None) -> Built:
+        """Make the blocks, with another characteristic length [m] if one is given."""
+        # Joints are found with libraries that blocks which know theirs do not need.
+        from blocksim.blocks.making import built_of
+
+        return built_of(self.made(self.unit_weight), self.unit_weight, size)
+
+    @property
+    def unit_weight(self) -> float:
+        """Weight per volume [N/m^3]; 1 where none was given."""
+        return UNIT_WEIGHT if self.density is None else self.density
+
+    @property
+    def length_name(self) -> str:
+        """What the unit of length of engines is called."""
+        return "L"
+
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them, with the kind's name."""
         return {"kind": self.name, **super().table()}
 
-    def changed(self, name: str, value: object) -> Self:
-        """Return the same with another value of a parameter; `arch.thickness`: of its arch."""
-        here, _, rest = name.partition(".")
-        if rest:
-            value = cast(Kind, getattr(self, here)).changed(rest, value)
-        given = {each.name: getattr(self, each.name) for each in fields(self)}
-        return type(self)(**{**given, here: value})
+    def origin(self) -> dict[str, object]:
+        """Return what a recording keeps of it."""
+        return {**self.table(), "density": self.unit_weight}
+
+    def but(self, **changes: Any) -> Self:
+        """Return the same with other values; `**{"arch.thickness": 0.2}`: of its arch."""
+        given = {each.name: getattr(self, each.name) for each in fields(self) if each.init}
+        for name, value in changes.items():
+            here, _, rest = name.partition(".")
+            require(here in given, name, value, f"one of {', '.join(given)}")
+            given[here] = cast(Maker, given[here]).but(**{rest: value}) if rest else value
+        return type(self)(**given)
 
     def number(self, name: str) -> tuple[Parameter, float, float]:
         """Return what is known of a number that may be bracketed over, and its range."""
         here, _, rest = name.partition(".")
         if rest:
-            return cast(Kind, getattr(self, here)).number(rest)
+            return cast(Maker, getattr(self, here)).number(rest)
         return parameters_of(type(self))[here], *self.limits(here)
 
     def value(self, name: str) -> float:
         """Return the value of such a number."""
         here, _, rest = name.partition(".")
         if rest:
-            return cast(Kind, getattr(self, here)).value(rest)
+            return cast(Maker, getattr(self, here)).value(rest)
         return float(getattr(self, here))
 
     @property
@@ -245,7 +370,8 @@ class Kind(Table, ABC):
 
 def parameters_of(table: type[Table]) -> dict[str, Parameter]:
     """Return what is known of each parameter, by name, in order."""
-    return {each.name: each.metadata["parameter"] for each in fields(table)}
+    known = {each.name: each.metadata.get("parameter") for each in fields(table)}
+    return {name: each for name, each in known.items() if each is not None}
 
 
 def _plain(value: object) -> object:
@@ -256,7 +382,7 @@ def _plain(value: object) -> object:
     return value
 
 
-def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Kind]], path: str = "") -> Kind:
+def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Maker]], path: str = "") -> Maker:
     """Read a kind from a table.
 
     Parameters
@@ -281,13 +407,13 @@ def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Kind]], path: str =
         raise InputError(f"{path}kind", named, allowed + near)
     chosen = known[named]
     given = {key: value for key, value in written.items() if key != "kind"}
-    return cast(Kind, _table_of(chosen, given, kinds, path, f"a {named} has"))
+    return cast(Maker, _table_of(chosen, given, kinds, path, f"a {named} has"))
 
 
 def _table_of(
     chosen: type[Table],
     written: Mapping[str, Any],
-    kinds: Sequence[type[Kind]],
+    kinds: Sequence[type[Maker]],
     path: str,
     has: str,
 ) -> Table:
@@ -307,7 +433,7 @@ def _table_of(
             given[key] = kind_of(table, arches, f"{where}.")
         elif known.tables:
             require(isinstance(value, list | tuple), where, value, "a list of tables")
-            row = cast("type[Kind]", chosen).row_types[key]
+            row = cast("type[Maker]", chosen).row_types[key]
             tables: list[Table] = []
             for at, each in enumerate(cast("Sequence[Any]", value)):
                 require(isinstance(each, Mapping), f"{where}[{at}]", each, "a table")

@@ -12,7 +12,6 @@ from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
-from blocksim.ask.carried import Carried
 from blocksim.ask.check import Check
 from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.rest import require_rest, rest_of
@@ -21,6 +20,8 @@ from blocksim.common.checks import FRICTION
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import arch_problem
+from blocksim.limit.carried import Carried
 
 if TYPE_CHECKING:
     from blocksim.arch.limit import LimitState
@@ -77,7 +78,9 @@ class ArchCheck(Check):
     @cached_property
     def carried(self) -> Carried | None:
         """What the arch carries; None where gravity leans."""
-        return None if self.lean else carried_by_arch(self.arch, self.mu)
+        return (
+            None if self.lean else carried_by_arch(self.arch, arch_problem(self.arch, self.mu))
+        )
 
     def __repr__(self) -> str:
         arch = self.arch
@@ -136,10 +139,10 @@ def check(
     started = time.perf_counter()
     FRICTION.require("mu", mu)
     # Static methods need no blocks, which take longer to make than an answer.
-    leaning = arch.problem(mu, lean) if lean else None
+    leaning = arch_problem(arch, mu, lean) if lean else None
     rung = choose(method, problem=leaning, settings=settings, reduce=reduce)
     if must_rest:
-        require_rest(arch.problem(mu, lean))
+        require_rest(arch_problem(arch, mu, lean))
     built = limit.least_thickness(arch.half_angle, mu, arch.voussoirs, arch.weight)
     continuous = theory.least_thickness(arch.half_angle, mu, arch.weight)
     mode = later = seen = None
@@ -162,7 +165,7 @@ def check(
 
         reduced = reduces(rung, reduce, is_planar=not lean)
         seen = observe(
-            leaning or arch.problem(mu),
+            leaning or arch_problem(arch, mu),
             rung.name,
             settings=settings,
             reduction=Reduction.of(arch, mu) if reduced else None,
@@ -172,7 +175,7 @@ def check(
         mode = observed_mode(joints, arch)
         later = observed_mode(seen.joints_in_motion, arch)
     rest = rest_of(
-        arch.problem(mu) if must_rest else None,
+        arch_problem(arch, mu) if must_rest else None,
         exists=None if lean else built.stands_at(arch.eta),
         moved=seen is not None and seen.moved,
         progress=progress,
