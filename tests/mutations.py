@@ -221,6 +221,34 @@ MUTATIONS = (
         "WRONG_INPUT = 1", "test_cli.py",
     ),
     Mutation(
+        "a full disk is wrong input", "cli/__init__.py", "MACHINE = 74", "MACHINE = 2",
+        "test_writing.py",
+    ),
+    Mutation(
+        "two writers share a name", "common/files.py", "{token_hex(8)}", "0",
+        "test_writing.py",
+    ),
+    Mutation(
+        "the folder is not synced", "common/files.py", "    _sync_folder(path.parent)\n", "",
+        "test_writing.py",
+    ),
+    Mutation(
+        "terminals obey titles", "cli/output.py", '"\\n".join(map(printable, lines))',
+        '"\\n".join(lines)', "test_strange_text.py",
+    ),
+    Mutation(
+        "pages hold what controls", "report/environment.py", "        finalize=printed,\n", "",
+        "test_strange_text.py",
+    ),
+    Mutation(
+        "sheets hold formulas", "common/sheets.py", 'f"\'{shown}" if asks else shown', "shown",
+        "test_strange_text.py",
+    ),
+    Mutation(
+        "titles are formulas of matplotlib", "view/drawing.py",
+        'printable(text).replace("$", r"\\$")', "printable(text)", "test_strange_text.py",
+    ),
+    Mutation(
         "loads in newtons", "cli/road.py", "low, high, 1000 * weight", "low, high, weight",
         "test_road.py",
     ),
@@ -275,8 +303,8 @@ MUTATIONS = (
         "test_report.py test_report_browser.py",
     ),
     Mutation(
-        "names in a notebook are not escaped", "notebook.py", "html.escape(line) for line",
-        "line for line", "test_notebook.py",
+        "names in a notebook are not escaped", "notebook.py",
+        "html.escape(printable(line)) for line", "line for line", "test_notebook.py",
     ),
     Mutation(
         "names of modes stay light in the dark", "report/templates/report.css",
