@@ -24,6 +24,8 @@ from blocksim.limit.displaced import Displaced, Frame, Lost
 from blocksim.limit.programme import falling
 
 Ends = Literal["collapse", "slides", "parts", "range"]
+FALLS = {"snaps", "collapse", "falls-slides", "falls-parts"}
+"""Events in which blocks move on supports at rest."""
 ENOUGH = 1e-9
 """Lack of force at which blocks still rest [mean weights]."""
 PUSH = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
@@ -80,6 +82,14 @@ class Path:
     def value(self) -> float:
         """How far the supports moved [m]."""
         return self.frames[-1].value
+
+    @property
+    def first_fall(self) -> float | None:
+        """How far the supports moved when blocks first fell, caught again or not [m]."""
+        if not self.events and self.ends == "collapse":
+            return self.value
+        falls = (each.value for each in self.events if each.what in FALLS)
+        return next(falls, None)
 
 
 def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
