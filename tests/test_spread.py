@@ -250,6 +250,14 @@ def test_spread_is_one_value_however_it_is_shared(arch: tuple[int, float]) -> No
         assert shared(*arch, share).exact == pytest.approx(want, abs=1e-6)
 
 
+def test_a_support_that_turns_takes_the_branch_that_rests() -> None:
+    """Two hinges may open alike at first, of which one falls at once."""
+    turns = [{"block": "right", "turn_deg": 30}]
+    path = Spreading(structure_of(semicircle(0.12, voussoirs=12, move=turns))).path
+    assert [event.what for event in path.events] == ["hinges", "collapse"]
+    assert path.first_fall == pytest.approx(0.90458816, rel=1e-6)  # as rows of analysis have it
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("arch", [(7, 0.35), (9, 0.2), (11, 0.4), (17, 0.15)])
 @pytest.mark.parametrize("share", [0.5, 0.3])

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Block, Joint
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Load, Problem
-from blocksim.limit.programme import equilibrium, settling
+from blocksim.limit.programme import equilibrium
 
 Closed = NDArray[np.bool_]
 Lost = Literal["slides", "parts"]
@@ -26,11 +26,10 @@ SHUT = 1e-11
 """Overlap of a contact that is round-off [size]."""
 OFF = 1e-9
 """How far closed contacts may be apart; the blocks cannot follow where it is more [size]."""
-AHEAD, RANK = 1e-4, 1e-9
-"""How far ahead the energies of motions are compared that are alike at first [size]; and the
-share of the stiffest direction below which nothing holds one."""
-PUSHED = 1e-7
-"""Body force that tells motions apart which are alike [weights]."""
+ENOUGH = 1e-9
+"""Lack of force at which blocks still rest [mean weights]."""
+RANK = 1e-9
+"""Stiffness below which nothing holds a motion, as a share of the greatest."""
 ROUNDS = 50
 """Most corrections of places; a few are the rule."""
 HALVINGS = 10
@@ -248,47 +247,15 @@ class Displaced:
             lost = "parts"
         return replace(frame, closed=stays), lost
 
-    def follows(self, frame: Frame) -> tuple[Frame, Lost | None]:
-        """Open the contacts that open as the supports move on.
+    def energy(self, frame: Frame) -> float:
+        """Potential energy of the blocks [mean weight times size], from where they were built."""
+        return -float((self._problem.pull() * (frame.poses - self.start.poses)).sum())
 
-        Where several motions lose as much energy at first, as those of an arch with a keystone
-        do that its two halves mirror, blocks could go on moving on supports at rest. Of these
-        motions and those at whose ends contacts close again, blocks take the one of least
-        energy.
-        """
-        lies, speeds = self.problem(frame), self.speeds(frame.value)
-        rates = settling(lies, speeds)
-        if rates is None:
-            return frame, None
-        after, lost = self.opened(frame, rates, 1.0)
-        ways = np.zeros((0, *rates.shape)) if lost else self._free(after)
-        if not len(ways):
-            return after, lost
-        found = [after]
-        for way in np.concatenate([ways, -ways]):
-            leaning = settling(_pushed(lies, way), speeds)
-            if leaning is None:
-                continue
-            turned, lost = self.opened(frame, leaning, 1.0)
-            if lost is None and self.closing(self.carried(turned, self._beyond(frame))) > 0:
-                found.append(turned)
-        return min(found, key=self._energy), None
-
-    def _beyond(self, frame: Frame) -> float:
-        """Return a position of the supports a little farther on."""
-        return frame.value + AHEAD * self.size
-
-    def _free(self, frame: Frame) -> Array:
+    def free(self, frame: Frame) -> Array:
         """Return motions on supports at rest in which all closed contacts stay closed."""
-        _, rows = self._apart(frame)
-        _, sizes, ways = np.linalg.svd(rows)
+        _, sizes, ways = np.linalg.svd(self._apart(frame)[1])
         held = int((sizes > RANK * sizes.max(initial=0.0)).sum())
         return ways[held:].reshape(-1, self._count, PLANAR)
-
-    def _energy(self, frame: Frame) -> float:
-        """Potential energy a little farther on [mean weight times size]."""
-        ahead = self.carried(frame, self._beyond(frame))
-        return -float((self._problem.pull() * (ahead.poses - self.start.poses)).sum())
 
     def carried(self, frame: Frame, value: float, poses: Array | None = None) -> Frame:
         """Carry the blocks to another position of the supports, contacts closed as they are.
@@ -344,16 +311,6 @@ def _turned(arm: Array, turn: Array | float) -> Array:
     """Vectors (2, ...) turned by angles."""
     cos, sin = np.cos(turn), np.sin(turn)
     return np.array([cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1]])
-
-
-def _pushed(problem: Problem, way: Array) -> Problem:
-    """Return a problem whose blocks are pushed a little along a motion."""
-    largest = np.abs(way).max()
-    pushes = tuple(
-        Load(force=PUSHED * each[:2] / largest, blocks=(index,), per_weight=True)
-        for index, each in enumerate(way)
-    )
-    return replace(problem, dead=(*problem.dead, *pushes))
 
 
 def _moved(block: Block, pose: Array) -> Block:
