@@ -32,6 +32,8 @@ FARTHEST = 1e3
 """How far from its first value a search goes, as a ratio."""
 FINEST_SPREAD = 1e-4
 """Narrowest bracket over the motion of supports by `direct`, relative."""
+ALIKE = 0.005
+"""How far beyond the ends that `direct` finds limit analysis still agrees with it, relative."""
 GUESS = 0.1
 """Share of the range at which a search begins where limit analysis gives no value."""
 
@@ -189,7 +191,7 @@ def bracket(
         if chosen.is_static:
             found = _followed(family, family.spreading, exact)
         else:
-            found = _slowly(family.spreading, tol, high, progress)
+            found = _slowly(family.spreading, tol, high, exact, progress)
     elif chosen.is_static:
         found = _by_limit(family, exact, rises=rises)
     elif probe.shaking is not None:
@@ -260,14 +262,20 @@ def _followed(family: Family, spreading: Spreading, exact: float | None) -> Sear
     )
 
 
-def _slowly(spreading: Spreading, tol: float, highest: float, progress: Progress) -> Search:
+def _slowly(
+    spreading: Spreading, tol: float, highest: float, exact: float | None, progress: Progress
+) -> Search:
     """Move the supports slowly in `direct`, and stop them."""
     seen = spreading.slowly(max(tol, FINEST_SPREAD), highest, progress)
     way = "" if seen.solved else "; a step was not solved"
+    low, high = seen.low or 0.0, math.inf if seen.high is None else seen.high
+    agree = exact is None or (1 - ALIKE) * low <= exact <= (1 + ALIKE) * high
+    if not agree:
+        way += f"; limit analysis says {exact:.6g}: which of both is right is open"
     return Search(
         falls=seen.high,
         stands=seen.low,
-        confirmed=seen.solved,
+        confirmed=seen.solved and agree,
         runs=seen.runs,
         reason=f"supports moved slowly and stopped {seen.runs} times: up to one value blocks "
         "stay, from the other on they move by themselves (whether something catches them "

@@ -31,6 +31,8 @@ SEEN, AFTER = 0.01, 6.0
 blocks fall [sqrt(size/g)]."""
 SHALLOW = 0.5
 """How far below the structure a recording shows the ground, if no support sinks [size]."""
+SIDEWAYS = 0.5
+"""Speed with which blocks begin, over that of their supports."""
 FAST = 30.0
 """Speed of blocks, over that of their supports, from which on they fall."""
 STARTS = 1e-5
@@ -139,9 +141,12 @@ class Spreading:
 
     @property
     def exact(self) -> float | None:
-        """How far the supports can move [m]; None where that was not followed."""
-        ends = {"collapse": self.path.value, "range": math.inf}
-        return ends.get(self.path.ends)
+        """How far the supports can move until blocks first fall, caught again or not [m].
+
+        None where what they do before that was not followed.
+        """
+        falls = self.path.first_fall
+        return math.inf if falls is None and self.path.ends == "range" else falls
 
     @property
     def words(self) -> str:
@@ -200,6 +205,8 @@ class Spreading:
 
         speed, runs, whole = SPEED, 0, True
         world = OnMovingSupports(problem, settings, speed)
+        # Blocks that mirror each other would balance where any breath lets them fall.
+        world.push(SIDEWAYS * speed)
         first = frames = _run(world, highest, FAST * speed, progress)
         while True:
             whole = whole and solved(world)
