@@ -29,7 +29,7 @@ from blocksim.kinds.circular import arch_problem, plain_arch
 from blocksim.kinds.recorded import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 
-FALL = 12.0
+FALL = 20.0
 """Time recorded of a scenario at most: it ends when the rubble lies still [sqrt(r/g)]."""
 HEIGHT = 720
 HEIGHTS = (180, 2160)
@@ -141,9 +141,11 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
     radius = "" if made.metric else " (if r = 1 m)"
     length = made.count / made.rate
     pace = f"{made.slow:g} times slower" if made.slow != 1 else "in real time"
+    rest = f"{length - made.seconds * made.slow:.1g} s"
+    ends = f"{rest} of stills; blocks still move as it ends, at {made.speed:.2g} m/s"
     say(
         f"wrote {out}: a film of {length:.1f} s: {made.seconds:.3g} s of motion{radius}, "
-        f"{pace}, and {length - made.seconds * made.slow:.1g} s at rest{why}"
+        f"{pace}, and {ends if made.speed else f'{rest} at rest'}{why}"
     )
     for recording, moves in zip(shown, made.moves, strict=True):
         if not moves:
