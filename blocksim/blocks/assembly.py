@@ -166,6 +166,9 @@ class Joint:
         where a face reaches beyond the joint.
     support : int or None
         Which of the assembly's supports it lies on, where they are known.
+    gap : float
+        How far apart the faces are drawn that it closes, below 0 where they overlap [m]; 0
+        where they lie on each other.
     """
 
     before: int
@@ -176,6 +179,7 @@ class Joint:
     across: Array | None = None
     faces: Array | None = None
     support: int | None = None
+    gap: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
