@@ -11,6 +11,7 @@ from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.check import check as ask_check
 from blocksim.cli.arguments import Option
+from blocksim.cli.proving import write_proof
 from blocksim.cli.options import (
     EXIT_CODES,
     THICKNESS,
@@ -21,6 +22,7 @@ from blocksim.cli.options import (
     MethodOption,
     MustRest,
     Over,
+    ProofFile,
     Reduce,
     Scene,
     Set,
@@ -50,6 +52,7 @@ def check(
     joint: AtJoint = None,
     reduce: Reduce = None,
     must_rest: MustRest = False,
+    proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -66,6 +69,7 @@ def check(
             joint,
             reduce=reduce,
             must_rest=must_rest,
+            proof=proof,
             as_json=as_json,
         )
     asked = question(scene, given, thick=True)
@@ -82,6 +86,7 @@ def check(
             must_rest=must_rest,
             progress=report,
         )
+    write_proof(answer, proof)
     answer = replace(answer, reason=answer.reason + thickness_words(asked, given.ratio))
     at = asked.line and asked.line.at
     told = answer.carried

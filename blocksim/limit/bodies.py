@@ -234,7 +234,9 @@ def _opening(rows: sparse.csr_array, opens: Flags) -> Flags:
     """Tell which rows can be above 0: all of them at once, as motions can be added."""
     count, size = rows.shape
     able = np.flatnonzero(opens)
-    pick = sparse.csr_array((-np.ones(len(able)), (able, np.arange(len(able)))), shape=(count, len(able)))
+    pick = sparse.csr_array(
+        (-np.ones(len(able)), (able, np.arange(len(able)))), shape=(count, len(able))
+    )
     cost = np.append(np.zeros(size), -np.ones(len(able)))
     ends = np.append(np.full(size, FAR), np.ones(len(able)))
     low = np.append(np.full(size, -FAR), np.zeros(len(able)))

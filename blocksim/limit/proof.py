@@ -22,13 +22,16 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.blocks.rows import column
+from blocksim.blocks.structure import structure_record
+from blocksim.common.version import __version__
+from blocksim.verify import FORMAT, seal
 from blocksim.limit.bodies import motion_that_opens
 from blocksim.limit.cones import Cones
 
@@ -101,7 +104,9 @@ class Exact:
         self.friction = [
             None if each == math.inf else Fraction(each) for each in problem.friction.tolist()
         ]
-        self.weights = [Fraction(mass * STANDARD_GRAVITY) for mass in column(assembly.blocks, "mass")]
+        self.weights = [
+            Fraction(mass * STANDARD_GRAVITY) for mass in column(assembly.blocks, "mass")
+        ]
         x, y = (Fraction(each) for each in problem.gravity[:2].tolist())
         self.pull = [[weight * x, weight * y, NOTHING] for weight in self.weights]
         for factor, loads in ((1.0, problem.dead), (problem.load, problem.live)):
@@ -131,6 +136,33 @@ class Exact:
         most = [SLACK * weight for weight in self.weights]
         return [[one, one, one * Fraction(far) / self.grain]
                 for one, far in zip(most, reach, strict=True)]  # fmt: skip
+
+
+def proof_record(proof: Proof) -> dict[str, Any]:
+    """Return a proof as the file that `blocksim.verify` checks."""
+    exact = proof.exact
+    table: dict[str, Any] = {
+        "format": FORMAT,
+        "version": __version__,
+        "claim": proof.claim,
+        "tolerance": str(proof.tolerance),
+        "problem": structure_record(exact.problem),
+    }
+    if proof.claim == "stands":
+        # In newtons over metres, as joints are vectors of metres.
+        parts = [str(each / exact.grain) for each in proof.forces]
+        table["forces"] = [
+            [parts[at : at + 2], parts[at + 2 : at + 4]] for at in range(0, len(parts), 4)
+        ]
+    else:
+        names = [each["id"] for each in table["problem"]["blocks"] if not each.get("fixed")]
+        common = math.gcd(*(each for rate in proof.rates for each in rate))
+        grains = exact.grain.denominator
+        table["rates"] = {
+            name: [str(x // common), str(y // common), str(turn // common * grains)]
+            for name, (x, y, turn) in zip(names, proof.rates, strict=True)
+        }
+    return {**table, "sha256": seal(table)}
 
 
 def proof_of_rest(problem: Problem, forces: Array) -> Proof | None:
@@ -191,7 +223,9 @@ def proof_of_fall(problem: Problem, cones: Cones, rates: Array | None) -> Proof 
     for bodies in motion_that_opens(problem, cones, rates):
         found = _rates(exact, *bodies)
         if _lawful(exact, found) and _work(exact, found) > 0:
-            return Proof(exact=exact, claim="collapses", tolerance=SLACK, forces=[], rates=found)
+            return Proof(
+                exact=exact, claim="collapses", tolerance=SLACK, forces=[], rates=found
+            )
     return None
 
 
@@ -223,9 +257,7 @@ def _left(exact: Exact, whole: list[int], grain: Fraction) -> list[Vector]:
     ]
 
 
-def _handed_on(
-    exact: Exact, parts: Vector, left: list[Vector], forces: Array
-) -> Vector | None:
+def _handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -> Vector | None:
     """Hand on what is left on each block through the strongest joints to a support.
 
     None where a joint on the way is a corner, which carries no moment.
