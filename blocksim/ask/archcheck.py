@@ -21,11 +21,13 @@ from blocksim.common.progress import Progress, silent
 from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
+from blocksim.limit import equilibrium
 from blocksim.limit.carried import Carried
 
 if TYPE_CHECKING:
     from blocksim.arch.limit import LimitState
     from blocksim.arch.limit.mechanism import Mechanism
+    from blocksim.limit.proof import Proof
 
 TIMES = 0.5
 """Share above the least thickness from which on it is told how many times that it is."""
@@ -74,6 +76,14 @@ class ArchCheck(Check):
     def mode_theory(self) -> Mode:
         """The first of `modes_theory`."""
         return self.modes_theory[0]
+
+    @cached_property
+    def proof(self) -> Proof | None:  # type: ignore[override]
+        """The proof of the verdict by limit analysis; None where there is none."""
+        if self.method != "limit":
+            return None
+        found = equilibrium(arch_problem(self.arch, self.mu)).proof
+        return found if found is not None and found.claim == self.verdict.value else None
 
     @cached_property
     def carried(self) -> Carried | None:

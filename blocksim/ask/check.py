@@ -24,6 +24,7 @@ from blocksim.limit.programme import NEAR
 if TYPE_CHECKING:
     from blocksim.engines.base import Method
     from blocksim.evidence.shaken import Shaken
+    from blocksim.limit.proof import Proof
 
 SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
@@ -72,6 +73,16 @@ class Check(Shown):
     splits: int | None
     wall_s: float
 
+    @property
+    def proof(self) -> Proof | None:
+        """The proof of the verdict by limit analysis; None where there is none."""
+        return None
+
+    @property
+    def proved(self) -> bool:
+        """Whether the verdict is proved (`blocksim.verify`)."""
+        return self.proof is not None
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProblemCheck(Check):
@@ -90,6 +101,8 @@ class ProblemCheck(Check):
     mechanism : (blocks, 3) float or None
         Rates x, y [size] and rotation with which a collapse starts, the largest way of a
         corner being 1.
+    static : Equilibrium or None
+        By limit analysis, what the verdict rests on.
     shaken : Shaken or None
         Where the ground shakes: what became of the blocks, which the verdict is of. Nothing
         is said of rest then.
@@ -100,6 +113,12 @@ class ProblemCheck(Check):
     forces: Array | None
     mechanism: Array | None
     shaken: Shaken | None = None
+    static: Equilibrium | None = None
+
+    @property
+    def proof(self) -> Proof | None:
+        """The proof of the verdict by limit analysis; None where there is none."""
+        return None if self.static is None else self.static.proof
 
     @cached_property
     def carried(self) -> Carried | None:
@@ -206,6 +225,7 @@ def check(
         joints=joints,
         forces=None if static is None else static.forces,
         mechanism=mechanism,
+        static=static if chosen.is_static else None,
         simulated=seen and seen.simulated,
         state_hash=seen and seen.state_hash,
         blocks=seen and seen.blocks,
@@ -275,3 +295,15 @@ def _static_words(static: Equilibrium) -> str:
 
 def _notes(problem: Problem) -> str:
     return "".join(f"; {note}" for note in problem.notes)
+
+
+def proof_words(answer: Check) -> str:
+    """Say whether a verdict by limit analysis is proved, and by what."""
+    proof = answer.proof
+    if proof is None:
+        return "none was found"
+    if proof.claim == "collapses":
+        return "a motion that no joint forbids gains work, in rational arithmetic"
+    if proof.tolerance:
+        return "forces within friction balance to 1e-12 of each weight, in rational arithmetic"
+    return "forces within friction balance exactly, in rational arithmetic"

@@ -21,6 +21,7 @@ from blocksim.cli.options import (
     MethodOption,
     MustRest,
     Over,
+    ProofFile,
     Reduce,
     Scene,
     Set,
@@ -29,6 +30,7 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import answer_with, progress
+from blocksim.cli.proving import write_proof
 from blocksim.cli.question import arch_of, joint_of, question, thickness_words
 from blocksim.common.checks import require
 from blocksim.kinds.circular import arch_problem
@@ -51,6 +53,7 @@ def check(
     joint: AtJoint = None,
     reduce: Reduce = None,
     must_rest: MustRest = False,
+    proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -67,6 +70,7 @@ def check(
             joint,
             reduce=reduce,
             must_rest=must_rest,
+            proof=proof,
             as_json=as_json,
         )
     asked = question(scene, given, thick=True)
@@ -83,6 +87,7 @@ def check(
             must_rest=must_rest,
             progress=report,
         )
+    write_proof(answer, proof)
     answer = replace(answer, reason=answer.reason + thickness_words(asked, given.ratio))
     at = asked.line and asked.line.at
     told = answer.carried

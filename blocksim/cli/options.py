@@ -6,6 +6,7 @@ import math
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Annotated, ClassVar
 
 from blocksim.arch.dimensions import LINES, friction_of, require_friction_angle
@@ -61,6 +62,13 @@ MustRest = Annotated[
         name="--must-rest",
         help="Find out as well whether it must rest, or friction may let it move: "
         "a second with 8 joints, ten with 28.",
+    ),
+]
+ProofFile = Annotated[
+    Path | None,
+    Option(
+        name="--proof",
+        help="Write a proof of the verdict by limit, JSON, which blocksim verify checks.",
     ),
 ]
 AtJoint = Annotated[

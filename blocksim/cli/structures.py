@@ -30,6 +30,7 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import answer_with, progress, say
+from blocksim.cli.proving import write_proof
 from blocksim.cli.question import arch_of, joint_of, question
 from blocksim.cli.road import under_road
 from blocksim.common.checks import is_number, require
@@ -190,6 +191,7 @@ def check_problem(
     *,
     reduce: bool | None,
     must_rest: bool,
+    proof: Path | None,
     as_json: bool,
 ) -> None:
     """Answer `check` of a structure, or of an arch that bears loads, and leave.
@@ -205,6 +207,7 @@ def check_problem(
             joint,
             reduce=reduce,
             must_rest=must_rest,
+            proof=proof,
             as_json=as_json,
         )
     if loading.given:
@@ -217,6 +220,7 @@ def check_problem(
             joint,
             reduce=reduce,
             must_rest=must_rest,
+            proof=proof,
             as_json=as_json,
         )
 
@@ -229,6 +233,7 @@ def check_structure(
     *,
     reduce: bool | None = None,
     must_rest: bool = False,
+    proof: Path | None = None,
     as_json: bool,
 ) -> None:
     """Answer `check` and leave with its exit code."""
@@ -246,6 +251,7 @@ def check_structure(
         if at is not None and told is not None:
             report(1.0, "thrust")
             told = carried_by(problem, at)
+    write_proof(answer, proof)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 

@@ -18,24 +18,32 @@ the vector between its ends, its normal the same turned by a right angle: no roo
 from __future__ import annotations
 
 import heapq
+import math
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
+from blocksim.blocks.rows import column
+from blocksim.blocks.structure import structure_record
+from blocksim.common.version import __version__
 from blocksim.limit.bodies import motion_that_opens
 from blocksim.limit.cones import Cones
+from blocksim.verify import FORMAT, seal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 SLACK = Fraction(1, 10**12)
 """Loads that proofs leave aside, over the weight of each block."""
-Rational = Fraction
+ROUNDED = 1e-15
+"""By how much friction is taken less, so that rounding does not exceed it."""
 Vector = list[Fraction]
+Point = tuple[int, int]
 NOTHING = Fraction(0)
 
 
@@ -45,83 +53,116 @@ class Proof:
 
     Parameters
     ----------
-    problem : Problem
+    exact : Exact
+        The problem.
     claim : {"stands", "collapses"}
     tolerance : Fraction
         Loads that differ from those given by no more are proved as well (`collapses`) or
         instead (`stands`, where it is 0 but for structures that touch their limit): force over
         the weight of each block, moment over that times its reach.
-    forces : list of two pairs of Fraction, for each joint
-        At its ends: along normal and tangent, each as long as the joint [N/m]; empty where it
-        falls.
-    rates : list of three Fraction, for each block
-        x, y of its centre and rotation; empty where it stands.
+    forces : list of Fraction
+        a, b at both ends of each joint: the force a n + b t, where t leads from its first end to
+        the second [grains] and n is t turned clockwise; empty where it falls.
+    rates : list of three int, for each block
+        x, y of its centre and rotation, in any unit; empty where it stands.
     """
 
-    problem: Problem
+    exact: Exact
     claim: Literal["stands", "collapses"]
     tolerance: Fraction
-    forces: list[list[Vector]]
-    rates: list[Vector]
+    forces: Vector
+    rates: list[list[int]]
 
 
 class Exact:
-    """A problem in rational numbers, in metres and newtons."""
+    """A problem in whole and rational numbers.
+
+    Lengths are whole numbers of `grain` metres, a power of two of which all coordinates are
+    multiples; forces are rational numbers of newtons.
+    """
 
     def __init__(self, problem: Problem) -> None:
-        assembly = problem.assembly
+        assembly, joints = problem.assembly, problem.assembly.joints
         self.problem = problem
-        self.centres = [_exact(each) for each in assembly.centres.tolist()]
-        self.weights = [Fraction(each.mass * STANDARD_GRAVITY) for each in assembly.blocks]
         self.sides: list[list[int]] = assembly.sides.T.tolist()
-        self.ends: list[list[Vector]] = []
-        self.axes: list[tuple[Vector, Vector]] = []
-        for joint in assembly.joints:
-            ends = [_exact(joint.inner.tolist()), _exact(joint.outer.tolist())]
-            if joint.across is None:
-                t = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]]
-                n = [t[1], -t[0]]
-            else:
-                n = _exact(joint.across.tolist())
-                t = [-n[1], n[0]]
-            self.ends.append(ends)
-            self.axes.append((n, t))
-        self.friction = [
-            None if each == np.inf else Fraction(each) for each in problem.friction.tolist()
-        ]
-        self.pull = [[NOTHING] * PLANAR for _ in self.centres]
-        gravity = _exact(problem.gravity[:2].tolist())
-        for block, weight in enumerate(self.weights):
-            self.pull[block] = [weight * gravity[0], weight * gravity[1], NOTHING]
-        for factor, loads in (
-            (Fraction(1), problem.dead),
-            (Fraction(problem.load), problem.live),
+        is_corner = assembly.joint_arrays.is_corner.tolist()
+        ends = np.array([column(joints, "inner"), column(joints, "outer")])
+        across = np.array([(0.0, 0.0) if each is None else each.tolist()
+                           for each in column(joints, "across")])  # fmt: skip
+        values = [assembly.centres.ravel(), ends.ravel(), across.ravel()]
+        self.grain, whole = _whole(np.concatenate(values).tolist())
+        pairs = list(zip(whole[::2], whole[1::2], strict=True))
+        blocks, count = len(assembly.blocks), len(self.sides)
+        self.centres = pairs[:blocks]
+        first, second = pairs[blocks : blocks + count], pairs[blocks + count :][:count]
+        self.ends = list(zip(first, second, strict=True))
+        self.normals: list[Point] = []
+        for corner, one, other, up in zip(
+            is_corner, first, second, pairs[blocks + 2 * count :], strict=True
         ):
+            self.normals.append(up if corner else (other[1] - one[1], one[0] - other[0]))
+        self.friction = [
+            None if each == math.inf else Fraction(each) for each in problem.friction.tolist()
+        ]
+        self.weights = [
+            Fraction(mass * STANDARD_GRAVITY) for mass in column(assembly.blocks, "mass")
+        ]
+        x, y = (Fraction(each) for each in problem.gravity[:2].tolist())
+        self.pull = [[weight * x, weight * y, NOTHING] for weight in self.weights]
+        for factor, loads in ((1.0, problem.dead), (problem.load, problem.live)):
             for load in loads:
-                self._load(factor, load)
+                self._load(Fraction(factor), load)
 
     def _load(self, factor: Fraction, load: Load) -> None:
-        force = _exact(load.force.tolist())
+        """Add a load: forces in newtons, moments in newtons times the grain."""
+        force = [Fraction(each) for each in load.force.tolist()]
         for block in load.blocks:
             times = factor * (self.weights[block] if load.per_weight else 1)
             x, y, pull = times * force[0], times * force[1], self.pull[block]
             pull[0] += x
             pull[1] += y
             if load.point is not None and not load.per_weight:
-                px, py = _exact(load.point.tolist())
+                px, py = (Fraction(each) / self.grain for each in load.point.tolist())
                 cx, cy = self.centres[block]
                 pull[2] += (px - cx) * y - (py - cy) * x
 
-    def reach(self, block: int) -> Fraction:
-        """Return the farthest corner of a block from its centre, along x and y added."""
-        cx, cy = self.centres[block]
-        corners = np.concatenate(self.problem.assembly.blocks[block].polygons).tolist()
-        return max(abs(x - cx) + abs(y - cy) for x, y in map(_exact, corners))
+    @cached_property
+    def allowed(self) -> list[Vector]:
+        """What may be left on each block."""
+        assembly = self.problem.assembly
+        shapes = [np.concatenate(block.polygons) for block in assembly.blocks]
+        reach = [float(np.abs(shape - centre).sum(axis=1).max())
+                 for shape, centre in zip(shapes, assembly.centres, strict=True)]  # fmt: skip
+        most = [SLACK * weight for weight in self.weights]
+        return [[one, one, one * Fraction(far) / self.grain]
+                for one, far in zip(most, reach, strict=True)]  # fmt: skip
 
-    def allowed(self, block: int) -> Vector:
-        """Return what may be left on a block."""
-        most = SLACK * self.weights[block]
-        return [most, most, most * self.reach(block)]
+
+def proof_record(proof: Proof) -> dict[str, Any]:
+    """Return a proof as the file that `blocksim.verify` checks."""
+    exact = proof.exact
+    table: dict[str, Any] = {
+        "format": FORMAT,
+        "version": __version__,
+        "claim": proof.claim,
+        "tolerance": str(proof.tolerance),
+        "problem": structure_record(exact.problem),
+    }
+    if proof.claim == "stands":
+        # In newtons over metres, as joints are vectors of metres.
+        parts = [str(each / exact.grain) for each in proof.forces]
+        table["forces"] = [
+            [parts[at : at + 2], parts[at + 2 : at + 4]] for at in range(0, len(parts), 4)
+        ]
+    else:
+        names = [each["id"] for each in table["problem"]["blocks"] if not each.get("fixed")]
+        common = math.gcd(*(each for rate in proof.rates for each in rate))
+        grains = exact.grain.denominator
+        table["rates"] = {
+            name: [str(x // common), str(y // common), str(turn // common * grains)]
+            for name, (x, y, turn) in zip(names, proof.rates, strict=True)
+        }
+    return {**table, "sha256": seal(table)}
 
 
 def proof_of_rest(problem: Problem, forces: Array) -> Proof | None:
@@ -141,30 +182,25 @@ def proof_of_rest(problem: Problem, forces: Array) -> Proof | None:
     """
     exact = Exact(problem)
     joints = problem.assembly.joint_arrays
+    # Along vectors of so many grains.
     length = np.where(joints.is_corner, 1.0, joints.length * problem.assembly.size)
-    unit = problem.unit_force / length
-    parts: list[list[Vector]] = []
-    for mu, joint in zip(exact.friction, (forces * unit[:, None, None]).tolist(), strict=True):
-        ends: list[Vector] = []
-        for pressure, friction in joint:
-            a, b = max(Fraction(pressure), NOTHING), Fraction(friction)
-            if mu is not None and abs(b) > mu * a:
-                b = mu * a if b > 0 else -mu * a
-            ends.append([a, b])
-        parts.append(ends)
-    left = _left(exact, parts)
-    rough = [[part[:] for part in ends] for ends in parts]
-    if _handed_on(exact, parts, left, forces) and _within(exact, parts):
-        still = all(not each for wrench in left for each in wrench)
-        if still:
-            return Proof(
-                problem=problem, claim="stands", tolerance=NOTHING, forces=parts, rates=[]
-            )
-    left = _left(exact, rough)
+    inside = forces * (problem.unit_force / length)[:, None, None] * float(exact.grain)
+    mu = problem.friction[:, None]
+    inside[..., 0] = np.maximum(inside[..., 0], 0.0)
+    with np.errstate(invalid="ignore"):
+        most = np.where(np.isinf(mu), math.inf, mu * inside[..., 0] * (1 - ROUNDED))
+    inside[..., 1] = np.clip(inside[..., 1], -most, most)
+    grain, whole = _whole(inside.ravel().tolist())
+    left = _left(exact, whole, grain)
+    parts = [Fraction(each) * grain for each in whole]
+    handed = _handed_on(exact, parts, left, forces)
+    if handed is not None and _within(exact, handed):
+        return Proof(exact=exact, claim="stands", tolerance=NOTHING, forces=handed, rates=[])
     for block, wrench in enumerate(left):
-        if any(abs(w) > most for w, most in zip(wrench, exact.allowed(block), strict=True)):
+        # Less than is allowed: how far a block reaches is rounded here.
+        if any(2 * abs(w) > most for w, most in zip(wrench, exact.allowed[block], strict=True)):
             return None
-    return Proof(problem=problem, claim="stands", tolerance=SLACK, forces=rough, rates=[])
+    return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=parts, rates=[])
 
 
 def proof_of_fall(problem: Problem, cones: Cones, rates: Array | None) -> Proof | None:
@@ -188,70 +224,73 @@ def proof_of_fall(problem: Problem, cones: Cones, rates: Array | None) -> Proof 
         found = _rates(exact, *bodies)
         if _lawful(exact, found) and _work(exact, found) > 0:
             return Proof(
-                problem=problem, claim="collapses", tolerance=SLACK, forces=[], rates=found
+                exact=exact, claim="collapses", tolerance=SLACK, forces=[], rates=found
             )
     return None
 
 
-def _exact(values: Sequence[float]) -> Vector:
-    return [Fraction(each) for each in values]
+def _whole(values: Sequence[float]) -> tuple[Fraction, list[int]]:
+    """Return a power of two, and values as whole multiples of it."""
+    ratios = [each.as_integer_ratio() for each in values]
+    finest = max((each for _, each in ratios), default=1)
+    return Fraction(1, finest), [above * (finest // below) for above, below in ratios]
 
 
-def _cross(arm: Vector, force: Vector) -> Fraction:
-    return arm[0] * force[1] - arm[1] * force[0]
-
-
-def _left(exact: Exact, parts: list[list[Vector]]) -> list[Vector]:
+def _left(exact: Exact, whole: list[int], grain: Fraction) -> list[Vector]:
     """Return what forces leave on each block."""
-    left = [wrench[:] for wrench in exact.pull]
-    for joint, ends in enumerate(parts):
-        for end, (a, b) in enumerate(ends):
-            if a or b:
-                n, t = exact.axes[joint]
-                force = [a * n[0] + b * t[0], a * n[1] + b * t[1]]
-                _put(exact, left, joint, exact.ends[joint][end], force, NOTHING)
-    return left
+    sums = [[0] * PLANAR for _ in exact.centres]
+    for joint, sides in enumerate(exact.sides):
+        p, q = exact.normals[joint]
+        for end, (x, y) in enumerate(exact.ends[joint]):
+            at = 4 * joint + 2 * end
+            a, b = whole[at : at + 2]
+            u, v = a * p - b * q, a * q + b * p
+            for block, sign in zip(sides, (-1, 1), strict=True):
+                if block != SUPPORT:
+                    (cx, cy), wrench = exact.centres[block], sums[block]
+                    wrench[0] += sign * u
+                    wrench[1] += sign * v
+                    wrench[2] += sign * ((x - cx) * v - (y - cy) * u)
+    return [
+        [one + each * grain for one, each in zip(pull, wrench, strict=True)]
+        for pull, wrench in zip(exact.pull, sums, strict=True)
+    ]
 
 
-def _put(
-    exact: Exact, left: list[Vector], joint: int, point: Vector, force: Vector, moment: Fraction
-) -> None:
-    """Put a force at a point, and a moment, on the block after a joint, and against it before."""
-    for block, sign in zip(exact.sides[joint], (-1, 1), strict=True):
-        if block != SUPPORT:
-            (cx, cy), wrench = exact.centres[block], left[block]
-            wrench[0] += sign * force[0]
-            wrench[1] += sign * force[1]
-            wrench[2] += sign * (_cross([point[0] - cx, point[1] - cy], force) + moment)
+def _handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -> Vector | None:
+    """Hand on what is left on each block through the strongest joints to a support.
 
-
-def _handed_on(
-    exact: Exact, parts: list[list[Vector]], left: list[Vector], forces: Array
-) -> bool:
-    """Hand on what is left on each block through the strongest joints to a support."""
+    None where a joint on the way is a corner, which carries no moment.
+    """
+    parts, left = parts[:], [wrench[:] for wrench in left]
     for block, joint in reversed(_ways(exact, forces)):
-        wrench = left[block]
-        if not any(wrench):
+        u, v, moment = left[block]
+        if not (u or v or moment):
             continue
-        after = exact.sides[joint][1] == block
-        sign = -1 if after else 1
-        ends, (n, t) = exact.ends[joint], exact.axes[joint]
-        if ends[0] == ends[1]:
-            return False
+        (x, y), far = exact.ends[joint]
+        if (x, y) == far:
+            return None
+        before, after = exact.sides[joint]
+        other, sign = (before, -1) if after == block else (after, 1)
         cx, cy = exact.centres[block]
-        force = [sign * wrench[0], sign * wrench[1]]
-        arm = [ends[0][0] - cx, ends[0][1] - cy]
-        moment = sign * wrench[2] - _cross(arm, force)
-        square = n[0] * n[0] + n[1] * n[1]
-        second = -moment / square
-        normal = (force[0] * n[0] + force[1] * n[1]) / square
-        half = (force[0] * t[0] + force[1] * t[1]) / square / 2
-        for end, more in enumerate((normal - second, second)):
-            part = parts[joint][end]
-            part[0] += more
-            part[1] += half
-        _put(exact, left, joint, ends[0], force, moment)
-    return True
+        # On the block after the joint: about the first end.
+        about = moment - (x - cx) * v + (y - cy) * u
+        p, q = exact.normals[joint]
+        square = sign * (p * p + q * q)
+        second = -about / square
+        first = (u * p + v * q) / square - second
+        half = (v * p - u * q) / (2 * square)
+        at = 4 * joint
+        parts[at] += first
+        parts[at + 1] += half
+        parts[at + 2] += second
+        parts[at + 3] += half
+        if other != SUPPORT:
+            (ox, oy), wrench = exact.centres[other], left[other]
+            wrench[0] += u
+            wrench[1] += v
+            wrench[2] += moment + (cx - ox) * v - (cy - oy) * u
+    return parts
 
 
 def _ways(exact: Exact, forces: Array) -> list[tuple[int, int]]:
@@ -284,56 +323,64 @@ def _ways(exact: Exact, forces: Array) -> list[tuple[int, int]]:
     return ways
 
 
-def _within(exact: Exact, parts: list[list[Vector]]) -> bool:
+def _within(exact: Exact, parts: Vector) -> bool:
     """Tell whether all forces press and lie within friction."""
-    return all(
-        a >= 0 and (mu is None or abs(b) <= mu * a)
-        for mu, ends in zip(exact.friction, parts, strict=True)
-        for a, b in ends
-    )
+    for at, (a, b) in enumerate(zip(parts[::2], parts[1::2], strict=True)):
+        mu = exact.friction[at // 2]
+        if a < 0 or (b and mu is not None and abs(b) > mu * a):
+            return False
+    return True
 
 
 def _rates(
     exact: Exact, owner: list[int], points: Array, motions: list[Vector]
-) -> list[Vector]:
-    """Return the rates of blocks from those of bodies about points of theirs; -1 is at rest."""
-    found: list[Vector] = []
-    about = [_exact(each) for each in points.tolist()]
+) -> list[list[int]]:
+    """Return rates of blocks from those of bodies about points of theirs; -1 is at rest.
+
+    As whole numbers of any unit: grains, and grains times turns over the grain.
+    """
+    below = math.lcm(*(each.denominator for motion in motions for each in motion))
+    scale = below * exact.grain.denominator, below
+    about = [[Fraction(each) / exact.grain for each in point] for point in points.tolist()]
+    below = math.lcm(*(each.denominator for point in about for each in point))
+    found: list[list[int]] = []
     for (cx, cy), body in zip(exact.centres, owner, strict=True):
         if body == SUPPORT:
-            found.append([NOTHING] * PLANAR)
+            found.append([0] * PLANAR)
             continue
         (x, y, turn), (px, py) = motions[body], about[body]
-        found.append([x - turn * (cy - py), y + turn * (cx - px), turn])
+        x, y, turn = x * scale[0], y * scale[0], turn * scale[1]
+        rates = (x - turn * (cy - py), y + turn * (cx - px), turn)
+        found.append([int(each * below) for each in rates])
     return found
 
 
-def _lawful(exact: Exact, rates: list[Vector]) -> bool:
+def _lawful(exact: Exact, rates: list[list[int]]) -> bool:
     """Tell whether no joint closes, or slips without opening."""
-    for joint, (one, other) in enumerate(exact.sides):
-        if all(side == SUPPORT or not any(rates[side]) for side in (one, other)):
+    for joint, sides in enumerate(exact.sides):
+        moved = [(rates[side], exact.centres[side], sign)
+                 for side, sign in zip(sides, (-1, 1), strict=True)
+                 if side != SUPPORT and any(rates[side])]  # fmt: skip
+        if not moved:
             continue
-        (n, t), mu = exact.axes[joint], exact.friction[joint]
+        (p, q), mu = exact.normals[joint], exact.friction[joint]
         for x, y in exact.ends[joint]:
-            way = [NOTHING, NOTHING]
-            for side, sign in ((one, -1), (other, 1)):
-                if side != SUPPORT:
-                    (u, v, turn), (cx, cy) = rates[side], exact.centres[side]
-                    way[0] += sign * (u - turn * (y - cy))
-                    way[1] += sign * (v + turn * (x - cx))
-            opens = way[0] * n[0] + way[1] * n[1]
-            slips = abs(way[0] * t[0] + way[1] * t[1])
-            if opens < 0 or (slips > 0 if mu is None else mu * slips > opens):
+            u = v = 0
+            for (dx, dy, turn), (cx, cy), sign in moved:
+                u += sign * (dx - turn * (y - cy))
+                v += sign * (dy + turn * (x - cx))
+            opens, slips = u * p + v * q, abs(v * p - u * q)
+            if opens < 0 or (slips and (mu is None or mu * slips > opens)):
                 return False
     return True
 
 
-def _work(exact: Exact, rates: list[Vector]) -> Fraction:
+def _work(exact: Exact, rates: list[list[int]]) -> Fraction:
     """Return the work of the loads, less what those that are left aside may do."""
     total = NOTHING
     for block, rate in enumerate(rates):
         if any(rate):
-            most = exact.allowed(block)
+            most = exact.allowed[block]
             for pull, least, way in zip(exact.pull[block], most, rate, strict=True):
-                total += pull * way - least * abs(way)
+                total += pull * way - 2 * least * abs(way)
     return total

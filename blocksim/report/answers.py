@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from blocksim.arch.circular import GRAVITY, Arch
+from blocksim.ask.check import proof_words
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.version import __version__
@@ -34,6 +35,7 @@ def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str,
         "version": __version__,
         "method": answer.method,
         "verdict": answer.verdict.value,
+        "proved": answer.proved,
         "reason": answer.reason,
         "eta": arch.eta,
         "mu": answer.mu,
@@ -136,6 +138,8 @@ def check_lines(
             of = "of the continuous arch, of any thickness"
     else:
         of = f"of the voussoirs as built, at eta {arch.eta:g}"
+    if answer.method == "limit":
+        lines.append(f"  proof   {proof_words(answer)}")
     if rest := rest_words(answer.rest, asked=answer.asked_rest):
         lines.append(f"  rest    {rest}")
     lines += _modes(answer, of)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 
 from blocksim.ask.bracket import Bracket
-from blocksim.ask.check import SOUGHT, ProblemCheck
+from blocksim.ask.check import SOUGHT, ProblemCheck, proof_words
 from blocksim.ask.ends import End
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
@@ -41,6 +41,7 @@ def check_record(answer: ProblemCheck, carried: Carried | None = None) -> dict[s
         "version": __version__,
         "method": answer.method,
         "verdict": answer.verdict.value,
+        "proved": answer.proved,
         "reason": answer.reason,
         "problem": {
             "title": problem.title,
@@ -102,6 +103,8 @@ def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[st
     lines += unit_lines(arch) if carried and (arch := plain_arch(problem)) else []
     if carried is None and len(problem.assembly.joints) > SOUGHT:
         lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
+    if answer.method == "limit":
+        lines.append(f"  proof   {proof_words(answer)}")
     if rest := rest_words(answer.rest, asked=answer.asked_rest):
         lines.append(f"  rest    {rest}")
     named = joint_names(problem.assembly)
