@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from blocksim.arch.check import check as check_arch
 from hypothesis import given
 from hypothesis import strategies as st
 from running import blocksim
 
 from blocksim import Arch, structure_of
+from blocksim.ask.archcheck import check as check_arch
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
