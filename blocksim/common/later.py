@@ -7,9 +7,11 @@ import sys
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any, TypeVar
 
 from blocksim.common import interrupts
+from blocksim.common.errors import MissingPart
 
 Thing = TypeVar("Thing")
 
@@ -45,6 +47,22 @@ class Later(Mapping[str, Thing]):
     def __len__(self) -> int:
         """Count the names."""
         return len(self._makers)
+
+
+def require_library(library: str, part: str, extra: str) -> None:
+    """Raise `MissingPart` unless a library of an extra of blocksim is installed.
+
+    Parameters
+    ----------
+    library : str
+        As it is imported.
+    part : str
+        What needs it.
+    extra : str
+        What brings it.
+    """
+    if find_spec(library) is None:
+        raise MissingPart(part, f"pip install 'blocksim[{extra}]'")
 
 
 class Library:

@@ -10,6 +10,7 @@ from typing import Any, cast
 
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, require_file
+from blocksim.common.later import require_library
 from blocksim.reading.drawing import (
     LARGEST_DRAWING,
     NO_UNIT,
@@ -48,9 +49,12 @@ def read_dxf(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
     ------
     InputError
         In one line, if the file is too large, no DXF, or has no outlines to read.
+    MissingPart
+        If ezdxf is not installed.
     """
     require_file(path, "drawing", "an existing .dxf file", LARGEST_DRAWING)
-    # ezdxf takes a second to import, which nothing else need wait for.
+    require_library("ezdxf", "DXF", "dxf")
+    # It takes a second to import, which nothing else need wait for.
     import ezdxf
 
     # What it logs of flaws it mends would be printed where nobody set up logging.

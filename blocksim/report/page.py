@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from statistics import fmean
 
 from blocksim.arch.circular import GRAVITY
 from blocksim.arch.modes import Mode
 from blocksim.blocks.joints import JointState
+from blocksim.common.dates import made_at
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answers import ratio
 from blocksim.report.environment import environment
@@ -109,7 +109,7 @@ def report_page(
         map=drawn_map,
         map_colours=dark,
         machine=machine,
-        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        made=made_at(),
         seconds=sum(row.wall_s for row in rows),
         tol=" and ".join(f"{_percent(TOLS[engine])} ({engine})" for engine in engines),
         aside=_percent(ASIDE),
