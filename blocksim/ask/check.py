@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ from blocksim.ask.carried import Carried, carried_by
 from blocksim.ask.methods import choose, chosen_words, merges
 from blocksim.ask.rest import Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
@@ -170,7 +171,7 @@ def check(
     mechanism = seen = None
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
-        reason = _static_words(static, problem)
+        reason = _static_words(static, problem) + _closing_words(problem, static.exists)
         mechanism = static.mechanism
     else:
         from blocksim.evidence.merging import Merging
@@ -262,6 +263,23 @@ def _static_words(static: Equilibrium, problem: Problem) -> str:
         return "no forces of equilibrium exist, even if contacts could pull"
     pull = -static.margin * problem.unit_force
     return f"no forces of equilibrium exist: a contact would have to pull by {pull:.3g} N"
+
+
+def _closing_words(problem: Problem, stands: bool) -> str:
+    """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
+    gaps = closed_gaps(problem.assembly)
+    if not gaps:
+        return ""
+    most = 1000 * max(map(abs, gaps.values()))
+    for sign, words in ((1, "grown"), (-1, "shrunk")):
+        assembly = resized(problem.assembly, sign)
+        if equilibrium(replace(problem, assembly=assembly)).exists != stands:
+            other = Verdict.COLLAPSES if stands else Verdict.STANDS
+            return (
+                f"; the drawing leaves it open: {other} with blocks {words} by what was closed "
+                f"at joints, {most:.3g} mm at most"
+            )
+    return f"; the same with blocks grown and shrunk by what was closed, {most:.3g} mm at most"
 
 
 def _notes(problem: Problem) -> str:

@@ -11,6 +11,8 @@ from blocksim.blocks.assembly import Array
 
 STRAIGHT = 1e-3
 """A corner is straight if it is off its neighbours' line by this share of the tolerance."""
+MOST_DECIMALS = 12
+"""Of numbers that are taken for rounded ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +42,17 @@ def following(corners: Array) -> Array:
 def before(corners: Array) -> Array:
     """Return for each corner the one before it."""
     return np.concatenate([corners[-1:], corners[:-1]])
+
+
+def step_of(values: Array) -> float:
+    """Return the step to which numbers are rounded, by their decimals; 0 if they have many."""
+    for decimals in range(MOST_DECIMALS + 1):
+        with np.errstate(over="ignore", invalid="ignore"):
+            scaled = values * 10.0**decimals
+            off = np.abs(scaled - np.round(scaled))
+            if (off <= 8 * np.finfo(float).eps * np.abs(scaled)).all():
+                return 10.0**-decimals
+    return 0.0
 
 
 def signed_area(vertices: Array) -> float:

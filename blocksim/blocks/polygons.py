@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
 from blocksim.blocks.given import GivenJoint, as_given
-from blocksim.blocks.outlines import mended, moments, signed_area
+from blocksim.blocks.outlines import mended, moments, signed_area, step_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.regions import (
     convex_parts,
@@ -32,8 +32,6 @@ TOLERANCE = 1e-6
 """Distance within which blocks touch, in units of half the larger side of the smaller one."""
 ROUNDED = 1.5
 """Steps of rounding by which faces may part: three points are off by 0.71 steps at most."""
-MOST_DECIMALS = 12
-"""Of coordinates [m] that are taken for rounded ones."""
 NARROW, NARROW_ASKED = 1 / 40, 1 / 10
 """Share of a block's width up to which gaps are closed: due to rounding, and asked for."""
 SHOWN = 5
@@ -185,8 +183,9 @@ def assembly_of_bodies(
     )
     notes: list[str] = []
     fixed_ones = np.array([body.fixed for body in bodies])
-    step = _step(raw) if rounding is None else rounding
-    slack = _slack(raw, fixed_ones, step, tolerance)
+    if rounding is None:
+        rounding = step_of(np.concatenate([each.ravel() for of in raw for each in of]))
+    slack = _slack(raw, fixed_ones, rounding, tolerance)
     shapes = [_shape(raw[index], bodies, index, notes) for index in range(len(raw))]
     parts = [shape.parts for shape in shapes]
     if joints is None:
@@ -198,7 +197,7 @@ def assembly_of_bodies(
                 f"at most {most:.3g} m: move one of them, give the joints, or --tolerance",
             )
         found = [(touch, None) for touch in _found(shapes, bodies, slack, notes)]
-        notes += _said(found, bodies, slack, step, tolerance)
+        notes += _said(found, bodies, slack, rounding, tolerance)
     else:
         deep = overlaps(parts, fixed_ones, slack, SHOWN)
         if deep:
@@ -275,17 +274,6 @@ def _exact(points: Array) -> float:
     """Distance of points of a body that are the same [m]: also no less than doubles tell."""
     wide, far = float(np.ptp(points, axis=0).max()), float(np.abs(points).max())
     return max(TOLERANCE * wide / 2, _ROUNDING * far)
-
-
-def _step(raw: Sequence[tuple[Array, ...]]) -> float:
-    """Step to which all coordinates are rounded, by their decimals [m]; 0 where they have many."""
-    values = np.concatenate([polygon.ravel() for polygons in raw for polygon in polygons])
-    for decimals in range(MOST_DECIMALS + 1):
-        scaled = values * 10.0**decimals
-        off = np.abs(scaled - np.round(scaled))
-        if (off <= 8 * np.finfo(float).eps * np.abs(scaled)).all():
-            return 10.0**-decimals
-    return 0.0
 
 
 def _slack(

@@ -19,7 +19,7 @@ from blocksim.common.checks import require
 
 MOST_NEAR = 100
 """Pairs of faces near each other, for each face: blocks have a handful."""
-FIRST_LOOK, LONGEST_LOOK = 16, 16_384
+FIRST_LOOK, LONGEST_LOOK = 4, 16_384
 """Polygons whose neighbours are looked up at once: few at first, for an error is found soon."""
 
 
@@ -59,7 +59,7 @@ def _corners(region: Any) -> Array:
 def overlaps(
     parts: Sequence[Sequence[Array]], fixed: NDArray[np.bool_], slack: Slack, most: int
 ) -> list[tuple[int, int, float]]:
-    """Find bodies that overlap by more than `slack.close`, in order; no more than are asked for.
+    """Find bodies that overlap by more than `slack.close`, in order; not more than asked for.
 
     Parameters
     ----------
@@ -108,7 +108,8 @@ def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[
         If more faces are near each other than blocks have.
     """
     lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
-    tree, reach, pairs = shapely.STRtree(lines), slack.near[faces.body], []
+    tree, pairs = shapely.STRtree(lines), list[NDArray[np.int64]]()
+    reach = slack.near[faces.body]
     reach = np.where(np.isfinite(reach), reach, reach[np.isfinite(reach)].max(initial=0.0))
     # What is fixed looks for nothing: all it touches looks for it.
     looking = np.flatnonzero(~fixed[faces.body])
@@ -119,8 +120,9 @@ def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[
         at, other = tree.query(lines[here], predicate="dwithin", distance=reach[here])
         one = here[at]
         a, b = faces.body[one], faces.body[other]
-        pairs.append(np.stack([one, other], axis=1)[(a != b) & (fixed[b] | (one < other))])
+        real = (a != b) & (fixed[b] | (one < other))
+        pairs.append(np.stack([one[real], other[real]], axis=1).astype(np.int64))
         count += len(pairs[-1])
         require(count <= allowed, "blocks", f"{count} pairs of faces", "apart from each other")
         begin, step = begin + step, min(4 * step, LONGEST_LOOK)
-    return np.concatenate(pairs).astype(np.int64)
+    return np.concatenate(pairs)
