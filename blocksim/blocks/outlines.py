@@ -7,8 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from numpy.typing import NDArray
+
 from blocksim.blocks.assembly import Array
 
+Index = NDArray[np.int64]
 STRAIGHT = 1e-3
 """A corner is straight if it is off its neighbours' line by this share of the tolerance."""
 MOST_DECIMALS = 12
@@ -125,6 +128,78 @@ def is_convex(vertices: Array, tolerance: float) -> bool:
     back, on = vertices - before(vertices), following(vertices) - vertices
     cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
     return bool((cross >= -tolerance * np.hypot(*(back + on).T)).all())
+
+
+@dataclass(frozen=True, eq=False)
+class Extents:
+    """Measures of many bodies at once, each of one polygon or several.
+
+    Parameters
+    ----------
+    wide : (bodies,) float
+        Larger side of the box around it [m].
+    across : (bodies,) float
+        Diagonal of that box [m].
+    far : (bodies,) float
+        Largest coordinate [m].
+    area : (bodies,) float
+        Of its polygons, whichever way they are drawn [m^2].
+    """
+
+    wide: Array
+    across: Array
+    far: Array
+    area: Array
+
+
+def extents(bodies: Sequence[Sequence[Array]]) -> Extents:
+    """Measure many bodies at once."""
+    polygons = [polygon for body in bodies for polygon in body]
+    points, first, after = _around(polygons)
+    of_body = np.cumsum([0, *(len(body) for body in bodies)])[:-1]
+    start = first[of_body]
+    box = np.maximum.reduceat(points, start) - np.minimum.reduceat(points, start)
+    count = np.diff(np.append(first, len(points)))
+    near = points - np.repeat(points[first], count, axis=0)
+    cross = near[:, 0] * near[after, 1] - near[after, 0] * near[:, 1]
+    return Extents(
+        box.max(axis=1),
+        np.hypot(*box.T),
+        np.maximum.reduceat(np.abs(points).max(axis=1), start),
+        np.add.reduceat(np.abs(np.add.reduceat(cross, first)) / 2, of_body),
+    )
+
+
+def are_plain(polygons: Sequence[Array], tolerance: Array) -> NDArray[np.bool_]:
+    """Tell which of many polygons have nothing to be mended: convex, and counter-clockwise.
+
+    Parameters
+    ----------
+    polygons : sequence of (k, 2) float
+    tolerance : (polygons,) float
+        As of `mended` [m].
+    """
+    points, first, after = _around(polygons)
+    count = np.diff(np.append(first, len(points)))
+    on = points[after] - points
+    back = np.empty_like(on)
+    back[after] = on
+    cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
+    dot = (back * on).sum(axis=1)
+    slack = np.repeat(tolerance, count)
+    fine = (np.hypot(*on.T) > slack) & (cross > STRAIGHT * slack * np.hypot(*(back + on).T))
+    # Stars turn left everywhere, too, but twice around.
+    turned = np.add.reduceat(np.arctan2(cross, dot), first)
+    return np.logical_and.reduceat(fine, first) & (turned < 3 * np.pi)
+
+
+def _around(polygons: Sequence[Array]) -> tuple[Array, Index, Index]:
+    """All corners in a row, where each polygon begins, and for each corner the next one."""
+    count = np.array([len(polygon) for polygon in polygons])
+    first = np.cumsum(count) - count
+    after = np.arange(1, int(count.sum()) + 1)
+    after[first + count - 1] = first
+    return np.concatenate(polygons), first, after
 
 
 def joined(pieces: Sequence[Array], tolerance: float) -> tuple[Array, ...]:

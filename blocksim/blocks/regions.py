@@ -77,7 +77,10 @@ def overlaps(
         Twice the common area over its perimeter [m].
     """
     owner = np.repeat(np.arange(len(parts)), [len(each) for each in parts])
-    regions = np.array([shapely.Polygon(part) for each in parts for part in each])
+    each_one = [part for each in parts for part in each]
+    which = np.repeat(np.arange(len(each_one)), [len(part) for part in each_one])
+    rings: Any = cast(Any, shapely).linearrings(np.concatenate(each_one), indices=which)
+    regions: Any = shapely.polygons(rings)
     tree, found = shapely.STRtree(regions), list[tuple[int, int, float]]()
     begin, step = 0, FIRST_LOOK
     while begin < len(regions) and len(found) < most:
