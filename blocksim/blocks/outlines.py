@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
@@ -72,18 +71,22 @@ def moments(polygons: Sequence[Array]) -> Moments:
     polygons : sequence of (k, 2) float
         Corners, counter-clockwise; they do not overlap.
     """
-    about = polygons[0].mean(axis=0)
-    area, first, second = 0.0, np.zeros(2), 0.0
+    # Plain numbers: blocks have few corners, and drawings many blocks.
+    corners = polygons[0].tolist()
+    x0, y0 = (sum(each) / len(corners) for each in zip(*corners, strict=True))
+    area = first_x = first_y = second = 0.0
     for polygon in polygons:
-        near = polygon - about
-        after = following(near)
-        cross = near[:, 0] * after[:, 1] - after[:, 0] * near[:, 1]
-        area += float(cross.sum()) / 2
-        first += (cross[:, None] * (near + after)).sum(axis=0) / 6
-        squares = (near * near + near * after + after * after).sum(axis=1)
-        second += float((cross * squares).sum()) / 12
-    shift = first / area
-    return Moments(area, about + shift, second - area * float(shift @ shift))
+        near = [(x - x0, y - y0) for x, y in polygon.tolist()]
+        x, y = near[-1]
+        for u, v in near:
+            cross = x * v - u * y
+            area += cross / 2
+            first_x += cross * (x + u) / 6
+            first_y += cross * (y + v) / 6
+            second += cross * (x * x + y * y + x * u + y * v + u * u + v * v) / 12
+            x, y = u, v
+    x, y = first_x / area, first_y / area
+    return Moments(area, np.array([x0 + x, y0 + y]), second - area * (x * x + y * y))
 
 
 def mended(vertices: Array, tolerance: float) -> tuple[Array, list[str]]:
