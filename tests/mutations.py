@@ -125,8 +125,8 @@ MUTATIONS = (
     Mutation(
         "overlap is taken",
         "blocks/polygons.py",
-        "        if overlaps:\n            one, other, depth",
-        "        if overlaps[1:]:\n            one, other, depth",
+        "overlaps(parts, fixed_ones, slack, 1):",
+        "overlaps(parts, fixed_ones, slack, 1)[1:]:",
         "test_polygons.py",
     ),
     Mutation(
@@ -397,8 +397,8 @@ MUTATIONS = (
     ),
     Mutation(
         "only the ends of faces meet", "blocks/touching.py",
-        "apart = np.maximum(np.abs(gap(low)), np.abs(gap(high)))",
-        "apart = np.minimum(np.abs(gap(low)), np.abs(gap(high)))", "test_polygons.py",
+        "apart = np.abs(gaps).max(axis=0)",
+        "apart = np.abs(gaps).min(axis=0)", "test_polygons.py",
     ),
     Mutation(
         "words of films are taken for half as wide", "view/canvas.py",

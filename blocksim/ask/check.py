@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from blocksim.ask.methods import choose, chosen_words, merges
 from blocksim.ask.rest import Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
@@ -191,7 +192,7 @@ def check(
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
         verdict = verdict if static.decided else Verdict.UNDECIDED
-        reason = _static_words(static)
+        reason = _static_words(static) + _closing_words(problem, static.exists)
         mechanism = static.mechanism
     else:
         from blocksim.evidence.merging import Merging
@@ -291,6 +292,23 @@ def _static_words(static: Equilibrium) -> str:
         "no forces of equilibrium exist: contacts would have to pull by "
         f"{-static.margin:.3g} of what they carry"
     )
+
+
+def _closing_words(problem: Problem, stands: bool) -> str:
+    """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
+    gaps = closed_gaps(problem.assembly)
+    if not gaps:
+        return ""
+    most = 1000 * max(map(abs, gaps.values()))
+    for sign, words in ((1, "grown"), (-1, "shrunk")):
+        assembly = resized(problem.assembly, sign)
+        if equilibrium(replace(problem, assembly=assembly)).exists != stands:
+            other = Verdict.COLLAPSES if stands else Verdict.STANDS
+            return (
+                f"; the drawing leaves it open: {other} with blocks {words} by what was closed "
+                f"at joints, {most:.3g} mm at most"
+            )
+    return f"; the same with blocks grown and shrunk by what was closed, {most:.3g} mm at most"
 
 
 def _notes(problem: Problem) -> str:

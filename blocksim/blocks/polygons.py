@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
 from blocksim.blocks.given import Body as Body
 from blocksim.blocks.given import GivenJoint, as_given
-from blocksim.blocks.outlines import mended, moments, signed_area
+from blocksim.blocks.outlines import Extents, are_plain, extents, mended, moments, step_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.regions import (
     convex_parts,
@@ -33,8 +33,6 @@ TOLERANCE = 1e-6
 """Distance within which blocks touch, in units of half the larger side of the smaller one."""
 ROUNDED = 1.5
 """Steps of rounding by which faces may part: three points are off by 0.71 steps at most."""
-MOST_DECIMALS = 12
-"""Of coordinates [m] that are taken for rounded ones."""
 NARROW, NARROW_ASKED = 1 / 40, 1 / 10
 """Share of a block's width up to which gaps are closed: due to rounding, and asked for."""
 SHOWN = 5
@@ -155,9 +153,12 @@ def assembly_of_bodies(
     )
     notes: list[str] = []
     fixed_ones = np.array([body.fixed for body in bodies])
-    step = _step(raw) if rounding is None else rounding
-    slack = _slack(raw, fixed_ones, step, tolerance)
-    shapes = [_shape(raw[index], bodies, index, notes) for index in range(len(raw))]
+    if rounding is None:
+        rounding = step_of(np.concatenate([each.ravel() for of in raw for each in of]))
+    measured = extents(raw)
+    exact = np.maximum(TOLERANCE * measured.wide / 2, _ROUNDING * measured.far)
+    slack = _slack(measured, exact, fixed_ones, rounding, tolerance)
+    shapes = _shapes(raw, bodies, exact, notes)
     parts = [shape.parts for shape in shapes]
     if joints is None:
         for one, other, depth in overlaps(parts, fixed_ones, slack, 1):
@@ -168,7 +169,7 @@ def assembly_of_bodies(
                 f"at most {most:.3g} m: move one of them, give the joints, or --tolerance",
             )
         found = [(touch, None) for touch in _found(shapes, bodies, slack, notes)]
-        notes += _said(found, bodies, slack, step, tolerance)
+        notes += _said(found, bodies, slack, rounding, tolerance)
     else:
         deep = overlaps(parts, fixed_ones, slack, SHOWN)
         if deep:
@@ -219,12 +220,28 @@ def _finite(body: Body, index: int) -> tuple[Array, ...]:
     return tuple(polygons)
 
 
+def _shapes(
+    raw: Sequence[tuple[Array, ...]], bodies: Sequence[Body], exact: Array, notes: list[str]
+) -> list[_Shape]:
+    """Mend all bodies; those with nothing to be mended are told all at once."""
+    plain = are_plain([polygons[0] for polygons in raw], exact)
+    return [
+        _Shape(polygons, polygons)
+        if len(polygons) == 1 and plain[index]
+        else _shape(polygons, bodies, index, float(exact[index]), notes)
+        for index, polygons in enumerate(raw)
+    ]
+
+
 def _shape(
-    polygons: tuple[Array, ...], bodies: Sequence[Body], index: int, notes: list[str]
+    polygons: tuple[Array, ...],
+    bodies: Sequence[Body],
+    index: int,
+    tolerance: float,
+    notes: list[str],
 ) -> _Shape:
     """Mend the polygons of a body and cut them into convex parts."""
     field = f"blocks[{index}].vertices"
-    tolerance = _exact(np.concatenate(polygons))
     outlines: list[Array] = []
     parts: list[Array] = []
     for polygon in polygons:
@@ -241,41 +258,22 @@ def _shape(
     return _Shape(tuple(outlines), tuple(parts))
 
 
-def _exact(points: Array) -> float:
-    """Distance of points of a body that are the same [m]: also no less than doubles tell."""
-    wide, far = float(np.ptp(points, axis=0).max()), float(np.abs(points).max())
-    return max(TOLERANCE * wide / 2, _ROUNDING * far)
-
-
-def _step(raw: Sequence[tuple[Array, ...]]) -> float:
-    """Step to which all coordinates are rounded, by their decimals [m]; 0 where they have many."""
-    values = np.concatenate([polygon.ravel() for polygons in raw for polygon in polygons])
-    for decimals in range(MOST_DECIMALS + 1):
-        scaled = values * 10.0**decimals
-        off = np.abs(scaled - np.round(scaled))
-        if (off <= 8 * np.finfo(float).eps * np.abs(scaled)).all():
-            return 10.0**-decimals
-    return 0.0
-
-
 def _slack(
-    raw: Sequence[tuple[Array, ...]],
+    measured: Extents,
+    exact: Array,
     fixed: NDArray[np.bool_],
     step: float,
     tolerance: float | None,
 ) -> Slack:
     """How far apart each body may be drawn from others and touch them nevertheless."""
-    exact = np.array([_exact(np.concatenate(polygons)) for polygons in raw])
-    if tolerance is None:
-        most, share = ROUNDED * step, NARROW
-    else:
+    most, share = ROUNDED * step, NARROW
+    least = exact
+    if tolerance is not None:
         most, share = tolerance, NARROW_ASKED
-    area = np.array([sum(abs(signed_area(each)) for each in polygons) for polygons in raw])
-    longest = np.array([np.hypot(*np.ptp(np.concatenate(each), axis=0)) for each in raw])
-    width = area / np.where(longest > 0, longest, 1.0)
-    asked = exact if tolerance is None else np.minimum(exact, tolerance)
-    close = np.maximum(asked, np.minimum(most, share * width))
-    return Slack(*(np.where(fixed, np.inf, each) for each in (np.minimum(exact, close), close)))
+        least = np.minimum(exact, tolerance)
+    width = measured.area / np.where(measured.across > 0, measured.across, 1.0)
+    close = np.maximum(least, np.minimum(most, share * width))
+    return Slack(*(np.where(fixed, np.inf, each) for each in (least, close)))
 
 
 def _said(
@@ -381,7 +379,7 @@ def _block(body: Body, shape: _Shape, index: int, density: float) -> Block:
 def _joint(
     touch: Touch, friction: float | None, place: dict[int, int], bed: dict[int, int]
 ) -> Joint:
-    whole = all(np.array_equal(face, touch.ends) for face in touch.faces)
+    whole = bool((touch.faces == touch.ends).all())
     return Joint(
         place.get(touch.one, SUPPORT),
         place.get(touch.other, SUPPORT),

@@ -19,7 +19,7 @@ from blocksim.common.checks import require
 
 MOST_NEAR = 100
 """Pairs of faces near each other, for each face: blocks have a handful."""
-FIRST_LOOK, LONGEST_LOOK = 16, 16_384
+FIRST_LOOK, LONGEST_LOOK = 4, 16_384
 """Polygons whose neighbours are looked up at once: few at first, for an error is found soon."""
 
 
@@ -59,7 +59,7 @@ def _corners(region: Any) -> Array:
 def overlaps(
     parts: Sequence[Sequence[Array]], fixed: NDArray[np.bool_], slack: Slack, most: int
 ) -> list[tuple[int, int, float]]:
-    """Find bodies that overlap by more than `slack.close`, in order; no more than are asked for.
+    """Find bodies that overlap by more than `slack.close`, in order; not more than asked for.
 
     Parameters
     ----------
@@ -77,7 +77,11 @@ def overlaps(
         Twice the common area over its perimeter [m].
     """
     owner = np.repeat(np.arange(len(parts)), [len(each) for each in parts])
-    regions = np.array([shapely.Polygon(part) for each in parts for part in each])
+    each_one = [part for each in parts for part in each]
+    which = np.repeat(np.arange(len(each_one)), [len(part) for part in each_one])
+    rings: Any = cast(Any, shapely).linearrings(np.concatenate(each_one), indices=which)
+    regions: Any = shapely.polygons(rings)
+    boxes: Any = cast(Any, shapely).bounds(regions)
     tree, found = shapely.STRtree(regions), list[tuple[int, int, float]]()
     begin, step = 0, FIRST_LOOK
     while begin < len(regions) and len(found) < most:
@@ -85,10 +89,15 @@ def overlaps(
         one = one + begin
         real = (owner[one] < owner[other]) & ~(fixed[owner[one]] & fixed[owner[other]])
         one, other = one[real], other[real]
-        common = shapely.intersection(regions[one], regions[other])
+        close: Any = slack.at(owner[one], owner[other]).close
+        # No overlap is deeper than the box around it is narrow.
+        low, high = np.maximum(boxes[one], boxes[other]), np.minimum(boxes[one], boxes[other])
+        wide = (high[:, 2:] - low[:, :2]).min(axis=1) > close
+        one, other, close = (cast(Any, each)[wide] for each in (one, other, close))
+        common: Any = shapely.intersection(regions[one], regions[other])
         area, around = cast(Any, shapely).area(common), cast(Any, shapely).length(common)
         depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
-        deep = np.flatnonzero(depth > slack.at(owner[one], owner[other]).close)
+        deep = np.flatnonzero(depth > close)
         found += [(int(owner[one[k]]), int(owner[other[k]]), float(depth[k])) for k in deep]
         begin, step = begin + step, min(4 * step, LONGEST_LOOK)
     return sorted(found)[:most]
@@ -108,7 +117,8 @@ def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[
         If more faces are near each other than blocks have.
     """
     lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
-    tree, reach, pairs = shapely.STRtree(lines), slack.near[faces.body], []
+    tree, pairs = shapely.STRtree(lines), list[NDArray[np.int64]]()
+    reach = slack.near[faces.body]
     reach = np.where(np.isfinite(reach), reach, reach[np.isfinite(reach)].max(initial=0.0))
     # What is fixed looks for nothing: all it touches looks for it.
     looking = np.flatnonzero(~fixed[faces.body])
@@ -119,8 +129,9 @@ def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[
         at, other = tree.query(lines[here], predicate="dwithin", distance=reach[here])
         one = here[at]
         a, b = faces.body[one], faces.body[other]
-        pairs.append(np.stack([one, other], axis=1)[(a != b) & (fixed[b] | (one < other))])
+        real = (a != b) & (fixed[b] | (one < other))
+        pairs.append(np.stack([one[real], other[real]], axis=1).astype(np.int64))
         count += len(pairs[-1])
         require(count <= allowed, "blocks", f"{count} pairs of faces", "apart from each other")
         begin, step = begin + step, min(4 * step, LONGEST_LOOK)
-    return np.concatenate(pairs).astype(np.int64)
+    return np.concatenate(pairs)

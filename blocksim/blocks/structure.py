@@ -43,7 +43,9 @@ def structure_of(data: object) -> Problem:
     bodies = _bodies(written)
     joints = _joints(written, bodies)
     allowed = "left out: joints are given, none is found"
-    require(joints is None or written.tolerance is None, "tolerance", written.tolerance, allowed)
+    require(
+        joints is None or written.tolerance is None, "tolerance", written.tolerance, allowed
+    )
     found = assembly_of_bodies(
         bodies,
         joints=joints,

@@ -84,7 +84,7 @@ Json = Annotated[bool, Option(name="--json", help="Print one JSON object, nothin
 
 THICKNESS = "thickness"
 """The parameter of `bracket` that is left out: of arches."""
-OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters"}
+OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance"}
 """Options that say how anything is built, not only an arch."""
 LARGEST_FRICTION = 10.0
 """Coefficient above which, up to 90, one is taken for an angle."""
@@ -163,6 +163,13 @@ class Given:
             metavar="NAME=VALUE",
             help="Parameter of a kind of structure (blocksim kinds NAME lists them); "
             "repeatable.",
+        ),
+    ] = None
+    tolerance: Annotated[
+        float | None,
+        Option(
+            help="Gaps and overlaps of a drawing up to this are closed, in m; what rounding of "
+            "its coordinates explains if left out."
         ),
     ] = None
 

@@ -235,6 +235,7 @@ def _joints(answer: ProblemCheck, carried: Carried | None) -> list[dict[str, obj
                 "a": _name(assembly, k, 0),
                 "b": _name(assembly, k, 1),
                 "ends": ends[:1] if joint.is_corner else ends,
+                "gap": joint.gap,
                 "state": words(answer.joints[k].state),
                 "hinge": None if end is None else ends[min(end, len(ends) - 1)],
                 "normal_force": None if found is None else float(found.normal[k]),
