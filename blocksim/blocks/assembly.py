@@ -474,11 +474,11 @@ def displacement(moved: Array, assembly: Assembly) -> Array:
     (...) float
         Largest over the blocks of the translation or the corner's way by rotation.
     """
-    reach = assembly.reach / assembly.size
+    reach = (assembly.reach / assembly.size) ** 2
     square = moved**2
-    shift, turn = square[..., 0] + square[..., 1], square[..., 2]
+    shift, turn = square[..., 0] + square[..., 1], square[..., 2] * reach
     if moved.shape[-1] == SPATIAL:
-        reach = np.hypot(reach, assembly.depths / 2)
+        # About an axis in the plane a corner's lever has half the depth, too.
         shift = shift + square[..., 3]
-        turn = turn + square[..., 4] + square[..., 5]
-    return np.sqrt(np.maximum(shift, turn * reach**2)).max(axis=-1)
+        turn = turn + (square[..., 4] + square[..., 5]) * (reach + (assembly.depths / 2) ** 2)
+    return np.sqrt(np.maximum(shift, turn)).max(axis=-1)
