@@ -12,7 +12,7 @@ from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
-from blocksim.ask.check import Check
+from blocksim.ask.check import Check, observed_joints
 from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.rest import require_rest, rest_of
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
@@ -184,12 +184,14 @@ def check(
         verdict, reason, joints = seen.verdict, seen.reason, seen.joints
         mode = observed_mode(joints, arch)
         later = observed_mode(seen.joints_in_motion, arch)
-    rest = rest_of(
+    rest, motion = rest_of(
         arch_problem(arch, mu) if must_rest else None,
         exists=None if lean else built.stands_at(arch.eta),
         moved=seen is not None and seen.moved,
         progress=progress,
     )
+    if motion is not None:
+        joints = observed_joints(arch.problem(mu), motion.accelerations)
     return ArchCheck(
         method=rung.name,
         verdict=verdict,
@@ -205,6 +207,7 @@ def check(
         modes_theory=continuous.modes,
         rest=rest,
         asked_rest=must_rest,
+        motion=motion,
         joints=joints,
         simulated=seen and seen.simulated,
         state_hash=seen and seen.state_hash,

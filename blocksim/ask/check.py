@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from blocksim.ask.methods import choose, chosen_words, merges
-from blocksim.ask.rest import Rest, require_rest, rest_of
+from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
@@ -51,6 +51,8 @@ class Check(Shown):
         forces; None where it was not found out whether it must rest.
     asked_rest : bool
         Whether that was to be found out.
+    motion : Moving or None
+        Where it was, the motion that was found; `joints` say what they do in it.
     simulated : float or None
         Time simulated [sqrt(size/g)]; None for static methods.
     state_hash : str or None
@@ -73,6 +75,7 @@ class Check(Shown):
     blocks: int | None
     splits: int | None
     wall_s: float
+    motion: Moving | None = None
 
     @property
     def proof(self) -> Proof | None:
@@ -100,8 +103,8 @@ class ProblemCheck(Check):
         Forces of equilibrium at the ends of the joints, along their normals and tangents,
         in units of the mean block's weight; None where there are none.
     mechanism : (blocks, 3) float or None
-        Rates x, y [size] and rotation with which a collapse starts, the largest way of a
-        corner being 1.
+        Rates x, y [size] and rotation with which a collapse starts, or what may move though
+        it can rest; the largest way of a corner is 1.
     static : Equilibrium or None
         By limit analysis, what the verdict rests on.
     shaken : Shaken or None
@@ -208,13 +211,15 @@ def check(
         verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
     exists = None if static is None else static.exists
     moved = seen is not None and seen.moved
-    rest = rest_of(
+    rest, motion = rest_of(
         problem if must_rest else None, exists=exists, moved=moved, progress=progress
     )
+    if motion is not None:
+        mechanism = motion.accelerations
     if mechanism is not None:
         mechanism = _unit(mechanism, problem)
         if planar:
-            joints = _observed(problem, mechanism)
+            joints = observed_joints(problem, mechanism)
     return ProblemCheck(
         method=chosen.name,
         verdict=verdict,
@@ -223,6 +228,7 @@ def check(
         load_factor=factor,
         rest=rest,
         asked_rest=must_rest,
+        motion=motion,
         joints=joints,
         forces=None if static is None else static.forces,
         mechanism=mechanism,
@@ -259,7 +265,7 @@ def _of_shaken(
     )
 
 
-def _observed(problem: Problem, rates: Array) -> tuple[ObservedJoint, ...]:
+def observed_joints(problem: Problem, rates: Array) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does as blocks begin to move at some rates, (blocks, 3)."""
     from blocksim.evidence.onset import PROBE
 

@@ -206,7 +206,9 @@ class Spreading:
         speed, runs, whole = SPEED, 0, True
         world = OnMovingSupports(problem, settings, speed)
         # Blocks that mirror each other would balance where any breath lets them fall.
-        world.push(SIDEWAYS * speed)
+        sideways = np.zeros_like(world.poses())
+        sideways[: len(problem.assembly.blocks), 0] = SIDEWAYS * speed
+        world.push(sideways)
         first = frames = _run(world, highest, FAST * speed, progress)
         while True:
             whole = whole and solved(world)

@@ -77,11 +77,6 @@ class OnMovingSupports(Blocks):
         self.value, self._poses = value, poses.copy()
         self._velocities = np.zeros_like(poses)
 
-    def push(self, speed: float) -> None:
-        """Give all blocks a velocity to the right [size/sqrt(size/g)]."""
-        self._velocities = self._velocities.copy()
-        self._velocities[: self._count, 0] = speed
-
     def advance_once(self) -> None:
         """Move by one step."""
         self._move(self._step)

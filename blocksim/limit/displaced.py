@@ -248,7 +248,7 @@ class Displaced:
         return replace(frame, closed=stays), lost
 
     def energy(self, frame: Frame) -> float:
-        """Potential energy of the blocks [mean weight times size], from where they were built."""
+        """Return the potential energy [mean weight times size], 0 where they were built."""
         return -float((self._problem.pull() * (frame.poses - self.start.poses)).sum())
 
     def free(self, frame: Frame) -> Array:

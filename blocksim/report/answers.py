@@ -51,6 +51,7 @@ def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str,
         "factor_of_safety": carried and carried.geometrical_factor,
         **carried_record(carried, joint_names_of(arch)),
         "rest": answer.rest,
+        "rest_goes_on": answer.motion and answer.motion.goes_on,
         "mode": answer.mode,
         "mode_in_motion": answer.mode_in_motion,
         "mode_limit": answer.mode_limit,
@@ -140,7 +141,7 @@ def check_lines(
         of = f"of the voussoirs as built, at eta {arch.eta:g}"
     if answer.method == "limit":
         lines.append(f"  proof   {proof_words(answer)}")
-    if rest := rest_words(answer.rest, asked=answer.asked_rest):
+    if rest := rest_words(answer.rest, answer.motion, asked=answer.asked_rest):
         lines.append(f"  rest    {rest}")
     lines += _modes(answer, of)
     active = [joint for joint in answer.joints if joint.state is not JointState.CLOSED]

@@ -57,6 +57,7 @@ def check_record(answer: ProblemCheck, carried: Carried | None = None) -> dict[s
         "factor_of_safety": _factor_of_safety(answer, carried),
         **carried_record(carried, joint_names(assembly)),
         "rest": answer.rest,
+        "rest_goes_on": answer.motion and answer.motion.goes_on,
         "joints": _joints(answer, carried),
         "mechanism": _mechanism(answer.mechanism, assembly),
         "shaken": _shaken(answer),
@@ -105,7 +106,7 @@ def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[st
         lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
     if answer.method == "limit":
         lines.append(f"  proof   {proof_words(answer)}")
-    if rest := rest_words(answer.rest, asked=answer.asked_rest):
+    if rest := rest_words(answer.rest, answer.motion, asked=answer.asked_rest):
         lines.append(f"  rest    {rest}")
     named = joint_names(problem.assembly)
     words = _state_words(problem)
