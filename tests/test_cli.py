@@ -110,7 +110,9 @@ def test_options_that_may_be_given_twice_are_taken_twice(tmp_path: Path) -> None
     reason = json.loads(blocksim("check", *asked, *steps, "--json").stdout)["reason"]
     assert "step 0.02 as given" in reason
     assert "hold_sweeps 20 as given" in reason
-    assert "Pymunk" in (said := blocksim("cite", "--method", "pymunk", "--method", "mujoco").stdout)
+    assert "Pymunk" in (
+        said := blocksim("cite", "--method", "pymunk", "--method", "mujoco").stdout
+    )
     assert "MuJoCo" in said
     both = blocksim("paper", str(tmp_path), "--figure", "1", "--figure", "99")
     assert "99" in both.stderr
@@ -118,8 +120,10 @@ def test_options_that_may_be_given_twice_are_taken_twice(tmp_path: Path) -> None
 
 @pytest.mark.parametrize(
     ("given", "name"),
-    [(("--with", "courses=2", "--with", "courses=3"), "courses"),
-     (("--set", "step=0.1", "--set", "step=0.2"), "step")],
+    [
+        (("--with", "courses=2", "--with", "courses=3"), "courses"),
+        (("--set", "step=0.1", "--set", "step=0.2"), "step"),
+    ],
 )
 def test_one_parameter_given_twice_is_refused(given: tuple[str, ...], name: str) -> None:
     done = blocksim("check", "wall", "--mu", "1", "--method", "direct", *given)

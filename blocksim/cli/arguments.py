@@ -95,7 +95,9 @@ class Command(click.Command):
             for each, times in Counter(order).items():
                 if times > 1 and isinstance(each, click.Option) and not each.multiple:
                     option = "/".join([*each.opts, *each.secondary_opts])
-                    raise click.UsageError(f"{option} is given {times} times: must be given once")
+                    raise click.UsageError(
+                        f"{option} is given {times} times: must be given once"
+                    )
         return super().parse_args(ctx, args)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

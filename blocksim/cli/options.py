@@ -27,7 +27,8 @@ Scene = Annotated[
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
-MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}.")]
+OWN = ", or an engine of your own: its name, or module:ENGINE"
+MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}{OWN}.")]
 Over = Annotated[
     str | None,
     Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
@@ -222,9 +223,7 @@ class Loading:
     ] = None
     patch_load: Annotated[
         list[tuple[float, float, float]] | None,
-        Option(
-            metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2; repeatable."
-        ),
+        Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2; repeatable."),
     ] = None
     load: Annotated[
         float | None,
