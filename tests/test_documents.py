@@ -343,6 +343,8 @@ SLOW = {"collapse_film", "shaking", "spreading_supports"}
     [
         pytest.param(path.stem, marks=[pytest.mark.long] if path.stem in SLOW else [])
         for path in sorted((DOCS / "examples").glob("*.py"))
+        # That one is no script: `test_own_engine` asks it.
+        if path.stem != "own_engine"
     ],
 )
 def test_examples_find_what_is_known_and_draw_their_picture(

@@ -70,9 +70,8 @@ def test_rsr_is_read_from_the_start_and_not_from_motion() -> None:
 
 
 @pytest.mark.parametrize("engine", ["direct", "pymunk"])
-def test_the_scenario_of_rsr_is_confirmed(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(validate_one.__globals__["TOLS"], "direct", 1e-3)
-    row = validate_one(load_scenario("fig21_top_inner_hinge_above"), engine)
+def test_the_scenario_of_rsr_is_confirmed(engine: str) -> None:
+    row = validate_one(load_scenario("fig21_top_inner_hinge_above"), engine, tol=1e-3)
     assert row.mode_observed is row.mode_limit is Mode.RSR
     assert row.miss == ""
 

@@ -191,7 +191,7 @@ def check(
         progress=progress,
     )
     if motion is not None:
-        joints = observed_joints(arch.problem(mu), motion.accelerations)
+        joints = observed_joints(arch_problem(arch, mu), motion.accelerations)
     return ArchCheck(
         method=rung.name,
         verdict=verdict,

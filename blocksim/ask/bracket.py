@@ -175,8 +175,12 @@ def bracket(
     probe = family.at(low + GUESS * (high - low))
     chosen = choose(method, tol, problem=probe, settings=settings, reduce=reduce)
     if family.spreading is not None:
-        able = chosen.name in {"limit", "direct"}
-        require(able, "method", chosen.name, "limit or direct: others move no supports")
+        require(
+            chosen.moves_supports,
+            "method",
+            chosen.name,
+            "limit or direct: others move no supports",
+        )
         require(not reduce, "reduce", reduce, "left out where supports move")
     # What limit analysis says is of ground at rest.
     static = probe.is_planar and probe.shaking is None

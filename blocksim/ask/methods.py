@@ -10,12 +10,13 @@ says how fine a bracket it is good for, as measured (`analysis/random_arches.py`
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.common.later import Later
-from blocksim.engines import ENGINES
+from blocksim.engines import ENGINES, NAMES, engine_named, make_known
 from blocksim.engines.base import Engine, Method
 from blocksim.evidence.simulation import BY_RULE, Overrides, require_setting
 
@@ -29,6 +30,7 @@ _STATICS = (
         name="limit",
         sees="the arch as built: the same, and the joints that turn or slide",
         finest=0.0,
+        moves_supports=True,
         chart={"voussoirs": (7, 13, 27, 53, 101, 201, 401)},
         colour="#E69F00",
         tint="#fbeccc",
@@ -38,16 +40,15 @@ _STATICS = (
 STATIC = tuple(method.name for method in _STATICS)
 METHODS = Later[Method](
     {method.name: partial(_STATICS.__getitem__, k) for k, method in enumerate(_STATICS)}
-    | {name: partial(ENGINES.__getitem__, name) for name in ENGINES}
+    | {name: partial(ENGINES.__getitem__, name) for name in NAMES},
+    beyond=ENGINES,
 )
-SPATIAL = "pybullet"
-"""The method that sees out of the plane."""
-
-CHOICES = ("auto", *METHODS)
+CHOICES = ("auto", *METHODS.shipped)
+"""What comes with blocksim; `METHODS` has engines of one's own, too."""
 
 
 def choose(
-    method: str,
+    method: str | Engine,
     tol: float = 0.0,
     *,
     problem: Problem | None = None,
@@ -59,8 +60,8 @@ def choose(
 
     Parameters
     ----------
-    method : str
-        One of `CHOICES`.
+    method : str or Engine
+        One of `CHOICES`; an engine of one's own by its name, as ``module:ENGINE``, or itself.
     tol : float
         Relative width of the bracket asked for, 0 where there is none.
     problem : Problem, optional
@@ -79,30 +80,30 @@ def choose(
         nothing or does not see out of the plane where that is asked, or knows no such
         setting; if there is nothing to reduce.
     """
-    if method not in CHOICES:
-        raise InputError("method", method, f"one of {', '.join(CHOICES)}")
     if method == "auto":
+        # Of engines of one's own it is not known which is right, nor how dear they are.
         able = (
             each
-            for each in METHODS.values()
+            for each in map(METHODS.__getitem__, METHODS.shipped)
             if each.name != "theory"
             and each.finest <= (tol or math.inf)
             and each.is_static <= (not moving)
         )
         rung = next((each for each in able if not _beyond(each, problem)), None)
         if rung is None:
-            raise InputError("method", method, f"another: {_beyond(METHODS[SPATIAL], problem)}")
+            last = next(each for each in _shipped() if each.is_spatial)
+            raise InputError("method", method, f"another: {_beyond(last, problem)}")
     else:
-        rung = METHODS[method]
+        rung = _named(method)
     beyond = _beyond(rung, problem)
     if beyond:
-        raise InputError("method", method, beyond)
+        raise InputError("method", rung.name, beyond)
     if moving and rung.is_static:
-        able = ", ".join(ENGINES)
-        raise InputError("method", method, f"one of {able}: {rung.name} moves no blocks")
+        able = ", ".join(NAMES)
+        raise InputError("method", rung.name, f"one of {able}: {rung.name} moves no blocks")
     still = problem is None or (problem.is_planar and problem.shaking is None)
     if reduce and not (still and _can_reduce(rung)):
-        able = ", ".join(each.name for each in ENGINES.values() if _can_reduce(each))
+        able = ", ".join(each.name for each in _shipped() if _can_reduce(each))
         allowed = f"left out but for {able}, in the plane, on ground at rest"
         raise InputError("reduce", reduce, allowed)
     if tol and tol < rung.finest:
@@ -116,14 +117,32 @@ def choose(
     return rung
 
 
+def _named(method: str | Engine) -> Method:
+    """Return the method of a name, or the engine that is given itself."""
+    if isinstance(method, Engine):
+        return make_known(method, method.name)
+    if method in METHODS:
+        return METHODS[method]
+    if ":" in method:
+        return engine_named(method)
+    every = ", ".join(("auto", *METHODS))
+    raise InputError("method", method, f"one of {every}, or your own as module:ENGINE")
+
+
+def _shipped() -> Iterator[Engine]:
+    """Go through the engines that come with blocksim, which errors offer instead."""
+    return map(ENGINES.__getitem__, NAMES)
+
+
 def _beyond(method: Method, problem: Problem | None) -> str:
     """Say what is allowed where a problem is beyond a method; empty where it is not."""
     if problem is None:
         return ""
     if not problem.is_planar and not method.is_spatial:
-        return f"{SPATIAL} where gravity leans out of the plane"
+        able = " or ".join(each.name for each in _shipped() if each.is_spatial)
+        return f"{able} where gravity leans out of the plane"
     if problem.shaking and not (isinstance(method, Engine) and method.shakes):
-        able = ", ".join(each.name for each in ENGINES.values() if each.shakes)
+        able = ", ".join(each.name for each in _shipped() if each.shakes)
         return f"one of {able}: {method.name} knows no ground that shakes"
     if method.name == "theory" and problem.length_name != "r":
         return "limit or an engine: theory is of symmetric circular arches only"
@@ -150,7 +169,7 @@ def merges(method: Method, reduce: bool | None, problem: Problem) -> bool:
     return still and isinstance(method, Engine) and method.merges
 
 
-def chosen_words(method: str, rung: Method) -> str:
+def chosen_words(method: str | Engine, rung: Method) -> str:
     """Say what `auto` took and why, to be added to the reason of an answer."""
     if method != "auto":
         return ""

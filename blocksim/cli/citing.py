@@ -14,7 +14,7 @@ from blocksim.common.references import references
 def cite(
     methods: Annotated[
         list[str] | None,
-        Option(name="--method", help=f"Repeatable, or all: {', '.join(METHODS)}."),
+        Option(name="--method", help=f"Repeatable, or all: {', '.join(METHODS.shipped)}."),
     ] = None,
 ) -> None:
     """Print BibTeX of blocksim, of the paper, and of what methods rest on."""

@@ -24,6 +24,7 @@ from blocksim.cli.filming import (
     require_height,
 )
 from blocksim.cli.options import (
+    OWN,
     Given,
     Loading,
     Scene,
@@ -40,7 +41,7 @@ from blocksim.cli.structures import (
 )
 from blocksim.common.checks import is_number, require
 from blocksim.common.files import require_place
-from blocksim.engines import ENGINES
+from blocksim.engines import NAMES
 from blocksim.kinds.circular import plain_arch
 
 FILMS = ("mp4", "gif")
@@ -53,7 +54,9 @@ def simulate(
     loading: Loading,
     out: Annotated[Path | None, Option(help="Recording to write, .npz; required.")] = None,
     scene: Scene = None,
-    method: Annotated[str, Option(help=f"auto, or an engine: {', '.join(ENGINES)}.")] = "auto",
+    method: Annotated[
+        str, Option(help=f"auto, or an engine: {', '.join(NAMES)}{OWN}.")
+    ] = "auto",
     over: Annotated[
         str | None, Option(help="spread: move the supports until it has fallen.")
     ] = None,

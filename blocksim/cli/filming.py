@@ -10,17 +10,17 @@ from typing import Annotated, Literal
 
 from blocksim.arch.asked import Scenario
 from blocksim.arch.circular import Arch
-from blocksim.ask.methods import SPATIAL
+from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.cli.arguments import Option
-from blocksim.cli.options import Given, Loading, named_options, option_of
+from blocksim.cli.options import OWN, Given, Loading, named_options, option_of
 from blocksim.cli.output import progress, say
 from blocksim.cli.structures import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
-from blocksim.engines import ENGINES
+from blocksim.engines import NAMES
 from blocksim.evidence.motion import MOVED
 from blocksim.evidence.observation import conclude, hold
 from blocksim.evidence.recording import Recording
@@ -63,7 +63,8 @@ Height = Annotated[
 EngineOption = Annotated[
     str | None,
     Option(
-        name="--method", help=f"Simulates a scenario: auto (if left out), {', '.join(ENGINES)}."
+        name="--method",
+        help=f"Simulates a scenario: auto (if left out), {', '.join(NAMES)}{OWN}.",
     ),
 ]
 
@@ -199,7 +200,8 @@ def picture_of_leaning(
     from blocksim.view.film import Film
 
     with named_options(), progress() as report:
-        held = hold(arch_problem(arch, asked.mu, asked.lean), SPATIAL, progress=report)
+        problem = arch_problem(arch, asked.mu, asked.lean)
+        held = hold(problem, choose("auto", problem=problem).name, progress=report)
         seen = conclude(held, moving=True, progress=report)
     run = seen.motion.recording if seen.motion else held.release(STILL).recording
     falls = seen.verdict is Verdict.COLLAPSES

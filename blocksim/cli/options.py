@@ -28,7 +28,8 @@ Scene = Annotated[
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
-MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}.")]
+OWN = ", or an engine of your own: its name, or module:ENGINE"
+MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}{OWN}.")]
 Over = Annotated[
     str | None,
     Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),

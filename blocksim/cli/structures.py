@@ -14,6 +14,7 @@ from blocksim.arch.dimensions import require_unit_weight
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
+from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
@@ -338,7 +339,8 @@ def spread_structure(
 ) -> Recording:
     """Move the supports of a structure until it has fallen, and record it."""
     require(over == "spread", "--over", over, "spread, or left out: nothing else moves slowly")
-    require(method in {"auto", "direct"}, "--method", method, "direct: others move no supports")
+    able = method == "auto" or choose(method, moving=True).moves_supports
+    require(able, "--method", method, "direct: others move no supports")
     require(seconds is None, "--seconds", seconds, "left out: it ends when all has fallen")
     require(settings is None, "--set", settings, "left out where supports move")
     require(problem.shaking is None, "--shake", over, "left out where supports move")

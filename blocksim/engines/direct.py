@@ -279,6 +279,11 @@ ENGINE = Engine(
     shakes=True,
     finds_rest=True,
     tells_forces=True,
+    moves_supports=True,
+    validates=("structures",),
+    validated_to=1e-6,
+    aside=0.001,
+    most_blocks=1000,
     chart={
         "tolerance": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
         "step": (1 / 15, 1 / 60, 1 / 240),

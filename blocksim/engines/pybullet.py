@@ -333,6 +333,7 @@ ENGINE = Engine(
     reduces=True,
     contacts=4,
     usual_sweeps=10,
+    validates=("arches",),
     chart={
         "tolerance": (1e-2, 1e-3),
         "step": (1 / 15, 1 / 60, 1 / 240, 1 / 960),

@@ -443,6 +443,8 @@ ENGINE = Engine(
     reduces=True,
     merges=True,
     usual_sweeps=10,
+    validates=("arches", "structures"),
+    validated_to=0.001,
     chart={
         "tolerance": (1e-2, 1e-3, 1e-4),
         "step": (1 / 15, 1 / 60, 1 / 240, 1 / 960, 1 / 3840),
