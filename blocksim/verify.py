@@ -117,7 +117,7 @@ def verify(table: Any) -> str:
                 for name, sign in ((before, -1), (after, 1)):
                     left[name] = plus(left.get(name, still), push, arms[name], sign)
                 continue
-            moved = [(rates.get(name, still), arms[name]) for name in (before, after)]
+            moved = [(rates.get(name, still), arms[name]) for name in (after, before)]
             way = minus(*([x - turn * q, y + turn * p] for (x, y, turn), (p, q) in moved))
             opens, slips = (way[0] * each[0] + way[1] * each[1] for each in (n, t))
             lawful = mu * abs(slips) <= opens and not (rough and slips)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
+from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
 from blocksim.limit.cones import Cones
 from blocksim.limit.linear import FINEST, LinearProgramme
@@ -65,7 +66,10 @@ def motion_that_opens(problem: Problem, cones: Cones, rates: Array | None) -> It
     for owner in (np.arange(count), None if rates is None else _alike(problem, cones, rates)):
         if owner is None:
             return
-        found = _Bodies(problem, cones, owner).motion()
+        try:
+            found = _Bodies(problem, cones, owner).motion()
+        except Unsolved:
+            return
         if found is not None:
             yield found
 

@@ -30,6 +30,7 @@ from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
 from blocksim.blocks.rows import column
 from blocksim.blocks.structure import structure_record
+from blocksim.common.later import Library
 from blocksim.common.version import __version__
 from blocksim.limit.bodies import motion_that_opens
 from blocksim.limit.cones import Cones
@@ -37,6 +38,10 @@ from blocksim.verify import FORMAT, seal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from scipy import linalg
+else:
+    linalg = Library("scipy.linalg")
 
 SLACK = Fraction(1, 10**12)
 """Loads that proofs leave aside, over the weight of each block."""
@@ -260,16 +265,20 @@ def _left(exact: Exact, whole: list[int], grain: Fraction) -> list[Vector]:
 def _handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -> Vector | None:
     """Hand on what is left on each block through the strongest joints to a support.
 
-    None where a joint on the way is a corner, which carries no moment.
+    None where the joints on the way cannot take it.
     """
     parts, left = parts[:], [wrench[:] for wrench in left]
-    for block, joint in reversed(_ways(exact, forces)):
-        u, v, moment = left[block]
-        if not (u or v or moment):
+    room = _room(exact, forces)
+    for block, joints in reversed(_ways(exact, room)):
+        if not any(left[block]):
             continue
-        (x, y), far = exact.ends[joint]
+        (x, y), far = exact.ends[joints[0]]
         if (x, y) == far:
-            return None
+            if not _by_parts(exact, parts, left, room, block, joints):
+                return None
+            continue
+        joint = joints[0]
+        u, v, moment = left[block]
         before, after = exact.sides[joint]
         other, sign = (before, -1) if after == block else (after, 1)
         cx, cy = exact.centres[block]
@@ -280,11 +289,8 @@ def _handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -
         second = -about / square
         first = (u * p + v * q) / square - second
         half = (v * p - u * q) / (2 * square)
-        at = 4 * joint
-        parts[at] += first
-        parts[at + 1] += half
-        parts[at + 2] += second
-        parts[at + 3] += half
+        for at, more in enumerate((first, half, second, half), 4 * joint):
+            parts[at] += more
         if other != SUPPORT:
             (ox, oy), wrench = exact.centres[other], left[other]
             wrench[0] += u
@@ -293,32 +299,97 @@ def _handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -
     return parts
 
 
-def _ways(exact: Exact, forces: Array) -> list[tuple[int, int]]:
-    """Return each block and the joint that leads to a support, from there on; the widest ways."""
+def _by_parts(
+    exact: Exact,
+    parts: Vector,
+    left: list[Vector],
+    room: Array,
+    block: int,
+    joints: list[int],
+) -> bool:
+    """Hand on what is left on a block by those three parts of its joints that have most room."""
+    cx, cy = exact.centres[block]
+    places: list[tuple[int, int, int]] = []
+    columns: list[tuple[int, int, int]] = []
+    for joint in joints:
+        (p, q), (before, after) = exact.normals[joint], exact.sides[joint]
+        sign, other = (1, before) if after == block else (-1, after)
+        for end in {exact.ends[joint][0]: 0, exact.ends[joint][1]: 1}.values():
+            x, y = exact.ends[joint][end]
+            for k, (u, v) in enumerate(((sign * p, sign * q), (-sign * q, sign * p))):
+                places.append((4 * joint + 2 * end + k, other, joint))
+                columns.append((u, v, (x - cx) * v - (y - cy) * u))
+    able = np.array([room[joint] for _, _, joint in places])
+    rows = np.array([[float(each) for each in column] for column in columns]).T * able
+    rows /= np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300)
+    if rows.shape[1] < PLANAR:
+        return False
+    qr: Any = linalg.qr
+    chosen = qr(rows, pivoting=True, mode="economic")[2][:PLANAR].tolist()
+    a, b, c = (columns[each] for each in chosen)
+    whole = _triple(a, b, c)
+    if not whole:
+        return False
+    goal = tuple(-each for each in left[block])
+    found = _triple(goal, b, c), _triple(a, goal, c), _triple(a, b, goal)
+    left[block] = [NOTHING] * PLANAR
+    for each, above in zip(chosen, found, strict=True):
+        (at, other, _), (u, v, moment), more = places[each], columns[each], above / whole
+        parts[at] += more
+        if other != SUPPORT:
+            (ox, oy), wrench = exact.centres[other], left[other]
+            wrench[0] -= more * u
+            wrench[1] -= more * v
+            wrench[2] -= more * (moment + (cx - ox) * v - (cy - oy) * u)
+    return True
+
+
+def _triple(a: Any, b: Any, c: Any) -> Any:
+    """Return the determinant of three columns."""
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - b[0] * (a[1] * c[2] - a[2] * c[1])
+        + c[0] * (a[1] * b[2] - a[2] * b[1])
+    )
+
+
+def _room(exact: Exact, forces: Array) -> Array:
+    """Return by how much forces may change at each joint before they leave their cones."""
     mu = exact.problem.friction[:, None]
     finite = np.where(np.isinf(mu), 0.0, mu)
     pressure, friction = forces[..., 0], np.abs(forces[..., 1])
     room = np.where(np.isinf(mu), pressure, np.minimum(finite * pressure - friction, pressure))
-    room = room.min(axis=1).tolist()
+    return np.maximum(room.min(axis=1), 0.0)
+
+
+def _ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
+    """Return each block after those on its widest way to a support, and its joints with them.
+
+    The widest joint is the first; corners come last.
+    """
     at: dict[int, list[int]] = {}
     for joint, sides in enumerate(exact.sides):
         for side in sides:
             at.setdefault(side, []).append(joint)
-    seen, ways, heap = {SUPPORT}, list[tuple[int, int]](), list[tuple[float, int, int]]()
+    seen, ways = {SUPPORT}, list[tuple[int, list[int]]]()
+    heap = list[tuple[bool, float, int, int]]()
 
     def reach(block: int) -> None:
         for joint in at.get(block, ()):
             one, other = exact.sides[joint]
             far = other if one == block else one
             if far not in seen:
-                heapq.heappush(heap, (-room[joint], joint, far))
+                corner = exact.ends[joint][0] == exact.ends[joint][1]
+                heapq.heappush(heap, (corner, -float(room[joint]), joint, far))
 
     reach(SUPPORT)
     while heap:
-        _, joint, block = heapq.heappop(heap)
+        _, _, joint, block = heapq.heappop(heap)
         if block not in seen:
+            others = [each for each in at[block]
+                      if each != joint and not {*exact.sides[each]} - {block} - seen]  # fmt: skip
             seen.add(block)
-            ways.append((block, joint))
+            ways.append((block, [joint, *others]))
             reach(block)
     return ways
 
