@@ -48,7 +48,7 @@ def test_a_room_loads_none_above_it(room: str) -> None:
 
 def test_no_room_names_one_above_it_in_a_text() -> None:
     """Documentation may; what runs does not."""
-    told = []
+    told: list[tuple[str, str]] = []
     for name, path in PLACES.items():
         room = ".".join(name.split(".")[:2])
         if room in ROOMS:
