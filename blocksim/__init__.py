@@ -5,11 +5,15 @@ from __future__ import annotations
 import importlib as _importlib
 
 from blocksim.common import interrupts
+from blocksim.common import shown as _shown
 from blocksim.common.version import __version__
 
 if interrupts.is_program():
     # Before the imports that commands make.
     interrupts.install()
+
+# The package is above all its rooms, and names who shows things of theirs in a notebook.
+_shown.show_by(lambda: _importlib.import_module("blocksim.notebook"))
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
