@@ -11,7 +11,6 @@ from blocksim.arch.bracket import bracket as ask_bracket
 from blocksim.arch.carried import carried_by_arch
 from blocksim.arch.check import check as ask_check
 from blocksim.cli.arguments import Option
-from blocksim.cli.proving import write_proof
 from blocksim.cli.options import (
     EXIT_CODES,
     THICKNESS,
@@ -31,6 +30,7 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import answer_with, progress
+from blocksim.cli.proving import write_proof
 from blocksim.cli.question import arch_of, joint_of, question, thickness_words
 from blocksim.common.checks import require
 from blocksim.report.answers import (

@@ -9,8 +9,7 @@ from dataclasses import asdict
 from blocksim.arch.circular import arch_of
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.carried import Carried
-from blocksim.ask.check import SOUGHT, ProblemCheck
-from blocksim.ask.check import proof_words
+from blocksim.ask.check import SOUGHT, ProblemCheck, proof_words
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
