@@ -1,10 +1,10 @@
-"""Random problems at the edges of what is asked: is every verdict proved, and the proof right?
+"""Random problems at the edges of what is asked: every verdict is held to its proof.
 
 Random problems (`random_problems`) and piles of boxes up to a million times unlike each other
-are changed: their coordinates are rounded to 3 to 12 decimals, weights spread over nine decades,
-joints get a friction of their own from 0 to without bound, and dead loads that do not turn act
-off centre. Each verdict by limit analysis is held to its proof, which `blocksim.verify` checks: it
-shares no code with what found it.
+are changed: their coordinates are rounded to 3 to 12 decimals, weights spread over nine
+decades, joints get a friction of their own from 0 to without bound, and dead loads that do not
+turn act off centre. Each verdict by limit analysis has to have a proof that `blocksim.verify`
+accepts, which shares no code with what found it.
 
 `python -m analysis.random_proofs OUT` writes `random_proofs.csv`, a row a problem.
 """

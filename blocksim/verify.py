@@ -47,7 +47,7 @@ def number(value: Any) -> Fraction:
 
 def vector(values: Any, size: int = 2) -> Vector:
     """Read so many numbers."""
-    require(isinstance(values, list) and len(values) == size, f"{values!r} is no vector")
+    require(type(values) is list and len(values) == size, f"{values!r} is no vector")
     return [number(value) for value in values]
 
 

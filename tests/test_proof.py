@@ -128,8 +128,10 @@ def test_a_column_of_unlike_drums_tips_where_it_must(
                 "ends": [[-half, low], [half, low]],
             }
         )
-        above = [(w * h, sum(heights[at:k]) + h / 2)
-                 for k, (w, h) in enumerate(zip(widths, heights, strict=True)) if k >= at]  # fmt: skip
+        above = [
+            (widths[k] * heights[k], sum(heights[at:k]) + heights[k] / 2)
+            for k in range(at, len(widths))
+        ]
         arm = sum(w * y for w, y in above) / sum(w for w, _ in above)
         least = min(least, half / arm)
         low, last = low + height, width
@@ -202,13 +204,13 @@ def proofs() -> Iterator[Table]:
     """Of arches, walls, kinds, corners and loads; half of them of collapse."""
     for mu in (0.7, math.inf):
         for eta in (0.09, 0.15):
-            yield proof_of(Arch(half_angle=math.pi / 2, eta=eta, voussoirs=15).problem(mu))
+            yield proof_of(Arch(half_angle=math.pi / 2, eta=eta, voussoirs=7).problem(mu))
     for tilt in (0, 50):
-        yield proof_of(structure_of(wall(3, 3, 10, 8, 0.6)).tilted(math.radians(tilt)))
+        yield proof_of(structure_of(wall(2, 2, 10, 8, 0.6)).tilted(math.radians(tilt)))
     for friction in (0.2, 0.6):
         yield proof_of(structure_of(on_a_ramp(1e-3, 0.5, friction)))
     for index in range(20, 40):
-        yield proof_of(drawn(Case(index, 16)).problem)
+        yield proof_of(drawn(Case(index, 8)).problem)
 
 
 @pytest.fixture(scope="module")
@@ -264,22 +266,22 @@ def test_spoilt_proofs_are_refused(written: list[Table]) -> None:
             checked(json.dumps(spoilt(written[at % len(written)], random)))
 
 
-@pytest.mark.parametrize("index", range(60))
+@pytest.mark.parametrize("index", range(40))
 def test_verdicts_at_the_edges_are_proved(index: int) -> None:
     """Unlike sizes and weights, rounding, friction of each joint, loads off centre."""
     row = random_proofs.asked(index)
-    assert row.verified or row.index in {33}, row
+    assert row.verified or row.index == 33, row
 
 
 @given(st.integers(10**6, 10**9))
-@settings(max_examples=20)
+@settings(max_examples=10)
 def test_no_proof_at_the_edges_is_refused(index: int) -> None:
     row = random_proofs.asked(index)
     assert row.verified or not row.proved, row
 
 
 def test_the_commands(tmp_path: Path) -> None:
-    """A proof is written, checked by the command and by the file alone, and refused if spoilt."""
+    """A proof is written, checked by the command and by the file alone, refused if spoilt."""
     file, proof = tmp_path / "pebble.json", tmp_path / "proof.json"
     file.write_text(json.dumps(on_a_ramp(1e-3, 0.5, 0.6)))
     done = blocksim("check", str(file), "--proof", str(proof), "--json")

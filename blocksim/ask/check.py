@@ -289,8 +289,8 @@ def _static_words(static: Equilibrium) -> str:
     if static.exists:
         return (
             "forces of equilibrium exist, every contact pressing by "
-            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its friction "
-            "cone, or more"
+            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its "
+            "friction cone, or more"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"

@@ -1,4 +1,4 @@
-"""Motions in which joints open by more than rounding can close: of blocks, or bodies of them."""
+"""Motions of blocks in which joints open by more than rounding can close."""
 
 from __future__ import annotations
 
@@ -38,6 +38,7 @@ SURELY = 100.0
 LARGEST = 400
 """Most equations that are solved in rationals."""
 Flags = NDArray[np.bool_]
+Places = NDArray[np.int64]
 Motion = tuple[list[int], Array, list[list[Fraction]]]
 
 
@@ -74,7 +75,7 @@ def motion_that_opens(problem: Problem, cones: Cones, rates: Array | None) -> It
             yield found
 
 
-def _alike(problem: Problem, cones: Cones, rates: Array) -> Array:
+def _alike(problem: Problem, cones: Cones, rates: Array) -> Places:
     """Return the body of each block, of those that rates do not part."""
     joints, sides = problem.assembly.joint_arrays, problem.assembly.sides
     moved = np.vstack([rates, np.zeros(PLANAR)])[sides]
@@ -93,7 +94,7 @@ def _alike(problem: Problem, cones: Cones, rates: Array) -> Array:
     graph = sparse.coo_array((np.ones(len(one)), (one, other)), shape=(count + 1, count + 1))
     label = csgraph.connected_components(graph, directed=False)[1]
     free = label[:-1] != label[-1]
-    owner = np.full(count, SUPPORT)
+    owner = np.full(count, SUPPORT, dtype=np.int64)
     owner[free] = np.unique(label[:-1][free], return_inverse=True)[1]
     return owner
 
@@ -101,7 +102,7 @@ def _alike(problem: Problem, cones: Cones, rates: Array) -> Array:
 class _Bodies:
     """Bodies of blocks, and what their motions do at joints; in scales of their own."""
 
-    def __init__(self, problem: Problem, cones: Cones, owner: Array) -> None:
+    def __init__(self, problem: Problem, cones: Cones, owner: Places) -> None:
         assembly = problem.assembly
         self._problem, self._cones, self._owner = problem, cones, owner
         self._count = int(owner.max(initial=-1)) + 1
@@ -133,15 +134,19 @@ class _Bodies:
         carried = carried @ sparse.diags_array(self.scale.ravel())
         # Rates at the edges of cones, and the work of loads.
         blocks = sparse.diags_array(1 / cones.ease.ravel()) @ carried
-        self._edges = (cones.balance.T @ blocks).tocsr()
-        self._pull = problem.pull().ravel() @ carried
+        edges: Any = cones.balance.T @ blocks
+        self._edges: Any = edges.tocsr()
+        work: Any = problem.pull().ravel() @ carried
+        self._pull: Array = work
 
     def motion(self) -> Motion | None:
         """Return the motion that opens joints by as much as the loads do work."""
         if not self._count:
             return None
         moved = np.diff(self._edges.indptr) > 0
-        rows = sparse.vstack([self._edges[moved], sparse.csr_array(self._pull[None])]).tocsr()
+        rows = sparse.vstack(
+            [self._edges[moved], sparse.csr_array(self._pull[None, :])]
+        ).tocsr()
         opens = np.append(self._cones.bounded[moved] > 0, True)
         motion = _widest(rows, opens)
         if motion is None:
@@ -152,9 +157,9 @@ class _Bodies:
             opens, motion = able, _widest(rows, able)
         if motion is None:
             return None
-        return self._exactly(motion, np.flatnonzero(moved)[~opens[:-1]])
+        return self._exactly(motion, np.flatnonzero(moved)[~opens[:-1]].astype(np.int64))
 
-    def _exactly(self, values: Array, held: Array) -> Motion | None:
+    def _exactly(self, values: Array, held: Places) -> Motion | None:
         """Return a motion in rationals, at which parts of joints that are held do not move."""
         scale = self.scale * [self._size, self._size, 1.0]
         motion = [Fraction(each) for each in (values * scale.ravel()).tolist()]
@@ -165,8 +170,10 @@ class _Bodies:
                 return None
             lines = [self._line(part) for part in held[rows].tolist()]
             own: list[int] = columns.tolist()
-            rest = [-sum(c * motion[at] for at, c in line.items() if at not in own)
-                    for line in lines]  # fmt: skip
+            rest: list[Fraction] = []
+            for line in lines:
+                known = (c * motion[at] for at, c in line.items() if at not in own)
+                rest.append(-sum(known, Fraction(0)))
             solved = _solved(
                 [[line.get(at, Fraction(0)) for at in own] for line in lines], rest
             )
@@ -183,9 +190,9 @@ class _Bodies:
         found = self._problem.assembly.joints[joint]
         point = [Fraction(each) for each in (found.outer if end else found.inner).tolist()]
         if found.across is None:
-            x, y = (Fraction(q) - Fraction(p)
-                    for p, q in zip(found.inner.tolist(), found.outer.tolist(), strict=True))  # fmt: skip
-            x, y = y, -x
+            ends = found.inner.tolist() + found.outer.tolist()
+            x1, y1, x2, y2 = (Fraction(each) for each in ends)
+            x, y = y2 - y1, x1 - x2
         else:
             x, y = (Fraction(each) for each in found.across.tolist())
         x, y = normal * x - tangent * y, normal * y + tangent * x
@@ -202,7 +209,7 @@ class _Bodies:
         return line
 
 
-def _widest(rows: sparse.csr_array, opens: Flags) -> Array | None:
+def _widest(rows: Any, opens: Flags) -> Array | None:
     """Find the motion whose least rate is the largest, of those of the rows that open.
 
     None where that is not above 0. The others must be 0.
@@ -212,7 +219,7 @@ def _widest(rows: sparse.csr_array, opens: Flags) -> Array | None:
     matrix = sparse.hstack([rows, column], format="csc")
     cost = np.append(np.zeros(size), -1.0)
     high = np.where(opens, math.inf, 0.0)
-    equal = rows[~opens].toarray()
+    equal: Array = rows[~opens].toarray()
     motion, step = np.zeros(size), 1.0
     for _ in range(REFINED):
         # What is left of the rows, and of the largest motion, in ever finer units.
@@ -234,7 +241,7 @@ def _widest(rows: sparse.csr_array, opens: Flags) -> Array | None:
     return None
 
 
-def _opening(rows: sparse.csr_array, opens: Flags) -> Flags:
+def _opening(rows: Any, opens: Flags) -> Flags:
     """Tell which rows can be above 0: all of them at once, as motions can be added."""
     count, size = rows.shape
     able = np.flatnonzero(opens)
@@ -256,7 +263,7 @@ def _opening(rows: sparse.csr_array, opens: Flags) -> Flags:
     return can
 
 
-def _independent(matrix: Array) -> tuple[int, Array, Array]:
+def _independent(matrix: Array) -> tuple[int, Places, Places]:
     """Return the rank of a matrix, and rows and columns that have it."""
     qr: Any = linalg.qr
     _, upper, rows = qr(matrix.T, pivoting=True, mode="economic")

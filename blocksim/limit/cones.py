@@ -217,7 +217,7 @@ def carried_weights(problem: Problem) -> Array:
     pull = problem.pull()
     found = assembly.masses[:, 0] + np.hypot(pull[:, 0], pull[:, 1])
     found += np.abs(pull[:, 2]) * assembly.size / assembly.reach
-    neighbours: list[set[int]] = [set() for _ in found]
+    neighbours: list[set[int]] = [set[int]() for _ in range(len(found))]
     first = set[int]()
     for one, other in assembly.sides.T.tolist():
         if SUPPORT in (one, other):
@@ -227,7 +227,7 @@ def carried_weights(problem: Problem) -> Array:
             neighbours[other].add(one)
     rank, layers = dict.fromkeys(first, 0), [sorted(first)]
     while layers[-1]:
-        beyond = {near for block in layers[-1] for near in neighbours[block]} - rank.keys()
+        beyond = {near for block in layers[-1] for near in neighbours[block]}.difference(rank)
         rank |= dict.fromkeys(beyond, len(layers))
         layers.append(sorted(beyond))
     for layer in layers[:0:-1]:

@@ -7,8 +7,8 @@ blocks begin to move where none exist, in which joints that slide dilate (associ
 Coulomb's law, which does not dilate, may allow blocks to move that could rest.
 
 Lengths are scaled by the assembly's size, and equations and forces by what each block and
-joint carries (`Cones`) before they are solved: with a drawing in millimetres, or beside a pier a
-thousand times as large, the solver would call wrong answers optimal.
+joint carries (`Cones`) before they are solved: with a drawing in millimetres, or beside a pier
+a thousand times as large, the solver would call wrong answers optimal.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Equilibrium:
 
     @cached_property
     def exists(self) -> bool:
-        """Whether the blocks can rest; where that is not decided, whether next to nothing lacks."""
+        """Whether blocks can rest; where that is open, whether hardly any force lacks."""
         if abs(self.margin) > NEAR:
             return self.margin > 0
         return (
@@ -106,7 +106,7 @@ class Equilibrium:
 
     @cached_property
     def forces(self) -> Array | None:
-        """Forces at the inner and the outer end of each joint, along its normal and its tangent.
+        """Forces at the inner and the outer end of each joint, along normal and tangent.
 
         (joints, 2, 2) float, as they act on the block after it [mean weights]. None where there
         is no equilibrium.

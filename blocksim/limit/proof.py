@@ -7,49 +7,35 @@ the vector between its ends, its normal the same turned by a right angle: no roo
 - *Stands*: forces of the linear programme lie well within their cones, but balance to 1e-10
   only. What is left on each block is handed on, exactly, through the strongest way of joints
   to a support. The sums still lie within the cones, or it is no proof.
-- *Falls*: rates of the linear programme break what joints forbid by 1e-10. Blocks that move as
-  one are made one body. Of all motions of these bodies that is taken in which every joint opens
-  by as much as the loads do work, at least: rounding cannot close it. Where joints cannot open,
-  as with friction without bound, the equations that hold them shut are solved in rationals.
+- *Falls*: rates of the linear programme break what joints forbid by 1e-10. Of all motions that
+  one is taken in which every joint opens by as much as the loads do work: rounding cannot close
+  it. Where joints cannot open, as with friction without bound, the equations that hold them
+  shut are solved in rationals (`bodies`).
 
 `blocksim.verify` checks them and shares no code with this.
 """
 
 from __future__ import annotations
 
-import heapq
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
-from blocksim.blocks.problem import STANDARD_GRAVITY, Load, Problem
-from blocksim.blocks.rows import column
+from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
-from blocksim.common.later import Library
 from blocksim.common.version import __version__
 from blocksim.limit.bodies import motion_that_opens
 from blocksim.limit.cones import Cones
+from blocksim.limit.exact import NOTHING, SLACK, Exact, Vector, whole_numbers
+from blocksim.limit.handing import handed_on
 from blocksim.verify import FORMAT, seal
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from scipy import linalg
-else:
-    linalg = Library("scipy.linalg")
-
-SLACK = Fraction(1, 10**12)
-"""Loads that proofs leave aside, over the weight of each block."""
 ROUNDED = 1e-15
 """By how much friction is taken less, so that rounding does not exceed it."""
-Vector = list[Fraction]
-Point = tuple[int, int]
-NOTHING = Fraction(0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,8 +52,8 @@ class Proof:
         instead (`stands`, where it is 0 but for structures that touch their limit): force over
         the weight of each block, moment over that times its reach.
     forces : list of Fraction
-        a, b at both ends of each joint: the force a n + b t, where t leads from its first end to
-        the second [grains] and n is t turned clockwise; empty where it falls.
+        a, b at both ends of each joint: the force a n + b t, where t leads from its first end
+        to the second [grains] and n is t turned clockwise; empty where it falls.
     rates : list of three int, for each block
         x, y of its centre and rotation, in any unit; empty where it stands.
     """
@@ -77,70 +63,6 @@ class Proof:
     tolerance: Fraction
     forces: Vector
     rates: list[list[int]]
-
-
-class Exact:
-    """A problem in whole and rational numbers.
-
-    Lengths are whole numbers of `grain` metres, a power of two of which all coordinates are
-    multiples; forces are rational numbers of newtons.
-    """
-
-    def __init__(self, problem: Problem) -> None:
-        assembly, joints = problem.assembly, problem.assembly.joints
-        self.problem = problem
-        self.sides: list[list[int]] = assembly.sides.T.tolist()
-        is_corner = assembly.joint_arrays.is_corner.tolist()
-        ends = np.array([column(joints, "inner"), column(joints, "outer")])
-        across = np.array([(0.0, 0.0) if each is None else each.tolist()
-                           for each in column(joints, "across")])  # fmt: skip
-        values = [assembly.centres.ravel(), ends.ravel(), across.ravel()]
-        self.grain, whole = _whole(np.concatenate(values).tolist())
-        pairs = list(zip(whole[::2], whole[1::2], strict=True))
-        blocks, count = len(assembly.blocks), len(self.sides)
-        self.centres = pairs[:blocks]
-        first, second = pairs[blocks : blocks + count], pairs[blocks + count :][:count]
-        self.ends = list(zip(first, second, strict=True))
-        self.normals: list[Point] = []
-        for corner, one, other, up in zip(
-            is_corner, first, second, pairs[blocks + 2 * count :], strict=True
-        ):
-            self.normals.append(up if corner else (other[1] - one[1], one[0] - other[0]))
-        self.friction = [
-            None if each == math.inf else Fraction(each) for each in problem.friction.tolist()
-        ]
-        self.weights = [
-            Fraction(mass * STANDARD_GRAVITY) for mass in column(assembly.blocks, "mass")
-        ]
-        x, y = (Fraction(each) for each in problem.gravity[:2].tolist())
-        self.pull = [[weight * x, weight * y, NOTHING] for weight in self.weights]
-        for factor, loads in ((1.0, problem.dead), (problem.load, problem.live)):
-            for load in loads:
-                self._load(Fraction(factor), load)
-
-    def _load(self, factor: Fraction, load: Load) -> None:
-        """Add a load: forces in newtons, moments in newtons times the grain."""
-        force = [Fraction(each) for each in load.force.tolist()]
-        for block in load.blocks:
-            times = factor * (self.weights[block] if load.per_weight else 1)
-            x, y, pull = times * force[0], times * force[1], self.pull[block]
-            pull[0] += x
-            pull[1] += y
-            if load.point is not None and not load.per_weight:
-                px, py = (Fraction(each) / self.grain for each in load.point.tolist())
-                cx, cy = self.centres[block]
-                pull[2] += (px - cx) * y - (py - cy) * x
-
-    @cached_property
-    def allowed(self) -> list[Vector]:
-        """What may be left on each block."""
-        assembly = self.problem.assembly
-        shapes = [np.concatenate(block.polygons) for block in assembly.blocks]
-        reach = [float(np.abs(shape - centre).sum(axis=1).max())
-                 for shape, centre in zip(shapes, assembly.centres, strict=True)]  # fmt: skip
-        most = [SLACK * weight for weight in self.weights]
-        return [[one, one, one * Fraction(far) / self.grain]
-                for one, far in zip(most, reach, strict=True)]  # fmt: skip
 
 
 def proof_record(proof: Proof) -> dict[str, Any]:
@@ -195,10 +117,10 @@ def proof_of_rest(problem: Problem, forces: Array) -> Proof | None:
     with np.errstate(invalid="ignore"):
         most = np.where(np.isinf(mu), math.inf, mu * inside[..., 0] * (1 - ROUNDED))
     inside[..., 1] = np.clip(inside[..., 1], -most, most)
-    grain, whole = _whole(inside.ravel().tolist())
+    grain, whole = whole_numbers(inside.ravel().tolist())
     left = _left(exact, whole, grain)
     parts = [Fraction(each) * grain for each in whole]
-    handed = _handed_on(exact, parts, left, forces)
+    handed = handed_on(exact, parts, left, forces)
     if handed is not None and _within(exact, handed):
         return Proof(exact=exact, claim="stands", tolerance=NOTHING, forces=handed, rates=[])
     for block, wrench in enumerate(left):
@@ -234,13 +156,6 @@ def proof_of_fall(problem: Problem, cones: Cones, rates: Array | None) -> Proof 
     return None
 
 
-def _whole(values: Sequence[float]) -> tuple[Fraction, list[int]]:
-    """Return a power of two, and values as whole multiples of it."""
-    ratios = [each.as_integer_ratio() for each in values]
-    finest = max((each for _, each in ratios), default=1)
-    return Fraction(1, finest), [above * (finest // below) for above, below in ratios]
-
-
 def _left(exact: Exact, whole: list[int], grain: Fraction) -> list[Vector]:
     """Return what forces leave on each block."""
     sums = [[0] * PLANAR for _ in exact.centres]
@@ -260,138 +175,6 @@ def _left(exact: Exact, whole: list[int], grain: Fraction) -> list[Vector]:
         [one + each * grain for one, each in zip(pull, wrench, strict=True)]
         for pull, wrench in zip(exact.pull, sums, strict=True)
     ]
-
-
-def _handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -> Vector | None:
-    """Hand on what is left on each block through the strongest joints to a support.
-
-    None where the joints on the way cannot take it.
-    """
-    parts, left = parts[:], [wrench[:] for wrench in left]
-    room = _room(exact, forces)
-    for block, joints in reversed(_ways(exact, room)):
-        if not any(left[block]):
-            continue
-        (x, y), far = exact.ends[joints[0]]
-        if (x, y) == far:
-            if not _by_parts(exact, parts, left, room, block, joints):
-                return None
-            continue
-        joint = joints[0]
-        u, v, moment = left[block]
-        before, after = exact.sides[joint]
-        other, sign = (before, -1) if after == block else (after, 1)
-        cx, cy = exact.centres[block]
-        # On the block after the joint: about the first end.
-        about = moment - (x - cx) * v + (y - cy) * u
-        p, q = exact.normals[joint]
-        square = sign * (p * p + q * q)
-        second = -about / square
-        first = (u * p + v * q) / square - second
-        half = (v * p - u * q) / (2 * square)
-        for at, more in enumerate((first, half, second, half), 4 * joint):
-            parts[at] += more
-        if other != SUPPORT:
-            (ox, oy), wrench = exact.centres[other], left[other]
-            wrench[0] += u
-            wrench[1] += v
-            wrench[2] += moment + (cx - ox) * v - (cy - oy) * u
-    return parts
-
-
-def _by_parts(
-    exact: Exact,
-    parts: Vector,
-    left: list[Vector],
-    room: Array,
-    block: int,
-    joints: list[int],
-) -> bool:
-    """Hand on what is left on a block by those three parts of its joints that have most room."""
-    cx, cy = exact.centres[block]
-    places: list[tuple[int, int, int]] = []
-    columns: list[tuple[int, int, int]] = []
-    for joint in joints:
-        (p, q), (before, after) = exact.normals[joint], exact.sides[joint]
-        sign, other = (1, before) if after == block else (-1, after)
-        for end in {exact.ends[joint][0]: 0, exact.ends[joint][1]: 1}.values():
-            x, y = exact.ends[joint][end]
-            for k, (u, v) in enumerate(((sign * p, sign * q), (-sign * q, sign * p))):
-                places.append((4 * joint + 2 * end + k, other, joint))
-                columns.append((u, v, (x - cx) * v - (y - cy) * u))
-    able = np.array([room[joint] for _, _, joint in places])
-    rows = np.array([[float(each) for each in column] for column in columns]).T * able
-    rows /= np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300)
-    if rows.shape[1] < PLANAR:
-        return False
-    qr: Any = linalg.qr
-    chosen = qr(rows, pivoting=True, mode="economic")[2][:PLANAR].tolist()
-    a, b, c = (columns[each] for each in chosen)
-    whole = _triple(a, b, c)
-    if not whole:
-        return False
-    goal = tuple(-each for each in left[block])
-    found = _triple(goal, b, c), _triple(a, goal, c), _triple(a, b, goal)
-    left[block] = [NOTHING] * PLANAR
-    for each, above in zip(chosen, found, strict=True):
-        (at, other, _), (u, v, moment), more = places[each], columns[each], above / whole
-        parts[at] += more
-        if other != SUPPORT:
-            (ox, oy), wrench = exact.centres[other], left[other]
-            wrench[0] -= more * u
-            wrench[1] -= more * v
-            wrench[2] -= more * (moment + (cx - ox) * v - (cy - oy) * u)
-    return True
-
-
-def _triple(a: Any, b: Any, c: Any) -> Any:
-    """Return the determinant of three columns."""
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        - b[0] * (a[1] * c[2] - a[2] * c[1])
-        + c[0] * (a[1] * b[2] - a[2] * b[1])
-    )
-
-
-def _room(exact: Exact, forces: Array) -> Array:
-    """Return by how much forces may change at each joint before they leave their cones."""
-    mu = exact.problem.friction[:, None]
-    finite = np.where(np.isinf(mu), 0.0, mu)
-    pressure, friction = forces[..., 0], np.abs(forces[..., 1])
-    room = np.where(np.isinf(mu), pressure, np.minimum(finite * pressure - friction, pressure))
-    return np.maximum(room.min(axis=1), 0.0)
-
-
-def _ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
-    """Return each block after those on its widest way to a support, and its joints with them.
-
-    The widest joint is the first; corners come last.
-    """
-    at: dict[int, list[int]] = {}
-    for joint, sides in enumerate(exact.sides):
-        for side in sides:
-            at.setdefault(side, []).append(joint)
-    seen, ways = {SUPPORT}, list[tuple[int, list[int]]]()
-    heap = list[tuple[bool, float, int, int]]()
-
-    def reach(block: int) -> None:
-        for joint in at.get(block, ()):
-            one, other = exact.sides[joint]
-            far = other if one == block else one
-            if far not in seen:
-                corner = exact.ends[joint][0] == exact.ends[joint][1]
-                heapq.heappush(heap, (corner, -float(room[joint]), joint, far))
-
-    reach(SUPPORT)
-    while heap:
-        _, _, joint, block = heapq.heappop(heap)
-        if block not in seen:
-            others = [each for each in at[block]
-                      if each != joint and not {*exact.sides[each]} - {block} - seen]  # fmt: skip
-            seen.add(block)
-            ways.append((block, [joint, *others]))
-            reach(block)
-    return ways
 
 
 def _within(exact: Exact, parts: Vector) -> bool:
