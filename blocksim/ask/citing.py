@@ -3,29 +3,45 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from importlib.resources import files
 
+from blocksim.ask.methods import METHODS
+from blocksim.common.checks import require
 from blocksim.common.version import __version__
 
 
-def references(methods: Sequence[str] = ()) -> list[str]:
-    """Return BibTeX entries: blocksim, the paper, and what methods rest on.
+def cite(*methods: str) -> str:
+    """Return BibTeX of blocksim, of the paper, and of what methods rest on.
 
     Parameters
     ----------
-    methods : sequence of str
-        Names as in `blocksim.ask.methods.METHODS`.
+    *methods : str
+        `theory`, `limit`, `direct`, `pymunk`, `pybullet` or `mujoco`; or `all`.
 
     Returns
     -------
-    list of str
-        In the order of the file.
+    str
+        Entries in the order of the file, an empty line between them.
+
+    Raises
+    ------
+    InputError
+        If there is no such method.
+
+    Examples
+    --------
+    >>> import blocksim
+    >>> [line for line in blocksim.cite("mujoco").splitlines() if line[:1] == "@"]
+    ['@software{blocksim,', '@unpublished{CocchettiRizzi2024,', '@inproceedings{Todorov2012,']
     """
+    for each in methods:
+        known = each == "all" or each in METHODS
+        require(known, "method", each, f"all, or one of {', '.join(METHODS)}")
+    wanted = {*METHODS} if "all" in methods else {*methods}
     text = (files("blocksim") / "references.bib").read_text(encoding="utf-8")
     entries = re.findall(r"^@.*?^\}$", text, flags=re.MULTILINE | re.DOTALL)
-    wanted = [each for each in entries if not _of(each) or _of(each) & {*methods}]
-    return [each.replace("VERSION", __version__) for each in wanted]
+    chosen = [each for each in entries if not _of(each) or _of(each) & wanted]
+    return "\n\n".join(chosen).replace("VERSION", __version__)
 
 
 def _of(entry: str) -> set[str]:
