@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from blocksim.ask.archbracket import Bracket, bracket
     from blocksim.ask.archcheck import ArchCheck, check
     from blocksim.ask.archmotion import simulate
+    from blocksim.ask.citing import cite
     from blocksim.blocks.assembly import Assembly, Block, Joint
     from blocksim.blocks.joints import JointState
     from blocksim.blocks.problem import Load, Problem
@@ -57,6 +58,7 @@ __all__ = [
     "__version__",
     "bracket",
     "check",
+    "cite",
     "collapse",
     "equilibrium",
     "load_recording",
@@ -71,6 +73,7 @@ _PLACES = {
     "arch.circular": ("Arch",),
     "arch.modes": ("Mode",),
     "ask.archmotion": ("simulate",),
+    "ask.citing": ("cite",),
     "blocks.assembly": ("Assembly", "Block", "Joint"),
     "blocks.joints": ("JointState",),
     "blocks.problem": ("Load", "Problem"),
