@@ -209,8 +209,8 @@ def proofs() -> Iterator[Table]:
         yield proof_of(structure_of(wall(2, 2, 10, 8, 0.6)).tilted(math.radians(tilt)))
     for friction in (0.2, 0.6):
         yield proof_of(structure_of(on_a_ramp(1e-3, 0.5, friction)))
-    for index in range(20, 40):
-        yield proof_of(drawn(Case(index, 8)).problem)
+    for index in range(20, 30):
+        yield proof_of(drawn(Case(index, 16)).problem)
 
 
 @pytest.fixture(scope="module")

@@ -23,6 +23,7 @@ from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
 from blocksim.limit import equilibrium
 from blocksim.limit.carried import Carried
+from blocksim.limit.proof import proof_of_rest
 
 if TYPE_CHECKING:
     from blocksim.arch.limit import LimitState
@@ -82,7 +83,12 @@ class ArchCheck(Check):
         """The proof of the verdict by limit analysis; None where there is none."""
         if self.method != "limit":
             return None
-        found = equilibrium(arch_problem(self.arch, self.mu)).proof
+        problem, found = arch_problem(self.arch, self.mu), None
+        if self.carried is not None and self.carried.forces is not None:
+            # The arch's own statics know forces: no linear programme has to be loaded.
+            found = proof_of_rest(problem, self.carried.forces)
+        if found is None:
+            found = equilibrium(problem).proof
         return found if found is not None and found.claim == self.verdict.value else None
 
     @cached_property
