@@ -21,7 +21,12 @@ if TYPE_CHECKING:
     from blocksim.blocks.assembly import Assembly, Block, Joint
     from blocksim.blocks.joints import JointState
     from blocksim.blocks.problem import Load, Problem
-    from blocksim.common.errors import BlocksimError, InputError, MissingPart
+    from blocksim.common.errors import (
+        BlocksimError,
+        InputError,
+        MachineError,
+        MissingPart,
+    )
     from blocksim.evidence.recording import Recording
     from blocksim.evidence.verdict import Verdict
     from blocksim.kinds.files import load_structure, structure_of
@@ -39,6 +44,7 @@ __all__ = [
     "Joint",
     "JointState",
     "Load",
+    "MachineError",
     "MissingPart",
     "Mode",
     "Problem",
@@ -64,7 +70,7 @@ _PLACES = {
     "blocks.assembly": ("Assembly", "Block", "Joint"),
     "blocks.joints": ("JointState",),
     "blocks.problem": ("Load", "Problem"),
-    "common.errors": ("BlocksimError", "InputError", "MissingPart"),
+    "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "evidence.recording": ("Recording",),
     "evidence.verdict": ("Verdict",),
     "kinds.files": ("load_structure", "structure_of"),

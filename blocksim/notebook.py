@@ -25,6 +25,7 @@ from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
 from blocksim.common.files import json_text
+from blocksim.common.words import printable
 from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem, plain_arch
 from blocksim.report import answers, structures
@@ -132,7 +133,7 @@ def svg_of(shown: object) -> str:
 
 def html_of(shown: object) -> str:
     """Return the words of a thing as a table, and its drawing below."""
-    head, *lines = (html.escape(line) for line in lines_of(shown))
+    head, *lines = (html.escape(printable(line)) for line in lines_of(shown))
     rows = "".join(
         f"<tr><th style='text-align:left'>{line[:LABEL].strip()}</th>"
         f"<td style='text-align:left'>{line[LABEL:].strip()}</td></tr>"

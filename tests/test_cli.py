@@ -7,12 +7,14 @@ import re
 import subprocess
 from pathlib import Path
 
+import click
 import pytest
 from running import PROGRAM
 from running import inside as blocksim
 
 from blocksim import load_recording
 from blocksim.cli import main
+from blocksim.cli.app import COMMANDS, app
 
 ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "27")
 
@@ -70,6 +72,63 @@ def test_options_override_the_scenario() -> None:
     answer = json.loads(done.stdout)
     assert answer["half_angle_deg"] == pytest.approx(125)
     assert answer["mode_theory"] == "srr"
+
+
+REPEATED = {"--with", "--point-load", "--patch-load", "--set", "--figure", "cite --method"}
+"""Options that may be given twice, and are taken as often."""
+
+
+def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
+    for name in COMMANDS:
+        command = app.get_command(click.Context(app), name)
+        assert command is not None
+        for option in command.params:
+            if not isinstance(option, click.Option):
+                continue
+            ways = [*option.opts, *option.secondary_opts]
+            value = [] if option.is_flag else ["1"] * option.nargs
+            done = blocksim(name, ways[0], *value, ways[-1], *value)
+            if option.multiple:
+                assert REPEATED & {ways[0], f"{name} {ways[0]}"}
+                continue
+            assert (done.returncode, done.stdout) == (2, ""), ways
+            said = f"blocksim: {'/'.join(ways)} is given 2 times: must be given once\n"
+            assert done.stderr == said
+
+
+def test_options_that_may_be_given_twice_are_taken_twice(tmp_path: Path) -> None:
+    # Axles and patches are in test_road.
+    wall = ("check", "wall", "--mu", "1", "--json")
+    sizes = ("--with", "courses=2", "--with", "length=3")
+    blocks = [
+        json.loads(blocksim(*wall, *given).stdout)["problem"]["blocks"]
+        for given in ((), sizes[:2], sizes[2:], sizes)
+    ]
+    assert len(set(blocks)) == 4
+    steps = ("--set", "hold_sweeps=20", "--set", "step=0.02")
+    asked = (*ARCH, "--eta", "0.12", "--method", "pymunk")
+    reason = json.loads(blocksim("check", *asked, *steps, "--json").stdout)["reason"]
+    assert "step 0.02 as given" in reason
+    assert "hold_sweeps 20 as given" in reason
+    assert "Pymunk" in (
+        said := blocksim("cite", "--method", "pymunk", "--method", "mujoco").stdout
+    )
+    assert "MuJoCo" in said
+    both = blocksim("paper", str(tmp_path), "--figure", "1", "--figure", "99")
+    assert "99" in both.stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        (("--with", "courses=2", "--with", "courses=3"), "courses"),
+        (("--set", "step=0.1", "--set", "step=0.2"), "step"),
+    ],
+)
+def test_one_parameter_given_twice_is_refused(given: tuple[str, ...], name: str) -> None:
+    done = blocksim("check", "wall", "--mu", "1", "--method", "direct", *given)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"{given[0]} = {given[-1]!r}: must be given once for {name}\n" in done.stderr
 
 
 WRONG = {
@@ -158,7 +217,7 @@ def test_wrong_input_is_one_line_and_leaves_nothing(
 
 @pytest.mark.parametrize("given", [("--voussoirs", "27.5"), ("--mu", "rough")])
 def test_what_is_no_number_is_named(given: tuple[str, str]) -> None:
-    done = blocksim("check", *ARCH, "--eta", "0.1", *given)
+    done = blocksim("check", "--alpha", "90", "--eta", "0.1", *given)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
     assert f"'{given[0]}'" in done.stderr

@@ -117,7 +117,17 @@ def test_an_island_is_told() -> None:
     found = bracket(family)
     assert 0.1 < found.limit < 0.13  # type: ignore[operator]
     assert found.confirmed
-    assert "not the only change: it falls again at 0.2" in found.reason
+    assert "3 changes, as far as 20 values" in found.reason
+    assert found.intervals is not None
+    first, second = found.intervals
+    assert first.low is not None
+    assert first.high is not None
+    assert second.low is not None
+    assert second.high is None
+    assert 0.1 < first.low.limit < 0.15 < first.high.limit < 0.25 < second.low.limit < 0.33
+    assert first.low.limit == found.limit
+    assert first.high.confirmed
+    assert second.low.confirmed
     ring = structure_of({**arch, "friction": 0.7})
     assert "the only change, as far as" in bracket(family_of(ring, "thickness")).reason
 

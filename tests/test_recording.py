@@ -15,7 +15,7 @@ import pytest
 from blocksim.arch.circular import Arch
 from blocksim.blocks.assembly import displacement
 from blocksim.blocks.record import to_record
-from blocksim.common.errors import InputError
+from blocksim.common.errors import InputError, MachineError
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines.base import Settings
 from blocksim.evidence.recording import Recording
@@ -276,7 +276,7 @@ def test_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
         file.write(b"half")
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(InputError, match="No space left"):
+    with pytest.raises(MachineError, match="No space left"):
         write_whole(path, fail)
     assert path.read_bytes() == before
     assert [each.name for each in tmp_path.iterdir()] == ["run.npz"]

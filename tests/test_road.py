@@ -319,6 +319,23 @@ def test_what_no_road_can_be_is_one_line(options: tuple[str, ...], said: str) ->
     assert re.fullmatch(rf"blocksim: .*{said}[^\n]*\n", done.stderr), done.stderr
 
 
+AXLES = ("--point-load", "-1", "10", "--point-load", "-2.2", "10")
+SPANNED = (*OPTIONS[:8], "--friction-angle", "35", "--fill", "0.5")
+
+
+def test_two_axles_and_two_patches_are_both_on_the_road() -> None:
+    # The value of the bogie is of an own linear programme, without dispersal in the fill.
+    done = inside("bracket", *SPANNED, *AXLES, "--over", "load", "--json")
+    assert json.loads(done.stdout)["limit"] == pytest.approx(5.7439, abs=1e-4)
+    halves = ("--patch-load", "1", "1.5", "6", "--patch-load", "1.5", "2", "6")
+    whole = ("--patch-load", "1", "2", "12")
+    said = [
+        json.loads(inside("bracket", *SPANNED, *each, "--over", "load", "--json").stdout)
+        for each in (halves, whole)
+    ]
+    assert said[0]["limit"] == pytest.approx(said[1]["limit"], rel=1e-9)
+
+
 def test_what_is_on_the_road_is_let_go_drawn_and_bracketed(tmp_path: Path) -> None:
     load = ("--point-load", "2", "300")
     run, picture = tmp_path / "run.npz", tmp_path / "arch.svg"

@@ -27,9 +27,10 @@ from blocksim.blocks.shaking import SHAPES, Shaking, read_table, table_of
 from blocksim.blocks.structure import structure_record
 from blocksim.common.errors import InputError
 from blocksim.evidence.recording import read_recording
-from blocksim.evidence.shaken import rocking_of, shake
+from blocksim.evidence.shaken import Shaken, rocking_of, shake
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.files import structure_of
+from blocksim.kinds.known import load_known
 from blocksim.many import load_design, read_rows, sweep
 
 G = 9.81
@@ -157,6 +158,120 @@ def test_a_pulse_overturns_a_block_from_its_known_duration_on(name: str) -> None
 def test_pymunk_sees_the_same_pulses(name: str) -> None:
     assert shake(shaken(name, 0.99), "pymunk").verdict is Verdict.STANDS
     assert shake(shaken(name, 1.01), "pymunk").verdict is Verdict.COLLAPSES
+
+
+def pushed(problem: Problem, amplitude: float) -> Shaken:
+    """Push the ground with a constant acceleration for 3 s, by pymunk."""
+    shaking = Shaking(shape="constant", amplitude=amplitude, duration=3.0)
+    return shake(replace(problem, shaking=shaking), "pymunk")
+
+
+@pytest.mark.parametrize(
+    ("share", "verdict"),
+    [(0.98, "stands"), pytest.param(1.02, "collapses", marks=pytest.mark.long)],
+)
+def test_a_push_moves_an_arch_in_pymunk_where_statics_says(share: float, verdict: str) -> None:
+    """0.14510 g by limit analysis; 0.0976 g where steps end before forces are found."""
+    table = {"kind": "circular-arch", "voussoirs": 27, "thickness": 0.15, "friction": 0.7}
+    seen = pushed(structure_of(table), 0.14510 * share)
+    assert seen.verdict.value == verdict
+    if share < 1:
+        assert seen.recording.displacement.max() < 1e-6
+
+
+def test_oppenheims_arch_falls_in_pymunk_where_statics_says() -> None:
+    """0.37053 g by limit analysis."""
+    arch = replace(load_known("oppenheim_7").problem, live=(), mu=0.8)
+    stands, falls = (pushed(arch, 0.37053 * share) for share in (0.98, 1.02))
+    assert stands.verdict is Verdict.STANDS
+    assert stands.recording.displacement.max() < 1e-6
+    assert falls.verdict is Verdict.COLLAPSES
+
+
+def tilted_block(angle: float) -> Problem:
+    """A block of 1 by 4 m on the floor that leans about its right-hand corner."""
+    turn = np.exp(-1j * angle)
+    corners = [1 + turn * (x - 1 + 1j * y) for x, y in ((0, 0), (1, 0), (1, 4), (0, 4))]
+    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
+    leaning = {"id": 1, "vertices": [[each.real, each.imag] for each in corners]}
+    return structure_of({"friction": 2.0, "blocks": [floor, leaning]})
+
+
+@pytest.mark.parametrize(
+    ("step", "error"), [(0.01, 0.015), pytest.param(0.001, 0.006, marks=pytest.mark.long)]
+)
+def test_free_rocking_in_pymunk_keeps_what_housner_says(step: float, error: float) -> None:
+    """Let go at 0.15 rad; each impact leaves (1 - 1.5 sin^2 alpha)^2 of the energy."""
+    alpha = math.atan2(1.0, 4.0)
+    kept = (1 - 1.5 * math.sin(alpha) ** 2) ** 2
+    fallen = math.cos(alpha - 0.15) - math.cos(alpha)
+    wanted = alpha - math.acos(math.cos(alpha) + kept * fallen)
+    problem = tilted_block(0.15)
+    still = Shaking(shape="constant", amplitude=0.0, duration=2.0)
+    until = 2.0 / problem.seconds
+    seen = shake(
+        replace(problem, shaking=still), "pymunk", until=until, settings={"step": step}
+    )
+    assert seen.recording.poses[:, 0, 2].max() - 0.15 == pytest.approx(wanted, rel=error)
+
+
+def rocked(times: np.ndarray, values: np.ndarray, step: float = 4e-4) -> float:
+    """Largest rotation of the block of 1 by 4 m under a record, inf where it overturns.
+
+    Housner's equation by Runge and Kutta's method, with an event at each impact.
+    """
+    alpha, squared = math.atan2(1.0, 4.0), 3 * G / (2 * math.hypot(1.0, 4.0))
+    kept = 1 - 1.5 * math.sin(alpha) ** 2
+    pushes = np.interp(
+        np.arange(0, times[-1] + 10, step / 2), times, values, right=0.0
+    ).tolist()
+    angle = speed = largest = 0.0
+    sense = 0
+
+    def gained(at: int, angle: float) -> float:
+        lean = sense * alpha - angle
+        return squared * (pushes[at] * math.cos(lean) - math.sin(lean))
+
+    for at in range(0, len(pushes) - 2, 2):
+        if sense == 0:
+            sense = int(math.copysign(1, pushes[at])) if abs(pushes[at]) > 0.25 else 0
+        if sense == 0:
+            continue
+        first = gained(at, angle)
+        second = gained(at + 1, angle + step / 2 * speed)
+        third = gained(at + 1, angle + step / 2 * speed + step**2 / 4 * first)
+        last = gained(at + 2, angle + step * speed + step**2 / 2 * second)
+        angle += step * speed + step**2 / 6 * (first + second + third)
+        speed += step / 6 * (first + 2 * second + 2 * third + last)
+        if sense * angle < 0:
+            angle, speed, sense = 0.0, kept * speed, -sense
+            if abs(speed) < 1e-4:
+                speed, sense = 0.0, 0
+        largest = max(largest, abs(angle))
+        if largest > 1.3:
+            return math.inf
+    return largest
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("peak", [0.5, 0.8])
+@pytest.mark.parametrize("seed", range(3))
+def test_records_rock_a_block_in_pymunk_as_housner_says(peak: float, seed: int) -> None:
+    """4,000 samples in 10 s; up to twenty impacts."""
+    draw = np.random.default_rng(seed)
+    times = np.arange(4000) * 0.0025
+    values = np.zeros(4000)
+    for _ in range(12):
+        phase = 2 * math.pi * draw.uniform(0.3, 4) * times + draw.uniform(0, 6.3)
+        values += np.sin(phase) * draw.uniform(0.3, 1)
+    values *= np.sqrt(np.sin(math.pi * times / times[-1]))
+    values *= peak / np.abs(values).max()
+    wanted = rocked(times, values)
+    seen = shake(replace(block(), shaking=table_of(times, values)), "pymunk")
+    falls = math.isinf(wanted)
+    assert seen.verdict is (Verdict.COLLAPSES if falls else Verdict.STANDS)
+    if not falls:
+        assert seen.rocking.rotation == pytest.approx(wanted, rel=0.02)
 
 
 @pytest.mark.long

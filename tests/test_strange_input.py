@@ -38,8 +38,8 @@ from blocksim.view.video import write_film
 ARCH = ("--alpha", "90", "--mu", "0.7", "--voussoirs", "9", "--eta", "0.2")
 
 
-def one_line(done: subprocess.CompletedProcess[str], longest: int = 1000) -> str:
-    assert (done.returncode, done.stdout) == (2, "")
+def one_line(done: subprocess.CompletedProcess[str], longest: int = 1000, code: int = 2) -> str:
+    assert (done.returncode, done.stdout) == (code, "")
     assert re.fullmatch(r"blocksim: [^\n]+\n", done.stderr)
     assert done.stderr[:-1].isprintable()
     assert len(done.stderr) <= longest + len("blocksim: \n")
@@ -127,7 +127,9 @@ def test_only_regular_files_are_read_and_nothing_is_waited_for(
         words = ["render", name, "--out", str(tmp_path / "o.png")]
     else:
         words = ["check", name, "--mu", "0.7"]
-    one_line(blocksim(*words))
+    # That memory cannot be read at all; readers of drawings and recordings look at ends first.
+    unread = what == "memory" and ending in {"toml", "json", "svg", "csv"}
+    one_line(blocksim(*words), code=74 if unread else 2)
     assert [each.name for each in tmp_path.iterdir()] == [path.name]
 
 

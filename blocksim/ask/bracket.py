@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from blocksim.ask.ends import Stands, Within, around, tried_ends
 from blocksim.ask.families import Family
 from blocksim.ask.methods import choose, chosen_words, merges
 from blocksim.ask.search import Answer, Bisection
@@ -22,8 +23,9 @@ if TYPE_CHECKING:
     from blocksim.ask.spread import Happening, Spreading
     from blocksim.evidence.observation import Held, Observation
 
-SURE = 1e-8
-"""How far to both sides of its value limit analysis is asked again, relative."""
+SURE = (1e-8, 1e-7, 1e-6)
+"""How far to both sides of its value limit analysis is asked again, the first that tells,
+relative."""
 LEAST = 1e-12
 """Least upper end of where to search."""
 FARTHEST = 1e3
@@ -89,6 +91,9 @@ class Bracket(Shown):
     wall_s : float
     events : tuple of Happening or None
         Over the motion of supports, what happens on the way, by limit analysis.
+    intervals : tuple of Stands or None
+        All intervals of the range in which it stands, in order, each end tried; None where
+        limit analysis does not know them.
     """
 
     method: str
@@ -104,6 +109,7 @@ class Bracket(Shown):
     reason: str
     wall_s: float
     events: tuple[Happening, ...] | None = None
+    intervals: tuple[Stands, ...] | None = None
 
     def __repr__(self) -> str:
         low, high = (
@@ -174,13 +180,18 @@ def bracket(
     static = probe.is_planar and probe.shaking is None
     exact = family.exact() if static else None
     said = family.remark() if static else ""
+    rises = family.stands == "high"
+
+    def ask(start: float, within: Within, rises: bool) -> Search:  # noqa: ARG001
+        return _by_limit(family, start, rises=rises)
+
     if family.spreading is not None:
         if chosen.is_static:
             found = _followed(family, family.spreading, exact)
         else:
             found = _slowly(family.spreading, tol, high, progress)
     elif chosen.is_static:
-        found = _by_limit(family, exact)
+        found = _by_limit(family, exact, rises=rises)
     elif probe.shaking is not None:
         start = min(max(family.start or low + GUESS * (high - low), low), high)
         found = _shaken(family, chosen.name, start, (low, high), tol, settings, progress)
@@ -198,20 +209,26 @@ def bracket(
             merging = Merging.of(problem) if reduced else None
             return hold(problem, chosen.name, settings=settings, reduction=merging)
 
-        found = by_engine(
-            held_at,
-            start,
-            (max(low, start / FARTHEST), high),
-            tol,
-            name=family.name,
-            more_is_safer=family.stands == "high",
-            progress=progress,
-        )
+        def ask(start: float, within: Within, rises: bool) -> Search:
+            least, most = max(low, within[0], start / FARTHEST), min(high, within[1])
+            if not least <= start <= most:
+                return Search()
+            return by_engine(
+                held_at,
+                start,
+                (least, most),
+                tol,
+                name=family.name,
+                more_is_safer=rises,
+                progress=progress,
+            )
+
+        found = ask(start, around(family, start) if known else (low, high), rises)
         most = len(probe.assembly.blocks)
         if reduced and found.blocks is not None and found.blocks < most:
             said += f"; {reduced_words(Merging.by, found.blocks, most, found.splits or 0)}"
     ends = (found.falls, found.stands)
-    lower, upper = ends if family.stands == "high" else ends[::-1]
+    lower, upper = ends if rises else ends[::-1]
     return Bracket(
         method=chosen.name,
         over=family.name,
@@ -226,13 +243,14 @@ def bracket(
         reason=found.reason + said + given_words(settings) + chosen_words(method, chosen),
         wall_s=time.perf_counter() - started,
         events=None if family.spreading is None else family.spreading.events,
+        intervals=tried_ends(family, found, ask) if static else None,
     )
 
 
 def _followed(family: Family, spreading: Spreading, exact: float | None) -> Search:
     """Follow the blocks until they fall, or as far as they can be followed."""
     if exact is not None and math.isfinite(exact) and exact > 0:
-        return _by_limit(family, exact)
+        return _by_limit(family, exact, rises=False)
     if spreading.path.ends == "collapse":
         return Search(falls=0.0, runs=1, reason="no forces of equilibrium exist as built")
     return Search(
@@ -294,7 +312,7 @@ def _shaken(
     )
 
 
-def _by_limit(family: Family, exact: float | None) -> Search:
+def _by_limit(family: Family, exact: float | None, *, rises: bool) -> Search:
     """Ask a linear programme a little to both sides of its own value."""
     if exact is None:
         return Search(reason="no forces of equilibrium exist at any value")
@@ -304,17 +322,23 @@ def _by_limit(family: Family, exact: float | None) -> Search:
         least = family.low
         reason = f"forces of equilibrium exist down to {least:.6g}"
         return Search(stands=least, runs=1, reason=reason)
-    ends = exact * (1 - SURE), exact * (1 + SURE)
-    falls, stands = ends if family.stands == "high" else ends[::-1]
-    confirmed = (
-        equilibrium(family.at(stands)).exists and not equilibrium(family.at(falls)).exists
-    )
+    falls = stands = exact
+    confirmed, runs = False, 0
+    for sure in SURE:
+        ends = exact * (1 - sure), exact * (1 + sure)
+        falls, stands = ends if rises else ends[::-1]
+        runs += 2
+        confirmed = (
+            equilibrium(family.at(stands)).exists and not equilibrium(family.at(falls)).exists
+        )
+        if confirmed:
+            break
     words = "confirmed" if confirmed else "not confirmed"
     return Search(
         falls=falls,
         stands=stands,
         confirmed=confirmed,
-        runs=2,
+        runs=runs,
         reason=f"limit analysis: a linear programme, {words} by two others at the ends",
     )
 

@@ -19,6 +19,7 @@ from blocksim.evidence.simulation import BY_RULE, Overrides
 from blocksim.evidence.verdict import Verdict
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried, carried_by
+from blocksim.limit.programme import NEAR
 
 if TYPE_CHECKING:
     from blocksim.engines.base import Method
@@ -170,7 +171,8 @@ def check(
     mechanism = seen = None
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
-        reason = _static_words(static, problem)
+        verdict = verdict if static.decided else Verdict.UNDECIDED
+        reason = _static_words(static)
         mechanism = static.mechanism
     else:
         from blocksim.evidence.merging import Merging
@@ -250,18 +252,25 @@ def _unit(rates: Array, problem: Problem) -> Array:
     return rates / largest if largest > 0 else rates
 
 
-def _static_words(static: Equilibrium, problem: Problem) -> str:
+def _static_words(static: Equilibrium) -> str:
     """Say what limit analysis found."""
+    if not static.decided:
+        return (
+            f"the limit is nearer than {NEAR:g}: loads or friction changed by that share would "
+            "decide"
+        )
     if static.exists:
-        spare = max(0.0, static.margin) * problem.unit_force
         return (
             "forces of equilibrium exist, every contact pressing by "
-            f"{spare:.3g} N along both edges of its friction cone, or more"
+            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its friction "
+            "cone, or more"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
-    pull = -static.margin * problem.unit_force
-    return f"no forces of equilibrium exist: a contact would have to pull by {pull:.3g} N"
+    return (
+        "no forces of equilibrium exist: contacts would have to pull by "
+        f"{-static.margin:.3g} of what they carry"
+    )
 
 
 def _notes(problem: Problem) -> str:

@@ -14,11 +14,13 @@ import click
 from blocksim.cli.app import app as app
 from blocksim.cli.app import run
 from blocksim.common import interrupts
-from blocksim.common.errors import BlocksimError, in_line
+from blocksim.common.errors import BlocksimError, MachineError, in_line
 
 WRONG_INPUT = 2
 CRASHED = 70
 """After what should not happen: Python's own 1 would say that the arch collapses."""
+MACHINE = 74
+"""A full disk, no permission, no memory; of that number in sysexits.h, too."""
 LONGEST = 1000
 """Letters of what is said of wrong input."""
 PLAIN = {
@@ -31,7 +33,7 @@ CLOSED = 141
 
 
 def main() -> None:
-    """Run the command line; wrong input is one line and exit code 2."""
+    """Run the command line; wrong input and failures of the machine are one line."""
     interrupts.install()
     _prepare()
     code = CRASHED
@@ -71,13 +73,17 @@ def _code() -> int:
         # What is left cannot be written; Python would say so at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return CLOSED
-    except (BlocksimError, OSError) as error:
-        return _complain(str(error) or type(error).__name__)
+    except (MachineError, OSError) as error:
+        return _complain(str(error) or type(error).__name__, MACHINE)
+    except MemoryError:
+        return _complain("there is not enough memory for this", MACHINE)
+    except BlocksimError as error:
+        return _complain(str(error))
     except click.ClickException as error:
         return _complain(_plain(" ".join(error.format_message().split())))
     except Exception:
-        if not interrupts.code():
-            traceback.print_exc()
+        for line in traceback.format_exc().splitlines():
+            _tell(line)
         return CRASHED
 
 
@@ -88,8 +94,12 @@ def _plain(message: str) -> str:
     return message
 
 
-def _complain(message: str) -> int:
+def _complain(message: str, code: int = WRONG_INPUT) -> int:
+    _tell(f"blocksim: {message}")
+    return code
+
+
+def _tell(line: str) -> None:
     if not interrupts.code():
         with suppress(OSError):
-            click.echo(f"blocksim: {in_line(message, LONGEST)}", err=True)
-    return WRONG_INPUT
+            click.echo(in_line(line, LONGEST), err=True)

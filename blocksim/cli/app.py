@@ -116,7 +116,7 @@ def start(context: click.Context, version: bool) -> None:
     if version:
         say(f"blocksim {__version__}")
     elif context.invoked_subcommand is None:
-        say(context.get_help())
+        say(*context.get_help().splitlines())
     if version:
         context.exit()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, getdoc, signature
@@ -86,6 +87,17 @@ class Command(click.Command):
     """A command whose help shows options below the headings of their groups."""
 
     headings: dict[str, str]
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Refuse options that are given twice but taken once."""
+        if not ctx.resilient_parsing:
+            _, _, order = self.make_parser(ctx).parse_args(list(args))
+            for each, times in Counter(order).items():
+                if times > 1 and isinstance(each, click.Option) and not each.multiple:
+                    option = "/".join([*each.opts, *each.secondary_opts])
+                    said = f"{option} is given {times} times: must be given once"
+                    raise click.UsageError(said)
+        return super().parse_args(ctx, args)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write groups of options, arguments, and other options."""

@@ -21,4 +21,4 @@ def cite(
     asked = list(METHODS) if methods == ["all"] else methods or []
     for each in asked:
         require(each in METHODS, "--method", each, f"all, or one of {', '.join(METHODS)}")
-    say("\n\n".join(references(asked)))
+    say(*"\n\n".join(references(asked)).splitlines())

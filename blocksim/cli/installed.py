@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import platform
 
-from rich.table import Table
-
 from blocksim import __version__
 from blocksim.ask.doctor import examine, libraries
 from blocksim.cli.output import say
-from blocksim.cli.terminal import show
+from blocksim.cli.terminal import Table, show
 
 
 def doctor() -> None:
     """Tell what is installed and what each method can do here."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
+    table = Table()
     for heading in ("method", "version", "here", "finest bracket", "sees"):
         table.add_column(heading)
     for finding in examine():

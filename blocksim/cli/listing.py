@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from rich.table import Table
-
 from blocksim.arch.scenario import load_scenario, shipped
 from blocksim.blocks.maker import parameters_of
 from blocksim.cli.arguments import Argument
 from blocksim.cli.output import say
-from blocksim.cli.terminal import show
+from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
 from blocksim.kinds import KINDS
 from blocksim.studies.structures import structures
@@ -22,7 +20,7 @@ NUMBERS = {"alpha", "mu", "n", "eta"}
 
 def list_scenarios() -> None:
     """List the scenarios and structures that come with blocksim."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
+    table = Table()
     for heading in ("name", "alpha", "mu", "n", "eta", "title", "source"):
         table.add_column(heading, justify="right" if heading in NUMBERS else "left")
     for name in shipped():
@@ -32,7 +30,7 @@ def list_scenarios() -> None:
         table.add_row(name, *numbers, eta, each.title, each.source)
     show(table)
     say("")
-    built = Table(box=None, header_style="bold", pad_edge=False)
+    built = Table()
     for heading in ("structure", "blocks", "mu", "known", "title", "source"):
         built.add_column(heading, justify="right" if heading in {"blocks", "mu"} else "left")
     for known in structures(quick=False):
@@ -52,7 +50,7 @@ def list_kinds(
     ] = None,
 ) -> None:
     """List the kinds of structures, or the parameters of one."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
+    table = Table()
     if name is None:
         for heading in ("kind", "what it is", "parameters"):
             table.add_column(heading)

@@ -212,17 +212,17 @@ class Loading:
         Option(help="Unit weight of the fill in kN/m3; that of the blocks if left out."),
     ] = None
     point_load: Annotated[
-        tuple[float, float] | None,
+        list[tuple[float, float]] | None,
         Option(
             metavar="X KN",
             help="Weight on the road at x (m from the crown of an arch; else from the "
             "structure's origin), live. It goes straight down to the block below; fill does "
-            "not spread it.",
+            "not spread it. Repeatable: an axle each.",
         ),
     ] = None
     patch_load: Annotated[
-        tuple[float, float, float] | None,
-        Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2."),
+        list[tuple[float, float, float]] | None,
+        Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2; repeatable."),
     ] = None
     load: Annotated[
         float | None,
@@ -282,6 +282,7 @@ def parameters_of(given: list[str] | None) -> dict[str, object]:
         name, equals, value = each.partition("=")
         ok = bool(name and equals and value) and name != "kind"
         require(ok, "--with", each, "name=value, with a parameter of the kind")
+        require(name not in found, "--with", each, f"given once for {name}")
         try:
             found[name] = json_of(value.encode())
         except ValueError:
@@ -296,6 +297,7 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
         name, _, value = each.partition("=")
         allowed = f"name=value, with a number and one of {', '.join(SETTINGS)}"
         require(name in SETTINGS, "--set", each, allowed)
+        require(name not in settings, "--set", each, f"given once for {name}")
         try:
             settings[name] = float(value)
         except ValueError:

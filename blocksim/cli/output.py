@@ -12,6 +12,7 @@ import click
 from blocksim.common.checks import require
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.progress import Progress, silent
+from blocksim.common.words import printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,9 +48,9 @@ def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None
 
 def answer_with(record: dict[str, object], lines: list[str], *, as_json: bool) -> None:
     """Print an answer, as one JSON object or as lines for people."""
-    say(json_text(record) if as_json else "\n".join(lines))
+    say(*([json_text(record)] if as_json else lines))
 
 
-def say(text: str) -> None:
-    """Print a line on standard output."""
-    click.echo(text)
+def say(*lines: str) -> None:
+    """Print lines on standard output, with nothing in them that a terminal would obey."""
+    click.echo("\n".join(map(printable, lines)))

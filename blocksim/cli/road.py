@@ -44,22 +44,16 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
         maker = problem.maker
         share = 1.0 if heavy is None or maker is None else 1000 * heavy / maker.unit_weight
         problem = with_fill(problem, height, share)
-    placed = [
-        ("--point-load", loading.point_load and (loading.point_load[0], *loading.point_load)),
-        ("--patch-load", loading.patch_load),
-    ]
-    loads: dict[str, tuple[float, float, float]] = {}
-    for option, load in placed:
-        if load is None:
-            continue
+    placed = [("--point-load", (x, x, weight)) for x, weight in loading.point_load or ()]
+    placed += [("--patch-load", load) for load in loading.patch_load or ()]
+    for option, (low, high, weight) in placed:
         allowed = "left out: the file has live loads of its own"
-        require(not problem.live, option, load, allowed)
-        low, high, weight = load
-        ok = all(math.isfinite(each) for each in load) and weight > 0
+        require(not problem.live, option, f"{low:g} {weight:g}", allowed)
+        ok = all(math.isfinite(each) for each in (low, high, weight)) and weight > 0
         require(ok, option, f"{weight:g} kN", "a weight above 0, in kN")
         spread = option == "--point-load" or low < high
         require(spread, option, f"{low:g} {high:g}", "two places, the left one first")
-        loads[option] = low, high, 1000 * weight
-    if not loads:
+    if not placed:
         return problem
-    return with_road(problem, list(loads.values()), list(loads)).with_load(1.0)
+    loads = [(low, high, 1000 * weight) for _, (low, high, weight) in placed]
+    return with_road(problem, loads, [option for option, _ in placed]).with_load(1.0)

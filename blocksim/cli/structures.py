@@ -339,4 +339,4 @@ def spread_structure(
 def say_recorded(out: Path, recording: Recording, unit: str) -> None:
     """Say what was written."""
     first, *others = recording_lines(recording, unit)
-    say("\n".join([f"{out}: {first}", *others]))
+    say(f"{out}: {first}", *others)

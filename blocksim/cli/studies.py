@@ -66,9 +66,9 @@ def validate(
         answers = validate_structures(built, engines, workers=workers, progress=report)
     paths = write_results(rows, out, left_out, answers, built_left_out)
     show(validation_table(rows))
-    say("\n".join(validation_lines(rows, left_out)))
+    say(*validation_lines(rows, left_out))
     show(structure_table(answers))
-    say("\n".join(structure_lines(answers, built_left_out)))
+    say(*structure_lines(answers, built_left_out))
     say("wrote " + ", ".join(str(path) for path in paths))
     raise click.exceptions.Exit(int(any(row.miss for row in (*rows, *answers))))
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from rich.table import Table
-
+from blocksim.cli.terminal import Table
 from blocksim.report.answers import ratio, signed
 from blocksim.report.structurewords import found_of, question_of, summary_of_structures
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
@@ -16,7 +15,7 @@ from blocksim.studies.questions import StructureRow
 
 def validation_table(rows: list[Validation]) -> Table:
     """Lay out validation rows for a terminal: a line an arch, a column an engine."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
+    table = Table()
     engines = list(dict.fromkeys(row.engine for row in rows))
     words = {"scenario", "mode", *engines}
     for heading in (
@@ -63,7 +62,7 @@ def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) ->
 
 def structure_table(rows: list[StructureRow]) -> Table:
     """Lay out rows on structures for a terminal: a line an answer."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
+    table = Table()
     for heading in ("structure", "over", "known", "published", "method", "answer", ""):
         side = "right" if heading in {"known", "published"} else "left"
         table.add_column(heading, justify=side, no_wrap=True)
@@ -90,7 +89,7 @@ def structure_lines(rows: list[StructureRow], unasked: Sequence[Unasked] = ()) -
 
 def chart_table(points: list[Point]) -> Table:
     """Lay out what was measured for the chart, one line a bracket."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
+    table = Table()
     for heading in (
         "arch",
         "method",

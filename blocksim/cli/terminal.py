@@ -7,9 +7,10 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
+from rich.table import Table as RichTable
 
 from blocksim.common.progress import Progress as Report
+from blocksim.common.words import printable
 
 WIDE = 128
 """Characters in a line of the widest table."""
@@ -18,16 +19,29 @@ WIDE = 128
 @contextmanager
 def bar() -> Generator[Report]:
     """Show a bar on standard error while something goes on."""
-    columns = (TextColumn("{task.description:34}"), BarColumn(), TimeElapsedColumn())
+    words = TextColumn("{task.description:34}", markup=False)
+    columns = (words, BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
         task = shown.add_task("", total=1.0)
 
         def report(share: float, what: str) -> None:
-            shown.update(task, completed=share, description=what)
+            shown.update(task, completed=share, description=printable(what))
 
         yield report
 
 
+class Table(RichTable):
+    """A table of columns with headings; its cells are text, as it is."""
+
+    def __init__(self) -> None:
+        super().__init__(box=None, header_style="bold", pad_edge=False)
+
+    def add_row(self, *cells: str) -> None:  # type: ignore[override]
+        """Add a row."""
+        super().add_row(*map(printable, cells))
+
+
 def show(table: Table) -> None:
     """Print a table; a narrow window wraps its lines rather than losing columns."""
-    Console(width=max(Console().width, WIDE)).print(table)
+    plain = Console(width=max(Console().width, WIDE), markup=False, emoji=False)
+    plain.print(table)

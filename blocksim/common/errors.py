@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from reprlib import Repr
 
+from blocksim.common.words import printable
+
 LONGEST = 200
 """Characters shown of a value, a name or a file."""
 LONGEST_WORDS = 600
@@ -32,10 +34,9 @@ _SHORT = _Short()
 
 
 def in_line(text: str, most: int = LONGEST) -> str:
-    """Return text of a stranger as one line that a terminal can be given, cut at a length."""
+    """Return text of a stranger as `printable` does, cut at a length."""
     half = most // 2
-    cut = text if len(text) <= most else f"{text[:half]}...{text[3 - half :]}"
-    return "".join(each if each.isprintable() else "?" for each in cut)
+    return printable(text if len(text) <= most else f"{text[:half]}...{text[3 - half :]}")
 
 
 def perhaps(name: str, known: Iterable[str]) -> str:
@@ -93,19 +94,35 @@ class InputError(BlocksimError, ValueError):
         super().__init__(f"{place}{in_line(field)} {is_so}: must be {must}")
 
 
-class Unsolved(BlocksimError):
-    """A linear programme that its solver does not take, or gives up.
+class MachineError(BlocksimError):
+    """A failure of the machine, whatever was asked: a full disk, no permission.
 
     Parameters
     ----------
-    status : str
-        What the solver says.
+    field : str
+        Name of the option or of what the file is, e.g. ``--out``.
+    value : str
+        The file.
+    why : str
+        As the system says it.
     """
 
-    def __init__(self, status: str) -> None:
+    def __init__(self, field: str, value: str, why: str) -> None:
+        self.field = field
+        self.value = value
+        self.why = why
         super().__init__(
-            f"limit analysis: HiGHS says {status!r}; blocks, weights and loads may be too "
-            "unlike each other in size"
+            f"{in_line(field)} = {_SHORT.repr(value)}: the system says {in_line(why)!r}"
+        )
+
+
+class Unsolved(BlocksimError):
+    """A linear programme of which its solver tells nothing."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "limit analysis: undecided, as its forces or motions are too unlike each other in "
+            "size for the solver; weights, loads and friction nearer to each other would decide"
         )
 
 

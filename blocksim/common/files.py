@@ -9,17 +9,31 @@ import re
 import stat
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, suppress
-from errno import EISDIR, ENOENT, ENOTDIR
+from errno import (
+    EEXIST,
+    EINVAL,
+    EISDIR,
+    ELOOP,
+    ENAMETOOLONG,
+    ENOENT,
+    ENOTDIR,
+    ENOTSUP,
+)  # fmt: skip
 from importlib.resources import files
 from pathlib import Path
+from secrets import token_hex
 from tempfile import TemporaryFile
 from typing import Any, BinaryIO, cast
 
 from blocksim.common.checks import require
-from blocksim.common.errors import InputError
+from blocksim.common.errors import BlocksimError, InputError, MachineError
 
 AnyPath = str | os.PathLike[str]
 """What every public function takes for a path."""
+PREFIX = 40
+"""Characters of a file's name in that of what is written aside."""
+WRONG_NAME = {EEXIST, EINVAL, EISDIR, ELOOP, ENAMETOOLONG, ENOENT, ENOTDIR}
+"""What the system says where another name would do; all else is the machine's failure."""
 
 
 def shipped_files(pattern: str) -> dict[str, Path]:
@@ -41,7 +55,9 @@ def json_text(document: object, *, indent: int | None = None) -> str:
 
     `float` reads it again.
     """
-    return json.dumps(_plain(document), indent=indent, allow_nan=False)
+    text = json.dumps(_plain(document), indent=indent, allow_nan=False)
+    # The one character that JSON leaves as it is and no terminal can show.
+    return text.replace("\x7f", "\\u007f")
 
 
 def _plain(value: object) -> object:
@@ -56,9 +72,11 @@ def _plain(value: object) -> object:
 
 
 def write_whole(path: AnyPath, write: Callable[[BinaryIO], object]) -> None:
-    """Write aside, then rename, so that nobody ever sees half a file.
+    """Write a file whole or not at all: aside, synced, then renamed to what it is called.
 
-    It is on the disk, not only in the system's memory, when this returns.
+    It is on the disk, not only in the system's memory, when this returns. Each write has a
+    name of its own, which nobody can know before: of two writers of one file either is whole,
+    and a link of that name is not followed but replaced. What a kill leaves ends in `.part`.
 
     Parameters
     ----------
@@ -69,23 +87,54 @@ def write_whole(path: AnyPath, write: Callable[[BinaryIO], object]) -> None:
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If there can be no file of that name.
+    MachineError
+        If the system cannot write it.
+
+    Examples
+    --------
+    >>> write_whole("answer.txt", lambda file: file.write(b"stands"))
     """
     path = Path(path)
-    aside = path.with_name(f".{path.name}.part")
     try:
-        with aside.open("wb") as file:
+        _require_plain(path)
+        _put(path, write)
+    except OSError as error:
+        raise refused("--out", path, "writable", error) from None
+
+
+def _put(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    # Names have 255 bytes at most; a character may have four.
+    aside = path.with_name(f".{path.name[:PREFIX]}.{token_hex(8)}.part")
+    try:
+        with aside.open("xb") as file:
             write(file)
             file.flush()
             os.fsync(file.fileno())
         aside.replace(path)
-        _sync_folder(path.parent)
-    except OSError as error:
-        raise InputError("--out", str(path), f"writable ({error.strerror})") from None
     finally:
-        # Where the folder itself is missing or a file, there is nothing to take away.
+        # It has another name by now, or never came to be.
         with suppress(OSError):
             aside.unlink()
+    _sync_folder(path.parent)
+
+
+def _require_plain(path: Path) -> None:
+    """Raise `OSError` for what is there and no file, as a device: a file would replace it."""
+    if "\0" in str(path):
+        raise OSError(EINVAL, "a null character in the name")
+    if path.is_dir():
+        raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
+    if path.exists() and not path.is_file():
+        raise FileExistsError(EEXIST, "it is a device, a pipe or a socket")
+
+
+def refused(field: str, path: AnyPath, allowed: str, error: OSError) -> BlocksimError:
+    """Return what is said of a file: that another name would do, or what the system says."""
+    said, why = os.fspath(path), error.strerror or str(error)
+    if error.errno in WRONG_NAME:
+        return InputError(field, said, f"{allowed} ({why})")
+    return MachineError(field, said, why)
 
 
 @contextmanager
@@ -106,7 +155,9 @@ def opened(path: AnyPath, field: str, allowed: str, largest: int) -> Generator[B
     Raises
     ------
     InputError
-        If it is no regular file, cannot be opened or read, or is too large.
+        If it is missing, no regular file, or too large.
+    MachineError
+        If the system cannot open or read it.
     """
     said = os.fspath(path)
     try:
@@ -119,9 +170,9 @@ def opened(path: AnyPath, field: str, allowed: str, largest: int) -> Generator[B
                 raise InputError(field, said, f"at most {largest} bytes")
             yield file
     except OSError as error:
-        absent = error.errno in {ENOENT, ENOTDIR}
-        why = "" if absent else f" ({error.strerror or error})"
-        raise InputError(field, said, f"{allowed}{why}") from None
+        if error.errno in {ENOENT, ENOTDIR}:
+            raise InputError(field, said, allowed) from None
+        raise refused(field, said, allowed, error) from None
     except ValueError as error:
         if isinstance(error, InputError) or "null" not in str(error):
             raise
@@ -227,11 +278,15 @@ def _require_bounded(found: object) -> None:
 
 def _sync_folder(path: Path) -> None:
     """Put the names of a folder's files on the disk, where the system can (Windows cannot)."""
-    if os.name != "posix":
+    try:
+        folder = os.open(path, os.O_RDONLY)
+    except OSError:  # one that may be written but not read
         return
-    folder = os.open(path, os.O_RDONLY)
     try:
         os.fsync(folder)
+    except OSError as error:
+        if error.errno not in {EINVAL, ENOTSUP}:  # some file systems have none for folders
+            raise
     finally:
         os.close(folder)
 
@@ -242,15 +297,16 @@ def require_place(path: Path) -> None:
     Raises
     ------
     InputError
-        If it cannot be written.
+        If there can be no file of that name.
+    MachineError
+        If the system cannot write it.
     """
     try:
-        if path.is_dir():
-            raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
+        _require_plain(path)
         with TemporaryFile(dir=path.parent):
             pass
     except OSError as error:
-        raise InputError("--out", str(path), f"writable ({error.strerror})") from None
+        raise refused("--out", path, "writable", error) from None
 
 
 def make_folder(path: AnyPath) -> None:
@@ -259,7 +315,9 @@ def make_folder(path: AnyPath) -> None:
     Raises
     ------
     InputError
-        If it cannot be created or written.
+        If there can be no folder of that name.
+    MachineError
+        If the system cannot create or write it.
     """
     path = Path(path)
     try:
@@ -267,4 +325,4 @@ def make_folder(path: AnyPath) -> None:
         with TemporaryFile(dir=path):
             pass
     except OSError as error:
-        raise InputError("--out", str(path), f"a writable folder ({error.strerror})") from None
+        raise refused("--out", path, "a writable folder", error) from None

@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from blocksim.common.words import printable
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -43,5 +45,5 @@ def _notebook() -> Any:
 
 def short(words: str) -> str:
     """Return words in one line that is no longer than fits into a `repr`."""
-    line = " ".join(words.split())
+    line = " ".join(printable(words).split())
     return line if len(line) <= LONGEST else line[: LONGEST - 1] + "…"

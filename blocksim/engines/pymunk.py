@@ -54,8 +54,15 @@ SWEEPS = 100
 LEAST_SWEEPS = 5
 RUBBLE_SWEEPS, MOST_PARTS = 100, 100
 """Least sweeps, and most parts of a step, once blocks may meet."""
-ROUND = 0.005
+ROUND = 1e-4
 """Radius of the corners of blocks that meet, in units of their least width."""
+LEAST_AGAIN, MOST_AGAIN = 100, 400
+"""Sweeps of a step on ground that shakes: at least, and at most for each pair of blocks."""
+CHANGE = 1e-2
+"""Change of velocities, as a share of them, at which a step on such ground counts as solved."""
+SHAKEN_PARTS, MOVES = 8, 1e-4
+"""Parts of a step there, in each of which an impact may be, and velocity from which it is
+divided [sqrt(size g)]."""
 IMPACT = 10.0
 """Acceleration from which a block has met something [g]."""
 MOST_UNSEEN, LEAST_WAY = 16, 1e-12
@@ -242,10 +249,19 @@ class _Space:
             self._space.iterations = self._settings.sweeps
             self._watch()
             before = self._velocities() if self._solids.loose else None
-            self._go(self._settings.step)
+            parts = self._parts()
+            for _ in range(parts):
+                self._go(self._settings.step / parts)
             if before is not None:
                 self._rate = (self._velocities() - before) / self._settings.step
                 self._make_solid()
+
+    def _parts(self) -> int:
+        """Tell in how many parts a step is taken before blocks may meet."""
+        if self._problem.shaking is None:
+            return 1
+        moves = float(displacement(self._velocities(), self._assembly)) > MOVES
+        return SHAKEN_PARTS if moves else 1
 
     def _watch(self) -> None:
         """Look where blocks are, as soon as they may have moved far enough to meet others."""
@@ -263,6 +279,8 @@ class _Space:
         step, velocities = self._settings.step, self._velocities()
         speed = float(displacement(velocities, self._assembly)) + step
         parts = min(math.ceil(speed * step / self._solids.largest), MOST_PARTS)
+        if self._problem.shaking is not None:
+            parts = max(parts, SHAKEN_PARTS)
         part = step / parts
         # Velocities are those half a step ahead: what has been gained by then is less now.
         sudden = np.abs(self._rate).max(axis=1, keepdims=True) > IMPACT
@@ -286,11 +304,41 @@ class _Space:
 
     def _go(self, step: float) -> None:
         """Take a step in time, in which the ground may shake."""
-        if self._problem.shaking is not None:
-            x, y, _ = self._problem.shaken(self._time, self._time + step).tolist()
-            self._space.gravity = x, y
-            self._time += step
+        if self._problem.shaking is None:
+            self._step(step)
+            return
+        x, y, _ = self._problem.shaken(self._time, self._time + step).tolist()
+        self._space.gravity = x, y
+        self._time += step
+        self._converge(step)
+
+    def _converge(self, step: float) -> None:
+        """Take a step again and again, with more sweeps, until its velocities stay the same.
+
+        The forces of before do not balance what the ground pushes with now: a few sweeps
+        leave joints that give way, and arches fall at two thirds of what they bear.
+        """
+        states = [
+            (each.position, each.angle, each.velocity, each.angular_velocity)
+            for each in self._bodies
+        ]
+        sweeps = spent = max(self._space.iterations, LEAST_AGAIN)
+        self._space.iterations = sweeps
         self._step(step)
+        found, most = self._velocities(), MOST_AGAIN * len(states) ** 2 + LEAST_HOLD
+        while spent < most:
+            for body, (place, angle, velocity, turn) in zip(self._bodies, states, strict=True):
+                body.position, body.angle = place, angle
+                body.velocity, body.angular_velocity = velocity, turn
+            self._space.iterations = spent
+            spent *= 2
+            self._step(step)
+            before, found = found, self._velocities()
+            change = float(displacement(found - before, self._assembly))
+            speed = float(displacement(found, self._assembly))
+            if change < max(self._settings.still * step, CHANGE * speed):
+                break
+        self._space.iterations = sweeps
 
     def _step(self, step: float) -> None:
         """Take a step under gravity and loads, which pymunk forgets after each."""
@@ -350,6 +398,8 @@ class _Space:
 
     def _forget(self) -> None:
         """Forget impulses: those of an impact, taken for those of rest, would throw blocks."""
+        if self._problem.shaking is not None:
+            return  # They are found anew all the same.
         space: Any = self._space
         for pair in space._get_arbiters():
             for contact in pair.contacts[0 : pair.count]:

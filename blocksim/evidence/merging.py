@@ -210,7 +210,8 @@ class Merging:
         found = most_common(cones, left)
         if not found.exists:
             return False, None
-        return bool(found.values[-1] >= -allowed), cones.rates(found.prices)
+        lacks = -found.values[-1] * float(cones.unit.max())
+        return bool(lacks <= allowed), cones.rates(found.prices)
 
     def left(self, resultants: Array, problem: Problem) -> Array:
         """Return what joints within bodies have to bear of each block, (blocks, 3).

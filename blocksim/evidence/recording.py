@@ -144,7 +144,7 @@ class Recording(Shown):
 
         Raises
         ------
-        InputError
+        InputError, MachineError
             If the file cannot be written, or would be too large to be read.
         """
         header = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +22,9 @@ else:
     sparse, linalg = Library("scipy.sparse"), Library("scipy.sparse.linalg")
 
 ROUND_OFF = 1e-9
-"""Lack of force that is round-off [mean weights]."""
+"""Lack of force that is round-off, over what the joint or the block carries."""
+UNTURNED = 1e9
+"""Inertia over that of the mass at the farthest corner, from which on nothing turns a block."""
 
 
 class Cones:
@@ -29,6 +32,11 @@ class Cones:
 
     A cone of finite friction has two edges, one without friction has one; unbounded
     friction leaves a normal part that presses and a tangential one that is free.
+
+    Equations and parts have scales of their own, so a pebble is seen as exactly as a pier. The
+    forces on a block are divided by the weight that it carries, its moments by that times its
+    reach (`ease`). The parts at a joint are in units of the lesser weight that the two blocks
+    at it carry (`unit`).
 
     Parameters
     ----------
@@ -46,10 +54,15 @@ class Cones:
         assembly, joints = problem.assembly, problem.assembly.joint_arrays
         self._joints = len(assembly.joints)
         self.shape = (len(assembly.blocks), PLANAR)
+        weights = carried_weights(problem)
+        reach = assembly.reach / assembly.size
+        self.ease = 1 / np.column_stack([weights, weights, weights * reach])
         # What nothing can turn (half a keystone on its plane) bears any moment.
-        self.ease = np.ones(self.shape)
-        self.ease[:, 2] = 1 / np.maximum(1.0, assembly.masses[:, 2])
-        mu = np.repeat(problem.friction if friction is None else friction, 2)
+        turned = assembly.masses[:, 2] < UNTURNED * assembly.masses[:, 0] * reach**2
+        self.ease[:, 2] *= np.where(turned, 1.0, UNTURNED**-2)
+        self.unit = joint_weights(problem, weights)
+        self._friction = problem.friction if friction is None else friction
+        mu = np.repeat(self._friction, 2)
         ends = np.arange(2 * self._joints)
         finite, rough = ends[np.isfinite(mu)], ends[(mu > 0) & np.isfinite(mu)]
         boundless = ends[np.isinf(mu)]
@@ -64,6 +77,8 @@ class Cones:
         free = self.count - len(boundless)
         self.bounded = np.where(np.arange(self.count) < free, 1.0, 0.0)
         self._joint = self._end // 2
+        self._normal *= self.unit[self._joint]
+        self._tangent *= self.unit[self._joint]
         direction = (
             self._normal[:, None] * joints.normal[self._joint]
             + self._tangent[:, None] * joints.tangent[self._joint]
@@ -109,6 +124,15 @@ class Cones:
         low = np.where(self.bounded > 0, 0.0, -math.inf)
         return low, np.full(self.count, math.inf)
 
+    def part(self, index: int) -> tuple[int, int, Fraction, Fraction]:
+        """Return joint and end of a part, and its share of normal and tangent, exactly."""
+        joint, end = divmod(int(self._end[index]), 2)
+        normal, tangent = float(self._normal[index]), float(self._tangent[index])
+        mu = float(self._friction[joint])
+        if not normal or not tangent:
+            return joint, end, Fraction(bool(normal)), Fraction(bool(tangent))
+        return joint, end, Fraction(1), Fraction(math.copysign(mu, tangent))
+
     def loads(self, pull: Array) -> Array:
         """Return loads on the blocks as the balance has them, in one row."""
         return (pull * self.ease).ravel()
@@ -124,16 +148,17 @@ class Cones:
         """Return the rates of the blocks that the prices of the balance are, (blocks, 3)."""
         return -prices.reshape(self.shape) * self.ease
 
-    def polished(self, parts: Array, pull: Array) -> Array:
-        """Take away the imbalance the solver leaves, by the least change of what presses."""
+    def polished(self, parts: Array, pull: Array, fine: float = ROUND_OFF) -> Array:
+        """Take away the imbalance the solver leaves, by the least change in ratio."""
         left = -self.loads(pull) - self.balance @ parts
-        held = np.flatnonzero((parts > 1.0) | (self.bounded == 0))
-        if np.abs(left).max() < ROUND_OFF or not len(held):
+        if np.abs(left).max() < fine:
             return parts
+        # In proportion to what presses, so that it stays within the cones.
+        room = np.where(self.bounded > 0, np.maximum(parts, 0.0), 1.0)
         solve: Any = linalg.lsmr
-        change = solve(self.balance[:, held], left, atol=1e-14, btol=1e-14)[0]
-        better = parts.copy()
-        better[held] += change
+        scaled = self.balance @ sparse.diags_array(room)
+        change = room * solve(scaled, left, atol=1e-15, btol=1e-15)[0]
+        better = parts + change
         worst = np.abs(-self.loads(pull) - self.balance @ better).max()
         return better if worst < np.abs(left).max() else parts
 
@@ -149,3 +174,44 @@ class Cones:
             found, self._end, np.column_stack([self._normal, self._tangent]) * parts[:, None]
         )
         return found.reshape(-1, 2, 2)
+
+
+def joint_weights(problem: Problem, weights: Array) -> Array:
+    """Return the lesser weight that the two blocks at each joint carry, (joints,) float."""
+    return np.append(weights, math.inf)[problem.assembly.sides].min(axis=0)
+
+
+def carried_weights(problem: Problem) -> Array:
+    """Estimate the weight that each block carries: its own, loads, and what comes from above.
+
+    Each block hands on what it carries to those of its neighbours that are nearer to the
+    supports, by the number of joints between, in equal shares.
+
+    Returns
+    -------
+    (blocks,) float
+        In mean weights.
+    """
+    assembly = problem.assembly
+    pull = problem.pull()
+    found = assembly.masses[:, 0] + np.hypot(pull[:, 0], pull[:, 1])
+    found += np.abs(pull[:, 2]) * assembly.size / assembly.reach
+    neighbours: list[set[int]] = [set() for _ in found]
+    first = set[int]()
+    for one, other in assembly.sides.T.tolist():
+        if SUPPORT in (one, other):
+            first.add(max(one, other))
+        else:
+            neighbours[one].add(other)
+            neighbours[other].add(one)
+    rank, layers = dict.fromkeys(first, 0), [sorted(first)]
+    while layers[-1]:
+        beyond = {near for block in layers[-1] for near in neighbours[block]} - rank.keys()
+        rank |= dict.fromkeys(beyond, len(layers))
+        layers.append(sorted(beyond))
+    for layer in layers[:0:-1]:
+        for block in layer:
+            below = [near for near in neighbours[block] if rank[near] < rank[block]]
+            for near in below:
+                found[near] += found[block] / len(below)
+    return found

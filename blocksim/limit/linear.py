@@ -25,6 +25,8 @@ MANY = 1000
 """Unknowns from which on the interior point is faster than the simplex at first."""
 DUAL, PRIMAL = 1, 4
 """HiGHS's numbers of its simplex methods."""
+LARGEST = 1e7
+"""Size of unknowns up to which a programme is solved that HiGHS does not take without bound."""
 Ends = tuple[Array, Array]
 Matrix: TypeAlias = "sparse.csc_array | Array"
 
@@ -100,11 +102,25 @@ class LinearProgramme:
         bounds : two of (unknowns,) float
             Least and greatest value of each unknown.
 
+        Where HiGHS tells nothing of it, unknowns are sought up to `LARGEST`: corners that were
+        rounded may ask for forces without end.
+
         Raises
         ------
         Unsolved
-            If HiGHS tells nothing of it.
+            If HiGHS tells nothing of that either.
         """
+        found = self._solve(cost, matrix, rows, bounds)
+        if found is None:
+            low, high = bounds
+            ends = np.maximum(low, -LARGEST), np.minimum(high, LARGEST)
+            found = self._solve(cost, matrix, rows, ends)
+        if found is None:
+            # Nothing follows from it, least of all that nothing stands.
+            raise Unsolved
+        return found
+
+    def _solve(self, cost: Array, matrix: Matrix, rows: Ends, bounds: Ends) -> Optimum | None:
         columns = sparse.csc_array(matrix)
         again = columns.shape == self._shape and self._basis is not None
         self._highs.passModel(_model(cost, columns, rows, bounds))
@@ -118,7 +134,7 @@ class LinearProgramme:
                 return self._found()
         return self._by_simplex()
 
-    def _by_simplex(self) -> Optimum:
+    def _by_simplex(self) -> Optimum | None:
         """Solve by the dual method, by the primal one where that gets lost: without bound."""
         known = highspy.HighsModelStatus
         for strategy in (DUAL, PRIMAL):
@@ -129,8 +145,7 @@ class LinearProgramme:
             if status in {known.kInfeasible, known.kUnbounded}:
                 return UNBOUNDED if status == known.kUnbounded else NONE
             self._highs.clearSolver()
-        # Nothing follows from it, least of all that nothing stands.
-        raise Unsolved(self._highs.modelStatusToString(status))
+        return None
 
     def _run(self, method: str) -> bool:
         self._highs.setOptionValue("solver", method)

@@ -6,23 +6,27 @@ loads. By the static theorem of limit analysis an assembly can rest where such f
 blocks begin to move where none exist, in which joints that slide dilate (associated flow).
 Coulomb's law, which does not dilate, may allow blocks to move that could rest.
 
-Lengths are scaled by the assembly's size and forces by the mean weight before they are
-solved: with a drawing in millimetres the solver would call wrong answers optimal.
+Lengths are scaled by the assembly's size, and equations and forces by what each block and
+joint carries (`Cones`) before they are solved: with a drawing in millimetres, or beside a pier a
+thousand times as large, the solver would call wrong answers optimal.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
+from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
 from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.linear import LinearProgramme, Optimum
+from blocksim.limit.proof import Proof, proof_of_fall, proof_of_rest
 
 if TYPE_CHECKING:
     from scipy import sparse
@@ -30,9 +34,13 @@ else:
     sparse = Library("scipy.sparse")
 
 SPARE = 1.0
-"""Most that is asked for along every edge of a cone [mean weights]."""
+"""Most that is asked for along every edge of a cone, over what its joint carries."""
 TENSION = 1e3
-"""Most that every edge may lack [mean weights]."""
+"""Most that every edge may lack, over the same."""
+FINE = 1e-14
+"""Lack of force that is left so near, over what blocks carry."""
+NEAR = 1e-6
+"""Margin up to which a proof decides whether blocks stand, not the solver."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,27 +49,70 @@ class Equilibrium:
 
     Parameters
     ----------
+    problem : Problem
     margin : float
         The least part along any edge of a cone of friction, made as large as it can be
-        (at most `SPARE`) [mean weights]. Below 0 by more than round-off there is no
-        equilibrium: contacts would have to pull by that much. -inf where not even that
-        would hold the blocks.
-    forces : (joints, 2, 2) float or None
-        At the inner and the outer end of each joint, along its normal and its tangent, as
-        they act on the block after it [mean weights]. None where there is no equilibrium.
-    mechanism : (blocks, 3) float or None
-        Rates x, y and rotation of a mechanism that the loads drive; None where they are
-        balanced.
+        (at most `SPARE`), over what its joint carries (`Cones.unit`). Below 0 there is no
+        equilibrium: contacts would have to pull by that much. -inf where not even that would
+        hold the blocks, nan where the solver does not tell.
+    sought : (joints, 2, 2) float or None
+        The forces with that margin, whether they exist or not; None where the margin is -inf.
+    rates : (blocks, 3) float or None
+        Rates x, y and rotation of the mechanism that is nearest.
     """
 
+    problem: Problem
     margin: float
-    forces: Array | None
-    mechanism: Array | None
+    sought: Array | None
+    rates: Array | None
+
+    @cached_property
+    def proof(self) -> Proof | None:
+        """The proof that blocks stand or fall; None where there is none either way."""
+        if self.sought is not None and self.margin > -NEAR:
+            found = proof_of_rest(self.problem, self.sought)
+            if found is not None:
+                return found
+        if self.margin >= NEAR:
+            return None
+        return proof_of_fall(self.problem, self._cones, self.rates)
+
+    @cached_property
+    def _cones(self) -> Cones:
+        return Cones(self.problem)
 
     @property
+    def decided(self) -> bool:
+        """Whether they stand or fall is known: near the limit a proof has to say so."""
+        return abs(self.margin) > NEAR or self.proof is not None
+
+    @cached_property
     def exists(self) -> bool:
-        """Whether the blocks can rest."""
-        return self.forces is not None
+        """Whether the blocks can rest; where that is not decided, whether next to nothing lacks."""
+        if abs(self.margin) > NEAR:
+            return self.margin > 0
+        return (
+            bool(self.margin >= -ROUND_OFF)
+            if self.proof is None
+            else self.proof.claim == "stands"
+        )
+
+    @property
+    def forces(self) -> Array | None:
+        """Forces at the inner and the outer end of each joint, along its normal and its tangent.
+
+        (joints, 2, 2) float, as they act on the block after it [mean weights]. None where there
+        is no equilibrium.
+        """
+        return self.sought if self.exists else None
+
+    @property
+    def mechanism(self) -> Array | None:
+        """Rates x, y and rotation of a mechanism that the loads drive, (blocks, 3) float.
+
+        None where the blocks can rest, and where not even contacts that pull would hold them.
+        """
+        return None if self.exists else self.rates
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,15 +150,22 @@ def equilibrium(problem: Problem) -> Equilibrium:
     Equilibrium
     """
     cones = Cones(problem)
-    found = most_common(cones, problem.pull())
+    try:
+        found = most_common(cones, problem.pull())
+    except Unsolved:
+        return Equilibrium(problem=problem, margin=math.nan, sought=None, rates=None)
     if not found.exists:
-        return Equilibrium(margin=-math.inf, forces=None, mechanism=None)
+        return Equilibrium(problem=problem, margin=-math.inf, sought=None, rates=None)
     margin = float(found.values[-1])
-    if margin < -ROUND_OFF:
-        mechanism = _scaled(cones.rates(found.prices))
-        return Equilibrium(margin=margin, forces=None, mechanism=mechanism)
-    parts = cones.polished(found.values[:-1] + margin * cones.bounded, problem.pull())
-    return Equilibrium(margin=margin, forces=cones.forces(parts), mechanism=None)
+    parts = found.values[:-1] + margin * cones.bounded
+    if margin > -NEAR:
+        parts = cones.polished(parts, problem.pull(), FINE if margin < NEAR else ROUND_OFF)
+    return Equilibrium(
+        problem=problem,
+        margin=margin,
+        sought=cones.forces(parts),
+        rates=_scaled(cones.rates(found.prices)),
+    )
 
 
 def collapse(problem: Problem) -> Collapse:

@@ -9,9 +9,10 @@ import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
+from blocksim.limit.cones import carried_weights, joint_weights
 
 FORCELESS = 1e-9
-"""Pressure below which a joint carries nothing [mean weights]."""
+"""Pressure below which a joint carries nothing, over the weight that its blocks carry."""
 SIDES = ("left", "right")
 """Names of two supports that have none."""
 
@@ -72,13 +73,14 @@ def resultants(problem: Problem, forces: Array) -> Resultants:
     """Sum forces at the ends of joints, (joints, 2, 2) in mean weights, to resultants."""
     joints = problem.assembly.joint_arrays
     normal, friction = np.asarray(forces).sum(axis=1).T
-    loaded = np.abs(normal) > FORCELESS
+    least = FORCELESS * joint_weights(problem, carried_weights(problem))
+    loaded = np.abs(normal) > least
     safe = np.where(loaded, normal, 1.0)
     share = forces[:, 1, 0] / safe
     ends = joints.ends * problem.assembly.size
     point = ends[:, 0] + share[:, None] * (ends[:, 1] - ends[:, 0])
     most = problem.friction * np.abs(safe)
-    rubs = np.abs(friction) > FORCELESS
+    rubs = np.abs(friction) > least
     friction_used = np.divide(
         np.abs(friction), most, out=np.zeros(len(most)), where=loaded & rubs & (most > 0)
     )

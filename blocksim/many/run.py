@@ -108,7 +108,7 @@ def sweep(
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If the folder cannot be written, holds something else, or another sweep is at work
         in it.
     MissingPart

@@ -12,12 +12,13 @@ from typing import cast
 from filelock import FileLock, Timeout
 
 from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, write_whole
+from blocksim.common.files import AnyPath, refused, write_whole
 
 HEAD = b'{"id": "'
 ID_LENGTH = 24
 ROW = re.compile(rb'\{"id": "[0-9a-f]{24}", .*\}\n')
 PATTERN = "rows-*.jsonl"
+UNFINISHED = ".rows-*.part"
 LOCK = ".sweep.lock"
 
 
@@ -37,7 +38,7 @@ def locked(folder: Path) -> Generator[None]:
         allowed = "a folder no other sweep is at work in (wait until it ends, or name another)"
         raise InputError("--out", str(folder), allowed) from None
     except OSError as error:
-        raise InputError("--out", str(folder), f"writable ({error.strerror})") from None
+        raise refused("--out", folder, "writable", error) from None
     try:
         yield
     finally:
@@ -52,7 +53,7 @@ def write_shard(folder: Path, lines: list[bytes]) -> None:
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If they cannot be written, as on a full disk.
     """
     path = folder / f"rows-{_identity(lines[0])}.jsonl"
@@ -61,7 +62,7 @@ def write_shard(folder: Path, lines: list[bytes]) -> None:
 
 def identities(folder: Path) -> set[bytes]:
     """Identities of the rows in a folder; takes away what a kill left half-written."""
-    for part in folder.glob(f".{PATTERN}.part"):
+    for part in folder.glob(UNFINISHED):
         with suppress(OSError):
             part.unlink()
     for path in folder.glob(PATTERN):

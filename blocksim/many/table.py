@@ -7,8 +7,6 @@ Columns are the keys of a row. The unit ends the name of a number that has one: 
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
@@ -18,6 +16,7 @@ from typing import Any, BinaryIO, cast
 from blocksim.blocks.maker import Parameter, parameters_of
 from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, write_whole
+from blocksim.common.sheets import write_sheet
 from blocksim.evidence.simulation import SETTINGS
 from blocksim.kinds import KINDS
 from blocksim.many.shards import read_rows
@@ -103,7 +102,7 @@ def write_parquet(folder: AnyPath, path: AnyPath) -> None:
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If a file is not of a sweep, or the table cannot be written.
     MissingPart
         If pyarrow is not installed.
@@ -141,7 +140,7 @@ def write_csv(folder: AnyPath, path: AnyPath) -> None:
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If a file is not of a sweep, or the table cannot be written.
     """
     settings = [f"settings.{name}" for name in SETTINGS]
@@ -149,18 +148,12 @@ def write_csv(folder: AnyPath, path: AnyPath) -> None:
     for name in _columns(folder):
         names += settings if name == "settings" else [name]
 
-    def write(file: BinaryIO) -> None:
-        text = io.TextIOWrapper(file, encoding="utf-8", newline="")
-        table = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
-        table.writeheader()
-        for row in read_rows(folder):
-            given = cast("dict[str, object]", row.get("settings") or {})
-            own = {f"settings.{name}": value for name, value in given.items()}
-            table.writerow(_flat(row) | own)
-        text.flush()
-        text.detach()
+    def cells(row: dict[str, object]) -> list[object]:
+        given = cast("dict[str, object]", row.get("settings") or {})
+        found = _flat(row) | {f"settings.{name}": value for name, value in given.items()}
+        return [found.get(name) for name in names]
 
-    write_whole(path, write)
+    write_whole(path, lambda file: write_sheet(file, names, map(cells, read_rows(folder))))
 
 
 def _columns(folder: AnyPath) -> dict[str, str]:

@@ -18,6 +18,7 @@ from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError
+from blocksim.common.words import printable
 
 LAYERS = {"blocks": False, "supports": True}
 """Layers that are read, and whether what is on them is fixed."""
@@ -129,8 +130,8 @@ def structure_from(shapes: Iterable[Shape], path: Path, unit: Unit) -> dict[str,
 
 
 def plain(text: str) -> str:
-    """Return text of a stranger as one line that a terminal can be given, cut at a length."""
-    return "".join(c if c.isprintable() else "?" for c in text[:80]).strip()
+    """Return text of a stranger as `printable` does, cut at a length."""
+    return printable(text[:80]).strip()
 
 
 def _block(shape: Shape, layer: str, unit: Unit) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, json_of, make_folder, read_file, write_whole
+from blocksim.common.words import printable
 from blocksim.engines import ENGINES
 from blocksim.report.tables import as_json, machine, pictures, write_contents
 from blocksim.studies.chart import Point, on_front
@@ -25,7 +26,7 @@ def write_chart(points: Sequence[Point], folder: AnyPath) -> list[Path]:
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If they cannot be written.
     """
     folder = Path(folder)
@@ -42,7 +43,7 @@ def write_points(points: Sequence[Point], path: AnyPath) -> None:
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If they cannot be written.
     """
     path = Path(path)
@@ -104,8 +105,8 @@ def _point(record: dict[str, Any]) -> Point:
     if not processor_s:
         raise ValueError(processor_s)
     return Point(
-        case=str(record["case"]),
-        method=str(record["method"]),
+        case=printable(str(record["case"])),
+        method=printable(str(record["method"])),
         knob=str(record["knob"]),
         value=float(record["value"]),
         error=float(record["error"]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
+from blocksim.common.words import printed
 from blocksim.report.answers import ratio
 
 
@@ -13,6 +14,7 @@ def environment() -> Environment:
         loader=PackageLoader("blocksim.report"),
         autoescape=select_autoescape(),
         undefined=StrictUndefined,
+        finalize=printed,
         trim_blocks=True,
         lstrip_blocks=True,
     )

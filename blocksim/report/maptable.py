@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterator
 
@@ -20,6 +18,7 @@ from blocksim.arch.maptable import (
     special_points,
 )
 from blocksim.arch.modes import Mode
+from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
 
 COLUMNS = ("crown turns", "inner turns", "inner slides", "shoulder turns", "shoulder slides")
@@ -61,7 +60,6 @@ def _numbers(point: TablePoint) -> dict[str, object]:
 
 def map_sheet(weight: Weight) -> bytes:
     """Return the map as CSV: a row for each mode at each point."""
-    sheet = io.StringIO()
     rows = [
         {
             **_numbers(point),
@@ -72,10 +70,7 @@ def map_sheet(weight: Weight) -> bytes:
         for point in _points(weight)
         for mode in point.modes
     ]
-    writer = csv.DictWriter(sheet, fieldnames=list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return sheet.getvalue().encode()
+    return sheet_of(list(rows[0]), (list(row.values()) for row in rows))
 
 
 def _points(weight: Weight) -> Iterator[TablePoint]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from pathlib import Path
 
 from blocksim.common.files import AnyPath, make_folder, write_whole
 from blocksim.common.progress import Progress, silent
+from blocksim.common.sheets import sheet_of
 from blocksim.common.version import __version__
 from blocksim.report.environment import environment
 from blocksim.studies.paper import CONTENTS, FIGURES, Printed, numbers
@@ -45,7 +44,7 @@ def write_paper(
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If there is no such figure, or the folder cannot be written.
     """
     folder = Path(folder)
@@ -70,8 +69,6 @@ def write_paper(
 
 
 def _sheet(found: Sequence[Printed]) -> bytes:
-    sheet = io.StringIO()
-    writer = csv.writer(sheet, lineterminator="\n")
-    writer.writerow(["name", "computed", "printed", "relative_difference"])
-    writer.writerows([each.name, each.value, each.printed, each.difference] for each in found)
-    return sheet.getvalue().encode()
+    names = ["name", "computed", "printed", "relative_difference"]
+    rows = ([each.name, each.value, each.printed, each.difference] for each in found)
+    return sheet_of(names, rows)

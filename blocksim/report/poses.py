@@ -5,8 +5,6 @@ An arch of which no radius was given has r = 1 m.
 
 from __future__ import annotations
 
-import csv
-import io
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -14,6 +12,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.files import json_text
+from blocksim.common.sheets import write_sheet
 from blocksim.common.version import __version__
 from blocksim.evidence.recording import Recording
 
@@ -31,17 +30,15 @@ def write_recording_csv(recording: Recording, file: BinaryIO) -> None:
     `z_m`, `rotation_x_rad` and `rotation_y_rad`: with `rotation_rad`, about z, a rotation
     vector.
     """
-    text = io.TextIOWrapper(file, encoding="utf-8", newline="")
-    table = csv.writer(text, lineterminator="\n")
     poses = _poses(recording)
     names = _names(recording)
-    table.writerow(["time_s", "block", *poses])
     values = np.stack(list(poses.values()), axis=-1)
-    for time, frame in zip(_seconds(recording), values, strict=True):
-        rows = zip(names, frame.tolist(), strict=True)
-        table.writerows([time, name, *row] for name, row in rows)
-    text.flush()
-    text.detach()
+    rows = (
+        [time, name, *row]
+        for time, frame in zip(_seconds(recording), values, strict=True)
+        for name, row in zip(names, frame.tolist(), strict=True)
+    )
+    write_sheet(file, ["time_s", "block", *poses], rows)
 
 
 def write_recording_json(recording: Recording, file: BinaryIO) -> None:

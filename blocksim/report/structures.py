@@ -8,6 +8,7 @@ from dataclasses import asdict
 
 from blocksim.ask.bracket import Bracket
 from blocksim.ask.check import SOUGHT, ProblemCheck
+from blocksim.ask.ends import End
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState
@@ -81,6 +82,7 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
         "reason": answer.reason,
         "wall_s": answer.wall_s,
         "events": answer.events and [asdict(each) for each in answer.events],
+        "intervals": answer.intervals and [asdict(each) for each in answer.intervals],
     }
 
 
@@ -135,9 +137,34 @@ def bracket_lines(answer: Bracket) -> list[str]:
     lines.append(f"  because {answer.reason}")
     if answer.limit is not None:
         lines.append(f"  exact   {_number(answer.limit)}{unit} by limit analysis")
+    if (many := interval_words(answer)) is not None:
+        lines.append(f"  stands  {many}")
     if answer.undecided:
         lines.append(f"  unsure  {answer.undecided} of {answer.runs} values undecided")
     return lines
+
+
+def interval_words(answer: Bracket) -> str | None:
+    """Say between which values it stands; None where there is but one end."""
+    found = answer.intervals or ()
+    if sum(end is not None for each in found for end in (each.low, each.high)) < 2:
+        return None
+    said: list[str] = []
+    for each in found:
+        low = f"from {_end_words(each.low, answer)}" if each.low else ""
+        high = f"up to {_end_words(each.high, answer)}" if each.high else "on"
+        said.append(f"{low} {high}".strip())
+    return ", and ".join(said)
+
+
+def _end_words(end: End, answer: Bracket) -> str:
+    """Tell an end: the value of limit analysis, and those that an engine tried."""
+    said = [] if end.confirmed else ["not confirmed"]
+    if answer.method != "limit":
+        tried = (("stands", end.stands), ("falls", end.falls))
+        said = [f"{word} at {value:.9g}" for word, value in tried if value is not None] + said
+    unit = f" {answer.unit}" if answer.unit else ""
+    return f"{end.limit:.9g}{unit}" + (f" ({', '.join(said)})" if said else "")
 
 
 def tilt_and_lean(problem: Problem) -> dict[str, float]:

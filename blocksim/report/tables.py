@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import math
 import platform
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import blocksim
 from blocksim.common.files import AnyPath, json_text, make_folder, write_whole
+from blocksim.common.sheets import sheet_of
 from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
@@ -88,7 +88,7 @@ def write_results(
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If they cannot be written.
     """
     folder = Path(folder)
@@ -125,11 +125,7 @@ def write_results(
 
 def _sheet(records: Sequence[dict[str, object]]) -> bytes:
     """Return records, all with the same keys, as the content of a CSV file."""
-    sheet = io.StringIO()
-    writer = csv.DictWriter(sheet, fieldnames=list(records[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(records)
-    return sheet.getvalue().encode()
+    return sheet_of(list(records[0]), (list(each.values()) for each in records))
 
 
 def as_json(document: object) -> bytes:

@@ -208,6 +208,7 @@ def _words(label: Label) -> Text:
         fontsize=label.size,
         fontweight="bold" if label.bold else "normal",
         fontfamily="DejaVu Sans",
+        parse_math=False,
         ha=label.across,
         va="baseline",
         transform=IdentityTransform(),

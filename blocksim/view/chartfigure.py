@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from blocksim.studies.chart import Cost, Point, front
+from blocksim.view.drawing import literal
 from blocksim.view.style import FONT, METHODS, QUIET, UNNAMED
 
 
@@ -123,7 +124,7 @@ def _figure(picture: _Picture, everything: Sequence[Point]) -> Figure:
                 _draw_panel(axes, row, name, [p for p in everything if p.case == name])
             line[0].set_ylabel(row.y.label)
         for axes, name in zip(panels[0], names, strict=True):
-            title = name.replace(": ", "\n")
+            title = literal(name).replace(": ", "\n")
             if rows[0].x is NUMBER:
                 title = title.partition(", n ")[0]
             axes.set_title(title, fontsize=9, fontweight="normal")
@@ -187,7 +188,7 @@ def _range(row: _Row) -> tuple[float, float]:
 
 def _legend(points: Sequence[Point]) -> list[Line2D]:
     """Tell methods, knobs and marks apart."""
-    styles = {p.method: METHODS.get(p.method, UNNAMED) for p in points}
+    styles = {literal(p.method): METHODS.get(p.method, UNNAMED) for p in points}
     handles = [
         Line2D([], [], color=style.colour, marker=style.marker, ms=4.5, lw=1.2, label=method)
         for method, style in styles.items()

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
+from blocksim.common.words import printable
 from blocksim.view.style import FONT, JOINTS
 
 ARCH_WORDS = {
@@ -69,6 +70,11 @@ def round_length(length: float) -> float:
     """Largest 1, 2 or 5 times a power of ten that is no longer."""
     power = 10.0 ** math.floor(math.log10(length))
     return max(step * power for step in (1, 2, 5) if step * power <= length * (1 + 1e-9))
+
+
+def literal(text: str) -> str:
+    """Return text of a stranger for matplotlib, to which dollars begin formulas."""
+    return printable(text).replace("$", r"\$")
 
 
 def friction_words(mu: float) -> str:

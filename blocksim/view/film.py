@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.joints import JointState
-from blocksim.common.words import counted
+from blocksim.common.words import counted, printable
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import plain_arch
@@ -278,13 +278,12 @@ class Film:
                 f"{friction_words(problem.mu)}   n = {arch.voussoirs}"
             )
         elif problem.title:
-            head = problem.title
+            head = printable(problem.title)
             facts[1:1] = [count, friction_words(problem.mu)]
         else:
             head = f"{count}   {friction_words(problem.mu)}"
-        below = (
-            f"{', '.join(facts)}   {stage.recording.engine} {stage.recording.engine_version}"
-        )
+        run = stage.recording
+        below = printable(f"{', '.join(facts)}   {run.engine} {run.engine_version}")
         x, top, wide = panel.x + 24 * size, self.height, panel.width - 48 * size
         head = fitting(head, 20 * size, wide, bold=True)
         below = fitting(below, 15 * size, wide)

@@ -19,6 +19,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import following
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.version import __version__
+from blocksim.common.words import printable
 from blocksim.evidence.recording import Recording
 from blocksim.view.canvas import colour, stone_tones
 from blocksim.view.placing import centres_at, quaternions
@@ -171,8 +172,8 @@ class _Document:
 def _add_scene(made: _Document, recording: Recording) -> None:
     assembly, size = recording.assembly, recording.assembly.size
     made.extras = {
-        "title": recording.problem.title,
-        "engine": f"{recording.engine} {recording.engine_version}",
+        "title": printable(recording.problem.title),
+        "engine": printable(f"{recording.engine} {recording.engine_version}"),
         "state_hash": recording.state_hash,
         "gravity_g": recording.problem.gravity.tolist(),
     }
@@ -191,7 +192,7 @@ def _add_scene(made: _Document, recording: Recording) -> None:
     for at, block in enumerate(assembly.blocks):
         pieces = [part - block.centre for part in block.polygons]
         node = made.solid(
-            block.name or f"block {at}",
+            printable(block.name) or f"block {at}",
             _solid(pieces, block.depth),
             stones[at % len(stones)],
             translation=places[0, at].tolist(),
@@ -202,7 +203,7 @@ def _add_scene(made: _Document, recording: Recording) -> None:
     for at, footing in enumerate(stage.footings):
         made.solid(f"support {at}", _solid([footing * size], stage.depth * size), base)
     made.solid("ground", _ground(stage, size), made.material("ground", colour(PAPER)))
-    made.animation["name"] = recording.engine
+    made.animation["name"] = printable(recording.engine)
 
 
 def _linear(tone: Any) -> list[float]:

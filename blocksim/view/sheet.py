@@ -13,6 +13,7 @@ from blocksim.ask.carried import carried_of
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
+from blocksim.common.words import printable
 from blocksim.kinds.circular import plain_arch
 from blocksim.limit import Reaction, reactions
 from blocksim.limit.carried import Carried
@@ -129,7 +130,7 @@ def sheet_of(
         problem=problem,
         title=title_of(problem),
         facts=tuple(
-            ", ".join(word for word in words if word)
+            printable(", ".join(word for word in words if word))
             for words in (facts, built_words(problem), [unit.note])
             if any(words)
         ),
@@ -212,7 +213,7 @@ def _near(problem: Problem, line: ThrustLine) -> bool:
 def title_of(problem: Problem) -> str:
     """Return the title of a problem, or say what it is."""
     if problem.title and problem.title != (problem.maker and problem.maker.name):
-        return problem.title
+        return printable(problem.title)
     if problem.title:
         return problem.title.replace("-", " ").capitalize()
     if plain_arch(problem) is not None:

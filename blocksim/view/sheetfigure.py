@@ -22,7 +22,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.common.version import __version__
 from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
 from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
-from blocksim.view.drawing import round_length
+from blocksim.view.drawing import literal, round_length
 from blocksim.view.sheet import Sheet, scale_words
 from blocksim.view.sheetlayout import COLUMNS, LINE, MARGIN, TITLE, Layout, layout_of, wrapped
 from blocksim.view.structure import (
@@ -249,7 +249,7 @@ def _draw_words(
     paper, mm = layout.paper, layout.mm
 
     def write(x: float, y: float, words: str, **style: object) -> None:
-        figure.text(x / paper.width, y / paper.height, words, **style)  # type: ignore[arg-type]
+        figure.text(x / paper.width, y / paper.height, literal(words), **style)  # type: ignore[arg-type]
 
     if not bare:
         level = paper.height - MARGIN

@@ -29,6 +29,7 @@ from blocksim.view.drawing import (
     carried,
     clipped,
     friction_words,
+    literal,
     loading_words,
     outer_sides,
     round_length,
@@ -287,7 +288,7 @@ def _frame(figure: Figure, axes: Axes, shown: Array) -> None:
 def _title(axes: Axes, problem: Problem, verdict: str, told: Sequence[str] | None) -> None:
     blocks = len(problem.assembly.blocks)
     count = counted(blocks, "block")
-    title = textwrap.fill(problem.title or count, LINE)
+    title = textwrap.fill(literal(problem.title) or count, LINE)
     axes.set_title(title, fontsize=10.5, pad=20)
     facts = [
         verdict,

@@ -103,7 +103,7 @@ def render(
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If the film is too long or too large, or the file cannot be written.
     """
     out = Path(out)
@@ -121,7 +121,7 @@ def write_film(film: Frames, out: AnyPath, progress: Progress = silent) -> None:
 
     Raises
     ------
-    InputError
+    InputError, MachineError
         If the film is too long or too large, or the file cannot be written.
     """
     _require_bounded(film, Path(out).suffix.removeprefix("."))

@@ -265,6 +265,9 @@ def _least_share(arch: Arch, mu: float, precision: float) -> tuple[float, tuple[
         return _gap(bounds(share))
 
     low, high = 0.0, 1.0
+    if gap(low) >= 0:
+        # Three voussoirs can stand however thin they are.
+        return low, bounds(low)
     while gap(high) < 0:
         low, high = high, 2.0 * high
         if high > HOPELESS:

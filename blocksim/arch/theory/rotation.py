@@ -28,6 +28,7 @@ from blocksim.arch.theory.equations import BEYOND, ETA_MAX
 from blocksim.arch.theory.roots import root
 from blocksim.arch.theory.sliding import Thrusts
 from blocksim.blocks.assembly import Array
+from blocksim.common.files import write_whole
 from blocksim.common.later import Library
 from blocksim.common.series import p_series, r_series
 
@@ -217,7 +218,8 @@ def store() -> None:
         weight: {"widest": each.widest, "pieces": [piece.tolist() for piece in each.pieces]}
         for weight, each in found.items()
     }
-    STORED.write_text(json.dumps(table, indent=0) + "\n", encoding="utf-8")
+    text = json.dumps(table, indent=0) + "\n"
+    write_whole(STORED, lambda file: file.write(text.encode()))
 
 
 def solved(weight: Weight) -> Rotational:

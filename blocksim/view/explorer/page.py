@@ -17,6 +17,7 @@ from blocksim.arch.modes import Mode
 from blocksim.arch.theory import least_thicknesses
 from blocksim.arch.theory.critical import CROWN_ETA
 from blocksim.blocks.assembly import Array
+from blocksim.common.words import printed
 from blocksim.view.explorer.results import Result
 from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line, map_shapes
 from blocksim.view.style import FRICTION, MISS, MODES, THRUST, UNNAMED, VERDICTS
@@ -47,7 +48,11 @@ def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
     """
     loader = PackageLoader("blocksim.view.explorer", "")
     environment = Environment(
-        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        loader=loader,
+        autoescape=True,
+        undefined=StrictUndefined,
+        finalize=printed,
+        trim_blocks=True,
     )
     # JSON has no infinity; modes keep the order of the paper.
     environment.policies["json.dumps_kwargs"] = {"allow_nan": False}

@@ -11,6 +11,7 @@ from blocksim.arch.modes import Mode
 from blocksim.common.checks import is_number
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, json_of, read_file
+from blocksim.common.words import printable
 
 LARGEST_FILE = 20_000_000
 """Bytes: some 20,000 rows."""
@@ -103,8 +104,8 @@ def _result(row: dict[str, Any]) -> Result | None:
     name = "a mode without a name" if mode is None else f"mode {mode}"
     least = "no thickness stands" if high is None else f"least η from {low:.6g} to {high:.6g}"
     return Result(
-        scenario=str(row["scenario"]),
-        engine=str(row["engine"]),
+        scenario=printable(str(row["scenario"])),
+        engine=printable(str(row["engine"])),
         weight=row["weight"],
         alpha=alpha,
         mu=None if math.isinf(mu) else mu,
@@ -112,6 +113,6 @@ def _result(row: dict[str, Any]) -> Result | None:
         eta=eta,
         nothing_stands=high is None,
         mode=mode,
-        miss=str(row["miss"]),
+        miss=printable(str(row["miss"])),
         found=f"{least}, {name}",
     )

@@ -1,0 +1,88 @@
+"""All ends of the intervals in which a family stands, each tried to both sides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from blocksim.ask.families import Family
+
+if TYPE_CHECKING:
+    from blocksim.ask.bracket import Search
+
+Within = tuple[float, float]
+Ask = Callable[[float, Within, bool], "Search"]
+"""From a value of limit analysis, where to search around it, and whether it stands above it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """One end of an interval in which it stands.
+
+    Parameters
+    ----------
+    limit : float
+        The value of limit analysis.
+    falls, stands : float or None
+        The nearest values that collapsed and that stood.
+    confirmed : bool or None
+        As of `blocksim.ask.bracket.Search`.
+    """
+
+    limit: float
+    falls: float | None
+    stands: float | None
+    confirmed: bool | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stands:
+    """An interval in which it stands; an end is None where it goes on beyond the range."""
+
+    low: End | None
+    high: End | None
+
+
+def tried_ends(family: Family, first: Search, ask: Ask) -> tuple[Stands, ...] | None:
+    """Try all ends of the intervals that limit analysis knows; None where it knows none.
+
+    Parameters
+    ----------
+    family : Family
+    first : Search
+        What came of `family.exact()`.
+    ask : callable
+        What is asked at the other ends.
+    """
+    if family.intervals is None:
+        return None
+
+    def end(value: float, *, stands_above: bool) -> End | None:
+        if math.isinf(value):
+            return None
+        same = stands_above == (family.stands == "high") and value == family.exact()
+        found = first if same else ask(value, around(family, value), stands_above)
+        return End(
+            limit=value,
+            falls=found.falls,
+            stands=found.stands,
+            confirmed=found.confirmed,
+        )
+
+    return tuple(
+        Stands(low=end(each.low, stands_above=True), high=end(each.high, stands_above=False))
+        for each in family.intervals
+    )
+
+
+def around(family: Family, value: float) -> Within:
+    """Return where there is no change but this one: half of the way to the next, both ways."""
+    ends = [end for each in family.intervals or () for end in (each.low, each.high)]
+    below = [end for end in ends if end < value and math.isfinite(end)]
+    above = [end for end in ends if end > value and math.isfinite(end)]
+    return (
+        (max(below) + value) / 2 if below else family.low,
+        (min(above) + value) / 2 if above else family.high,
+    )

@@ -1,0 +1,179 @@
+"""Verdicts of limit analysis at any ratio of sizes and weights, and rounding; their proofs."""
+
+from __future__ import annotations
+
+import json
+import math
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from running import blocksim
+
+from blocksim import Arch, structure_of
+from blocksim.ask.archcheck import check as check_arch
+from blocksim.ask.bracket import bracket
+from blocksim.ask.check import check
+from blocksim.ask.families import family_of
+from blocksim.evidence.verdict import Verdict
+
+Table = dict[str, Any]
+BED = {"id": "bed", "fixed": True, "vertices": [[6, -1], [9, -1], [9, 0], [6, 0]]}
+
+
+def box(name: str, left: float, low: float, right: float, high: float) -> Table:
+    return {"id": name, "vertices": [[left, low], [right, low], [right, high], [left, high]]}
+
+
+def on_a_ramp(size: float, rise: float, friction: float, weight: float | None = None) -> Table:
+    """A square block on a ramp of 1 : 1 / rise, beside one of 1 m on level ground."""
+    along = np.array([1, rise]) / math.hypot(1, rise)
+    across = np.array([-along[1], along[0]])
+    foot = np.array([1, rise])
+    corners = [foot, foot + size * along, foot + size * (along + across), foot + size * across]
+    pebble: Table = {"id": "pebble", "vertices": [each.tolist() for each in corners]}
+    large: Table = box("large", 7, 0, 8, 1)
+    if weight is not None:
+        pebble["weight"], large["weight"] = weight, 1.0
+    ramp = {"id": "ramp", "fixed": True, "vertices": [[0, 0], [4, 0], [4, 4 * rise]]}
+    return {
+        "friction": friction,
+        "blocks": [ramp, pebble, BED, large],
+        "joints": [
+            {"a": "ramp", "b": "pebble", "ends": [each.tolist() for each in corners[:2]]},
+            {"a": "bed", "b": "large", "ends": [[7, 0], [8, 0]]},
+        ],
+    }
+
+
+def verdict(table: Table) -> Verdict:
+    return check(structure_of(table), method="limit").verdict
+
+
+@pytest.mark.parametrize("size", [1.0, 1e-2, 1e-3, 1e-4, 1e-5])
+def test_a_pebble_on_a_ramp_needs_the_same_friction_beside_any_block(
+    size: float,
+) -> None:
+    found = bracket(family_of(structure_of(on_a_ramp(size, 0.5, 0.5)), "mu"), method="limit")
+    assert found.limit == pytest.approx(0.5, rel=1e-9)
+    assert found.confirmed
+    for aside in (-1e-6, 1e-6):
+        assert verdict(on_a_ramp(size, 0.5, 0.5 * (1 + aside))) == (
+            Verdict.STANDS if aside > 0 else Verdict.COLLAPSES
+        )
+
+
+@pytest.mark.parametrize("weight", [1e-6, 1e-9, 1e-12])
+def test_a_light_block_slides_beside_a_heavy_one(weight: float) -> None:
+    assert verdict(on_a_ramp(1.0, 1.0, 0.5, weight)) == Verdict.COLLAPSES
+    assert verdict(on_a_ramp(1.0, 1.0, 1.1, weight)) == Verdict.STANDS
+
+
+@given(st.floats(-4.5, 0.0), st.sampled_from([-0.05, -1e-6, 1e-6, 0.05]), st.floats(0.5, 2.0))
+def test_a_pebble_overhangs_by_half_its_width(size: float, aside: float, height: float) -> None:
+    """On the edge of a block of 1 m; it tips beyond the middle of its base."""
+    width = 10**size
+    out = width * (0.5 + aside)
+    bed = {"id": "bed", "fixed": True, "vertices": [[-1, -1], [2, -1], [2, 0], [-1, 0]]}
+    pebble = box("pebble", 1 - width + out, 1, 1 + out, 1 + width * height)
+    table = {
+        "friction": 0.5,
+        "blocks": [bed, box("large", 0, 0, 1, 1), pebble],
+        "joints": [
+            {"a": "bed", "b": "large", "ends": [[0, 0], [1, 0]]},
+            {"a": "large", "b": "pebble", "ends": [[1 - width + out, 1], [1, 1]]},
+        ],
+    }
+    assert verdict(table) == (Verdict.COLLAPSES if aside > 0 else Verdict.STANDS)
+
+
+@given(
+    st.lists(st.floats(-1.5, 1.5), min_size=2, max_size=6),
+    st.sampled_from([-1e-6, 1e-6]),
+    st.floats(0.1, 2.0),
+)
+def test_a_column_of_unlike_drums_tips_where_it_must(
+    sizes: list[float], aside: float, slender: float
+) -> None:
+    """Square drums 30 times smaller to 30 times larger than 1 m, one upon the other."""
+    blocks: list[Table] = [
+        {"id": "bed", "fixed": True, "vertices": [[-99, -9], [99, -9], [99, 0], [-99, 0]]}
+    ]
+    joints: list[Table] = []
+    low, last, least = 0.0, math.inf, math.inf
+    widths = [10**each for each in sizes]
+    heights = [width * slender for width in widths]
+    for at, (width, height) in enumerate(zip(widths, heights, strict=True)):
+        blocks.append(box(str(at), -width / 2, low, width / 2, low + height))
+        half = min(width, last) / 2
+        joints.append(
+            {
+                "a": "bed" if at == 0 else str(at - 1),
+                "b": str(at),
+                "ends": [[-half, low], [half, low]],
+            }
+        )
+        above = [(w * h, sum(heights[at:k]) + h / 2)
+                 for k, (w, h) in enumerate(zip(widths, heights, strict=True)) if k >= at]  # fmt: skip
+        arm = sum(w * y for w, y in above) / sum(w for w, _ in above)
+        least = min(least, half / arm)
+        low, last = low + height, width
+    table = {"friction": "inf", "blocks": blocks, "joints": joints}
+    tilted = structure_of(table).tilted(math.atan(least * (1 + aside)))
+    found = check(tilted, method="limit").verdict
+    assert found == (Verdict.COLLAPSES if aside > 0 else Verdict.STANDS)
+
+
+def wall(courses: int, count: int, degrees: float, decimals: int, friction: float) -> Table:
+    """Bricks of 1 by 0.5 m in bond on a bed, turned, and rounded."""
+    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+
+    def turned(table: Table) -> Table:
+        corners = [[round(cos * x - sin * y, decimals), round(sin * x + cos * y, decimals)]
+                   for x, y in table["vertices"]]  # fmt: skip
+        return table | {"vertices": corners}
+
+    blocks = [turned(box("bed", -1, -1, count + 2, 0)) | {"fixed": True}]
+    for course in range(courses):
+        aside = 0.5 * (course % 2)
+        for at in range(count - course % 2):
+            left, low = aside + at, 0.5 * course
+            blocks.append(turned(box(f"{course}-{at}", left, low, left + 1, low + 0.5)))
+    return {"friction": friction, "blocks": blocks}
+
+
+@pytest.mark.parametrize("decimals", [8, 9, 10])
+@pytest.mark.parametrize("courses", [4, 5, 6])
+def test_walls_of_rounded_corners_are_answered(courses: int, decimals: int) -> None:
+    """All that is told of them, too. As for any rounding the friction has to be tan 10 deg."""
+    found = check(structure_of(wall(courses, 6, 10, decimals, 0.7)), method="limit")
+    assert found.verdict is Verdict.STANDS
+    carried = found.carried
+    assert carried is not None
+    # Half a brick overhangs at the ends of each other course: the least strength is of tipping.
+    assert carried.strength_used is not None
+    assert 0.2 < carried.strength_used < 1
+
+
+def test_a_wall_of_rounded_corners_is_drawn(tmp_path: Path) -> None:
+    file = tmp_path / "wall.json"
+    file.write_text(json.dumps(wall(6, 6, 10, 9, 0.7)))
+    done = blocksim("render", str(file), "--out", str(tmp_path / "wall.svg"))
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("degrees", [20, 90, 150])
+@pytest.mark.parametrize("eta", [0.05, 0.5])
+def test_three_voussoirs_without_bound_on_friction(degrees: float, eta: float) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        arch = Arch(half_angle=math.radians(degrees), eta=eta, voussoirs=3)
+        found = check_arch(arch, mu=math.inf, method="limit")
+        assert found.verdict is Verdict.STANDS
+        assert found.carried is not None
+        assert found.carried.strength_used == 0
+        assert found.carried.resultants is not None
