@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from running import blocksim
 
 from blocksim import Arch, structure_of
-from blocksim.ask.archcheck import check as check_arch
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import CircularArch
 
 Table = dict[str, Any]
 BED = {"id": "bed", "fixed": True, "vertices": [[6, -1], [9, -1], [9, 0], [6, 0]]}
@@ -172,7 +172,7 @@ def test_three_voussoirs_without_bound_on_friction(degrees: float, eta: float) -
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         arch = Arch(half_angle=math.radians(degrees), eta=eta, voussoirs=3)
-        found = check_arch(arch, mu=math.inf, method="limit")
+        found = check(CircularArch.of(arch, friction=math.inf), method="limit")
         assert found.verdict is Verdict.STANDS
         assert found.carried is not None
         assert found.carried.strength_used == 0

@@ -13,11 +13,12 @@ import math
 from functools import partial
 
 from blocksim.blocks.problem import Problem
-from blocksim.common.errors import InputError
+from blocksim.common.errors import InputError, MissingPart
 from blocksim.common.later import Later
 from blocksim.engines import ENGINES
 from blocksim.engines.base import Engine, Method
 from blocksim.evidence.simulation import BY_RULE, Overrides, require_setting
+from blocksim.kinds.offers import offers_of
 
 _STATICS = (
     Method(
@@ -47,7 +48,7 @@ CHOICES = ("auto", *METHODS)
 
 
 def choose(
-    method: str,
+    method: str | Method,
     tol: float = 0.0,
     *,
     problem: Problem | None = None,
@@ -59,8 +60,8 @@ def choose(
 
     Parameters
     ----------
-    method : str
-        One of `CHOICES`.
+    method : str or Method
+        One of `CHOICES`, or a method itself.
     tol : float
         Relative width of the bracket asked for, 0 where there is none.
     problem : Problem, optional
@@ -79,7 +80,7 @@ def choose(
         nothing or does not see out of the plane where that is asked, or knows no such
         setting; if there is nothing to reduce.
     """
-    if method not in CHOICES:
+    if isinstance(method, str) and method not in CHOICES:
         raise InputError("method", method, f"one of {', '.join(CHOICES)}")
     if method == "auto":
         able = (
@@ -93,13 +94,13 @@ def choose(
         if rung is None:
             raise InputError("method", method, f"another: {_beyond(METHODS[SPATIAL], problem)}")
     else:
-        rung = METHODS[method]
+        rung = METHODS[method] if isinstance(method, str) else method
     beyond = _beyond(rung, problem)
     if beyond:
-        raise InputError("method", method, beyond)
+        raise InputError("method", rung.name, beyond)
     if moving and rung.is_static:
         able = ", ".join(ENGINES)
-        raise InputError("method", method, f"one of {able}: {rung.name} moves no blocks")
+        raise InputError("method", rung.name, f"one of {able}: {rung.name} moves no blocks")
     still = problem is None or (problem.is_planar and problem.shaking is None)
     if reduce and not (still and _can_reduce(rung)):
         able = ", ".join(each.name for each in ENGINES.values() if _can_reduce(each))
@@ -125,7 +126,8 @@ def _beyond(method: Method, problem: Problem | None) -> str:
     if problem.shaking and not (isinstance(method, Engine) and method.shakes):
         able = ", ".join(each.name for each in ENGINES.values() if each.shakes)
         return f"one of {able}: {method.name} knows no ground that shakes"
-    if method.name == "theory" and problem.length_name != "r":
+    offered = offers_of(problem) if method.name == "theory" else None
+    if method.name == "theory" and (offered is None or "theory" not in offered.methods):
         return "limit or an engine: theory is of symmetric circular arches only"
     return ""
 
@@ -150,7 +152,7 @@ def merges(method: Method, reduce: bool | None, problem: Problem) -> bool:
     return still and isinstance(method, Engine) and method.merges
 
 
-def chosen_words(method: str, rung: Method) -> str:
+def chosen_words(method: str | Method, rung: Method) -> str:
     """Say what `auto` took and why, to be added to the reason of an answer."""
     if method != "auto":
         return ""
@@ -160,6 +162,20 @@ def chosen_words(method: str, rung: Method) -> str:
         seen = "sees the blocks as built" if rung.is_static else "can move blocks"
     fine = f"brackets down to {rung.finest:g}" if rung.finest else "is exact"
     return f"; auto took {rung.name}, the cheapest method that {seen} and {fine}"
+
+
+def engine_of(method: Method) -> Engine:
+    """Return a method that moves blocks as what moves them.
+
+    Raises
+    ------
+    MissingPart
+        If its library is not installed.
+    """
+    assert isinstance(method, Engine)  # noqa: S101
+    if method.missing:
+        raise MissingPart(method.name, method.missing)
+    return method
 
 
 def missing(method: Method) -> str | None:
