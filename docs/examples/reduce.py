@@ -5,13 +5,9 @@ An arch of 301 voussoirs is within 0.05 % of the continuous one, 0.107426.
 
 from blocksim import CircularArch, bracket, check
 
-ARCH = CircularArch(half_angle_deg=90, eta=0.1, voussoirs=301, friction=0.7)
-found = bracket(
-    ARCH,
-    method="direct",
-    tol=0.001,
-    reduce=True,
-)
+ARCH = CircularArch(half_angle_deg=90, voussoirs=301, weight="centreline", friction=0.7)
+
+found = bracket(ARCH, method="direct", tol=0.001, reduce=True)
 print(f"between {found.arch.eta_low:.6f} and {found.arch.eta_high:.6f}")
 
 # In a notebook the next line alone shows words and a drawing.
