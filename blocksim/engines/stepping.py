@@ -47,7 +47,7 @@ the velocity of the impact."""
 LOCATED = 1e-10
 """Overlap at an impact that is none [size]."""
 ROUNDS, MOST_PARTS = 5, 4
-"""Most looks for one moment, and most impacts in a step, after which contacts close slowly."""
+"""Most looks for one moment, and most impacts in a step, before it is one of first order."""
 LEAST = 1e-9
 """Share of a step that is none."""
 SHORT = 0.1
@@ -83,13 +83,11 @@ class Stepping:
         self._problem = self._new_problem()
         self._looked: Array = self._poses
         self._velocities: Array = np.zeros_like(self._poses)
-        self._turning = problem.turns_pull
+        self._turning, self._time = problem.turns_pull, 0.0
         self._free = self._still = problem.pull() / self._mass
-        self._time = 0.0
         self._solution: Solution | None = None
         self._speeding = np.zeros_like(self._poses)
-        self._usual = 0.0
-        self._residual = self._penetration = 0.0
+        self._usual = self._residual = self._penetration = 0.0
         self._way: float = 0.0
 
     def _move(self, step: float) -> None:
@@ -112,15 +110,16 @@ class Stepping:
             step, halvings = step / 2, halvings - 1
             passing = self._smooth(step)
         if not passing.any():
-            self._push_apart()
+            if self._residual <= UNSOLVED:
+                self._push_apart()
             return step
         if located and self._fastest(passing) * step > MATTERS * self._accuracy:
             taken = self._to_impact(before, step, passing)
             if taken is not None:
                 return taken
         vars(self).update(before)
-        self._closing(step)
-        self._push_apart()
+        if self._closing(step):
+            self._push_apart()
         return step
 
     def _to_impact(
@@ -243,8 +242,8 @@ class Stepping:
         self._solution = replace(last, contacts=found.contacts)
         return True
 
-    def _closing(self, step: float) -> None:
-        """Take a step of first order in which what is open may close, but not pass."""
+    def _closing(self, step: float) -> bool:
+        """Take a step of first order, if it is solved: what is open closes, not passes."""
         self._drive(step)
         self._looked = self._poses + step / 2 * self._velocities
         self._pull()
@@ -254,9 +253,11 @@ class Stepping:
         gap = touch.gap - step / 2 * rates[:, :2]
         rates[:, :2] += np.where(gap > self._closed(touch), gap, 0.0) / step
         solution = self._solve(touch, rates / step, PRECISION)
-        if solution.residual <= UNSOLVED:
-            self._advance(step, step * solution.acceleration, 1.0)
-            self._end = self._neighbours.again(self._poses)
+        if not solution.residual <= UNSOLVED:
+            return False
+        self._advance(step, step * solution.acceleration, 1.0)
+        self._end = self._neighbours.again(self._poses)
+        return True
 
     def _advance(self, step: float, gained: Array, share: float) -> None:
         """Go on with velocities that gain, and with a share of that on the way."""
