@@ -82,7 +82,13 @@ class ArchCheck(Check):
         """The proof of the verdict by limit analysis; None where there is none."""
         if self.method != "limit":
             return None
-        found = equilibrium(arch_problem(self.arch, self.mu)).proof
+        from blocksim.limit.proof import proof_of_rest
+
+        problem, found = arch_problem(self.arch, self.mu), None
+        if self.carried is not None and self.carried.forces is not None:
+            found = proof_of_rest(problem, self.carried.forces)
+        if found is None:
+            found = equilibrium(problem).proof
         return found if found is not None and found.claim == self.verdict.value else None
 
     @cached_property

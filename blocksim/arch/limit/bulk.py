@@ -106,10 +106,11 @@ def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> I
     Intervals
     """
     if joints.angles.shape[1] > FEW:
-        each = zip(np.sort(joints.angles), depth, mu, spread, strict=True)
-        ends = [thrust_bounds(Joints(a[None]), *map(float, known)) for a, *known in each]
-        short = np.array([[bound.short for bound in both] for both in ends])
-        return Intervals(*short.T)
+        known = zip(np.sort(joints.angles), depth, mu, spread, strict=True)
+        bounds = [
+            thrust_bounds(Joints(a[None]), float(d), float(m), float(s)) for a, d, m, s in known
+        ]
+        return Intervals(*np.array([[low.short, high.short] for low, high in bounds]).T)
     turns = turning(joints, depth, spread)
     highest, lowest = turns.ends()
     most, least = highest.min(axis=(1, 2)), lowest.max(axis=(1, 2))

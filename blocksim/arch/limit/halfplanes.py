@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,9 +82,9 @@ class Joints:
         self.bow = -(square**2) * p_series(square)
         self.lag = angles**3 * lag_series(square)
         many = angles.shape[1]
-        self._looked_at = np.arange(many)
+        self._looked_at: NDArray[np.int64] = np.arange(many)
         if many > FEW:
-            self._looked_at = np.linspace(0, many - 1, FEW).round().astype(np.int64)
+            self._looked_at = np.arange(FEW) * (many - 1) // (FEW - 1)
         self._few: Joints | None = None
 
     @property
@@ -100,7 +100,7 @@ class Joints:
         """Look at more of them; tell whether they are new."""
         new = places - set(self._looked_at.tolist())
         if new:
-            self._looked_at = np.union1d(self._looked_at, np.array(sorted(new)))
+            self._looked_at = np.sort([*self._looked_at.tolist(), *new])
             self._few = None
         return bool(new)
 
@@ -194,7 +194,7 @@ def least_met(
         if not np.isfinite(short):
             continue
         side = "right" if way < 0 else "left"
-        bound = np.searchsorted(rate_j, -rate_i, side)
+        bound: Any = np.searchsorted(rate_j, -rate_i, side)
         rest_i, rest_j = level_i - short * rate_i, level_j - short * rate_j
         # The least from each joint on to the end, or up to it; none beyond the last.
         least = np.append(np.minimum.accumulate(rest_j[::way])[::way], np.inf)
