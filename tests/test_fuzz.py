@@ -5,7 +5,7 @@ Briefly in every run. For longer, which prints how often each fault was seen:
     BLOCKSIM_FUZZ_MINUTES=20 pytest -n 0 -s -m long tests/test_fuzz.py
 
 What breaks something is kept in `out/fuzz`; mended, it goes to `tests/corpus`, a folder each
-with the files and `words.json`, the words of the command. The corpus is where attacks begin, too.
+with the files and `words.json`, the words of the command. Attacks begin there, too.
 """
 
 from __future__ import annotations
