@@ -37,11 +37,11 @@ from blocksim import Arch, bracket, check
 from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.bulk import which_stand
 from blocksim.arch.theory.arrays import least_thicknesses
-from blocksim.ask.archmotion import simulate
+from blocksim.ask.simulate import simulate
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines import ENGINES
 from blocksim.evidence.observation import hold
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.files import structure_of
 from blocksim.report.tables import processor
 from blocksim.view.film import Film
@@ -164,9 +164,11 @@ def tasks(*, quick: bool) -> dict[str, Task]:
             found |= _of_engine(name, below, above)
     found |= _large(quick=quick)
     found[f"direct, collapse of {COLLAPSE:g} s"] = lambda: simulate(
-        below, mu=MU, method="direct", duration=COLLAPSE / arch_problem(below, MU).seconds
+        CircularArch.of(below, friction=MU),
+        method="direct",
+        duration=COLLAPSE / arch_problem(below, MU).seconds,
     )
-    falling = simulate(below, mu=MU, method="direct", duration=2.0)
+    falling = simulate(CircularArch.of(below, friction=MU), method="direct", duration=2.0)
     frames = 2 if quick else 50
     film = Film([falling], height=480)
     found[f"film, {frames} frames"] = lambda: [
@@ -179,9 +181,13 @@ def _of_engine(engine: str, below: Arch, above: Arch) -> dict[str, Task]:
     tol = TOLERANCES.get(engine, COARSE)
     return {
         f"{engine}, onset test": lambda: hold(arch_problem(above, MU), engine),
-        f"{engine}, check": lambda: check(below, mu=MU, method=engine),
+        f"{engine}, check": lambda: check(CircularArch.of(below, friction=MU), method=engine),
         f"{engine}, bracket to {tol:g}": lambda: bracket(
-            half_angle=ALPHA, mu=MU, voussoirs=below.voussoirs, method=engine, tol=tol
+            CircularArch(
+                half_angle=ALPHA, friction=MU, voussoirs=below.voussoirs, weight="centreline"
+            ),
+            method=engine,
+            tol=tol,
         ),
     }
 
@@ -204,7 +210,9 @@ def _large(*, quick: bool) -> dict[str, Task]:
         voussoirs = 5 if quick else 27
         least = least_thickness(THIN, MU, voussoirs).eta or 0.1
         thin = Arch(half_angle=THIN, eta=1.01 * least, voussoirs=voussoirs)
-        found["pymunk, check at 30 deg"] = lambda: check(thin, mu=MU, method="pymunk")
+        found["pymunk, check at 30 deg"] = lambda: check(
+            CircularArch.of(thin, friction=MU), method="pymunk"
+        )
     return found
 
 

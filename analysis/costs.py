@@ -25,6 +25,7 @@ from analysis.rows import write_rows
 from blocksim import Arch, bracket, check
 from blocksim.arch.limit import least_thickness
 from blocksim.ask.methods import METHODS, missing
+from blocksim.kinds.circular import CircularArch
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (155, 3.0), (65, 0.6))
 """Half-angle [deg] and friction."""
@@ -77,7 +78,11 @@ def _checks(method: str, arches: tuple[tuple[float, float], ...]) -> Cost:
             arch = Arch(
                 half_angle=math.radians(degrees), eta=least * ratio, voussoirs=VOUSSOIRS
             )
-            took, said = _timed(lambda a=arch, m=mu: check(a, mu=m, method=method).verdict)
+            took, said = _timed(
+                lambda a=arch, m=mu: (
+                    check(CircularArch.of(a, friction=m), method=method).verdict
+                )
+            )
             # The continuous arch differs from that of 27 voussoirs by up to 2 %.
             if said != right and method != "theory":
                 sys.stderr.write(f"{method}, {degrees} deg at {ratio}: {said}\n")
@@ -90,7 +95,14 @@ def _brackets(method: str, arches: tuple[tuple[float, float], ...], tol: float) 
     for degrees, mu in arches:
         took, found = _timed(
             lambda d=degrees, m=mu: bracket(
-                half_angle=math.radians(d), mu=m, voussoirs=VOUSSOIRS, method=method, tol=tol
+                CircularArch(
+                    half_angle=math.radians(d),
+                    friction=m,
+                    voussoirs=VOUSSOIRS,
+                    weight="centreline",
+                ),
+                method=method,
+                tol=tol,
             )
         )
         seconds.append(took)

@@ -31,7 +31,7 @@ from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
 from blocksim.common.processes import crew
 from blocksim.evidence.observation import observe
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
@@ -77,10 +77,12 @@ def chosen(count: int, seed: int, most_voussoirs: int = 101) -> Iterator[Draw]:
 def ask(draw: Draw) -> Outcome:
     """Bracket one arch, and hold it a hair to either side of the exact value."""
     found = bracket(
-        half_angle=draw.half_angle,
-        mu=draw.mu,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
+        CircularArch(
+            half_angle=draw.half_angle,
+            friction=draw.mu,
+            voussoirs=draw.voussoirs,
+            weight=draw.weight,
+        ),
         method="direct",
         tol=TOL,
     )
@@ -90,11 +92,11 @@ def ask(draw: Draw) -> Outcome:
     )
     return Outcome(
         draw=draw,
-        error=math.inf if found.centre is None else found.centre / draw.eta - 1,
+        error=math.inf if found.arch.centre is None else found.arch.centre / draw.eta - 1,
         confirmed=bool(found.confirmed),
         below=below,
         above=above,
-        mode=found.mode,
+        mode=found.arch.mode,
         wall_s=found.wall_s,
     )
 

@@ -37,6 +37,7 @@ from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import bracket
 from blocksim.arch.limit import least_thickness
+from blocksim.kinds.circular import CircularArch
 from blocksim.view.style import FONT, QUIET
 
 SEED = 2024
@@ -119,20 +120,22 @@ def ask(draw: Draw, engine: str) -> Row:
     """Bracket one arch."""
     started = time.process_time()
     found = bracket(
-        half_angle=draw.half_angle,
-        mu=draw.mu,
-        voussoirs=draw.voussoirs,
-        weight=draw.weight,
+        CircularArch(
+            half_angle=draw.half_angle,
+            friction=draw.mu,
+            voussoirs=draw.voussoirs,
+            weight=draw.weight,
+        ),
         method=engine,
         tol=PLANS[engine].tol,
         reduce=False,
     )
     return {
-        "low": found.eta_low and found.eta_low / draw.eta - 1,
-        "high": found.eta_high and found.eta_high / draw.eta - 1,
+        "low": found.arch.eta_low and found.arch.eta_low / draw.eta - 1,
+        "high": found.arch.eta_high and found.arch.eta_high / draw.eta - 1,
         "confirmed": found.confirmed,
         "undecided": found.undecided,
-        "mode": found.mode,
+        "mode": found.arch.mode,
         "cpu_s": time.process_time() - started,
     }
 

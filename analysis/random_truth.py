@@ -44,6 +44,7 @@ from analysis.saved_answers import Row, answers
 from blocksim import Problem, check
 from blocksim.ask.check import check as check_problem
 from blocksim.common.errors import BlocksimError
+from blocksim.kinds.circular import CircularArch
 
 PROBLEMS = 10_000
 MOST = {"": 24, "pymunk": 20, "pybullet": 12}
@@ -118,7 +119,7 @@ def said(index: int, method: str, change: str = "") -> tuple[str, str]:
     try:
         if asked.arch is not None and not change:
             arch, mu = asked.arch
-            found = check(arch, mu=mu, method=method)
+            found = check(CircularArch.of(arch, friction=mu), method=method)
         else:
             found = check_problem(changed(asked.problem, change, index), method=method)
     except BlocksimError as error:

@@ -29,6 +29,7 @@ from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim import check
 from blocksim.arch.limit import least_thickness
+from blocksim.kinds.circular import CircularArch
 
 SEED = 1919
 DEGREES, FRICTIONS = (20.0, 159.0), (0.3, 3.5)
@@ -86,7 +87,11 @@ def arches(counts: tuple[int, int]) -> Iterator[Draw]:
 def ask(case: Case) -> Row:
     """Check one arch."""
     draw, started = case.draw, time.process_time()
-    seen = check(draw.arch(case.ratio), mu=draw.mu, method=case.engine, reduce=case.reduce)
+    seen = check(
+        CircularArch.of(draw.arch(case.ratio), friction=draw.mu),
+        method=case.engine,
+        reduce=case.reduce,
+    )
     taken = time.process_time() - started
     expected = "collapses" if case.ratio < 1 else "stands"
     return {

@@ -34,7 +34,7 @@ from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
 from blocksim.evidence.observation import Observation, observe
 from blocksim.evidence.onset import PROBE, Onset
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.view.style import FONT, INK, METHODS
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (154, 2.6))
@@ -118,10 +118,12 @@ def ask(row: tuple[str, float, float, Weight, int]) -> Row | None:
     def timed(*, reduce: bool) -> tuple[Bracket, float]:
         started = time.process_time()
         found = bracket(
-            half_angle=math.radians(half_angle_deg),
-            mu=mu,
-            voussoirs=voussoirs,
-            weight=weight,
+            CircularArch(
+                half_angle=math.radians(half_angle_deg),
+                friction=mu,
+                voussoirs=voussoirs,
+                weight=weight,
+            ),
             method=engine,
             tol=TOLERANCES[engine],
             reduce=reduce,

@@ -19,66 +19,127 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from blocksim.arch.circular import Arch
     from blocksim.arch.modes import Mode
-    from blocksim.ask.archbracket import Bracket, bracket
-    from blocksim.ask.archcheck import ArchCheck, check
-    from blocksim.ask.archmotion import simulate
+    from blocksim.ask.bracket import Bracket, bracket
+    from blocksim.ask.check import Check, check
+    from blocksim.ask.citing import cite
+    from blocksim.ask.options import Options
+    from blocksim.ask.simulate import simulate
     from blocksim.blocks.assembly import Assembly, Block, Joint
+    from blocksim.blocks.given import Body, GivenJoint
     from blocksim.blocks.joints import JointState
+    from blocksim.blocks.maker import Built, Fill, Made, Maker, Table, count, metres, parameter
     from blocksim.blocks.problem import Load, Problem
-    from blocksim.common.errors import (
-        BlocksimError,
-        InputError,
-        MachineError,
-        MissingPart,
-    )
+    from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
     from blocksim.evidence.recording import Recording
-    from blocksim.evidence.verdict import Verdict
+    from blocksim.evidence.verdict import Evidence, Verdict
+    from blocksim.kinds.arcade import Arcade
+    from blocksim.kinds.basket import BasketHandleArch
+    from blocksim.kinds.catenary import CatenaryArch
+    from blocksim.kinds.circular import CircularArch
+    from blocksim.kinds.column import Column
+    from blocksim.kinds.elliptic import EllipticArch
     from blocksim.kinds.files import load_structure, structure_of
+    from blocksim.kinds.flat import FlatArch
+    from blocksim.kinds.loading import load
+    from blocksim.kinds.offers import Offers
+    from blocksim.kinds.parabolic import ParabolicArch
+    from blocksim.kinds.pointed import PointedArch
+    from blocksim.kinds.portal import Portal
     from blocksim.kinds.recorded import load_recording
+    from blocksim.kinds.rubble import Rubble
+    from blocksim.kinds.stack import Stack
+    from blocksim.kinds.wall import Wall
     from blocksim.limit import collapse, equilibrium
 
 __all__ = [
+    "Arcade",
     "Arch",
-    "ArchCheck",
     "Assembly",
+    "BasketHandleArch",
     "Block",
     "BlocksimError",
+    "Body",
     "Bracket",
+    "Built",
+    "CatenaryArch",
+    "Check",
+    "CircularArch",
+    "Column",
+    "EllipticArch",
+    "Evidence",
+    "Fill",
+    "FlatArch",
+    "GivenJoint",
     "InputError",
     "Joint",
     "JointState",
     "Load",
     "MachineError",
+    "Made",
+    "Maker",
     "MissingPart",
     "Mode",
+    "Offers",
+    "Options",
+    "ParabolicArch",
+    "PointedArch",
+    "Portal",
     "Problem",
     "Recording",
+    "Rubble",
+    "Stack",
+    "Table",
     "Verdict",
+    "Wall",
     "__version__",
     "bracket",
     "check",
+    "cite",
     "collapse",
+    "count",
     "equilibrium",
+    "load",
     "load_recording",
     "load_structure",
+    "metres",
+    "parameter",
     "simulate",
     "structure_of",
 ]
 
 _PLACES = {
-    "ask.archbracket": ("Bracket", "bracket"),
-    "ask.archcheck": ("ArchCheck", "check"),
     "arch.circular": ("Arch",),
     "arch.modes": ("Mode",),
-    "ask.archmotion": ("simulate",),
+    "ask.bracket": ("Bracket", "bracket"),
+    "ask.check": ("Check", "check"),
+    "ask.citing": ("cite",),
+    "ask.options": ("Options",),
+    "ask.simulate": ("simulate",),
     "blocks.assembly": ("Assembly", "Block", "Joint"),
+    "blocks.given": ("Body", "GivenJoint"),
     "blocks.joints": ("JointState",),
+    "blocks.maker": ("Built", "Fill", "Made", "Maker", "Table", "count", "metres", "parameter"),
     "blocks.problem": ("Load", "Problem"),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "evidence.recording": ("Recording",),
-    "evidence.verdict": ("Verdict",),
+    "evidence.verdict": ("Evidence", "Verdict"),
+    "kinds.arcade": ("Arcade",),
+    "kinds.basket": ("BasketHandleArch",),
+    "kinds.catenary": ("CatenaryArch",),
+    "kinds.circular": ("CircularArch",),
+    "kinds.column": ("Column",),
+    "kinds.elliptic": ("EllipticArch",),
     "kinds.files": ("load_structure", "structure_of"),
+    "kinds.flat": ("FlatArch",),
+    "kinds.loading": ("load",),
+    "kinds.offers": ("Offers",),
+    "kinds.parabolic": ("ParabolicArch",),
+    "kinds.pointed": ("PointedArch",),
+    "kinds.portal": ("Portal",),
     "kinds.recorded": ("load_recording",),
+    "kinds.rubble": ("Rubble",),
+    "kinds.stack": ("Stack",),
+    "kinds.wall": ("Wall",),
     "limit": ("collapse", "equilibrium"),
 }
 """Where the public names are; each is loaded when it is first used."""

@@ -15,12 +15,11 @@ from functools import lru_cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
+from blocksim.arch.answers import ArchBracket
 from blocksim.arch.circular import Arch
 from blocksim.arch.theory import least_thickness
-from blocksim.ask.archbracket import Bracket as ArchBracket
-from blocksim.ask.archcheck import ArchCheck
 from blocksim.ask.bracket import Bracket
-from blocksim.ask.check import ProblemCheck
+from blocksim.ask.check import Check
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
@@ -60,10 +59,8 @@ def dict_of(shown: object) -> dict[str, Any]:
     found: dict[type, Callable[[Any], dict[str, object]]] = {
         Arch: _arch_record,
         Problem: structure_record,
-        ArchCheck: answers.check_record,
-        ProblemCheck: structures.check_record,
-        ArchBracket: answers.bracket_record,
-        Bracket: structures.bracket_record,
+        Check: lambda seen: _words_of(seen).check_record(seen),
+        Bracket: lambda found: _words_of(found).bracket_record(found),
         Recording: recording_record,
     }
     return json.loads(json_text(found[type(shown)](shown)))
@@ -78,10 +75,8 @@ def lines_of(shown: object) -> list[str]:
             f"  what    {structures.described(replace(problem, title=''))}",
             *problem_size_lines(problem),
         ],
-        ArchCheck: answers.check_lines,
-        ProblemCheck: structures.check_lines,
-        ArchBracket: answers.bracket_lines,
-        Bracket: structures.bracket_lines,
+        Check: lambda seen: _words_of(seen).check_lines(seen),
+        Bracket: lambda found: _words_of(found).bracket_lines(found),
         Recording: lambda run: [
             f"Recording by {run.engine}",
             *(f"  motion  {line.strip()}" for line in _recording_lines(run)),
@@ -107,9 +102,7 @@ def figure_of(shown: object) -> Figure:
     found: dict[type, Callable[[Any], Figure]] = {
         Arch: _arch_figure,
         Problem: _problem_figure,
-        ArchCheck: _arch_check_figure,
-        ProblemCheck: _check_figure,
-        ArchBracket: _arch_bracket_figure,
+        Check: _check_figure,
         Bracket: _bracket_figure,
         Recording: _recording_figure,
     }
@@ -140,6 +133,11 @@ def html_of(shown: object) -> str:
         for line in lines
     )
     return f"<div><strong>{head.strip()}</strong><table>{rows}</table>{svg_of(shown)}</div>"
+
+
+def _words_of(answer: Check | Bracket) -> Any:
+    """Return what words an answer: of an arch, or of anything else."""
+    return structures if answer.arch is None else answers
 
 
 def _recording_lines(recording: Recording) -> list[str]:
@@ -177,50 +175,47 @@ def _problem_figure(problem: Problem) -> Figure:
     return problem_figure(problem)
 
 
-def _arch_check_figure(answer: ArchCheck) -> Figure:
+def _check_figure(answer: Check) -> Figure:
     from blocksim.view.archfigure import arch_figure, picture_of_arch
     from blocksim.view.structure import problem_figure
 
-    if answer.method == "limit" and not answer.lean:
-        return arch_figure([picture_of_arch(answer.arch, answer.mu)])
-    problem = arch_problem(answer.arch, answer.mu, answer.lean)
     states = tuple(joint.state for joint in answer.joints)
-    return problem_figure(
-        problem, verdict=f"{answer.verdict}, by {answer.method}", states=states
-    )
+    verdict = f"{answer.verdict}, by {answer.method}"
+    if answer.arch is None:
+        return problem_figure(
+            answer.problem,
+            verdict=verdict,
+            forces=answer.forces,
+            mechanism=answer.mechanism,
+            states=states,
+        )
+    if answer.method == "limit":
+        return arch_figure([picture_of_arch(answer.arch.shape, answer.problem.mu)])
+    return problem_figure(answer.problem, verdict=verdict, states=states)
 
 
-def _check_figure(answer: ProblemCheck) -> Figure:
-    from blocksim.view.structure import problem_figure
-
-    return problem_figure(
-        answer.problem,
-        verdict=f"{answer.verdict}, by {answer.method}",
-        forces=answer.forces,
-        mechanism=answer.mechanism,
-        states=tuple(joint.state for joint in answer.joints),
-    )
-
-
-def _arch_bracket_figure(answer: ArchBracket) -> Figure:
+def _arch_bracket_figure(of: ArchBracket, answer: Bracket) -> Figure:
     from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
 
-    if answer.method == "theory" and answer.eta_high is not None:
-        shape = answer.half_angle, answer.mu, answer.weight
+    arch, mu = of.shape, answer.problem.mu
+    if answer.method == "theory" and of.eta_high is not None:
+        shape = arch.half_angle, mu, arch.weight
         critical = least_thickness(*shape)
         return arch_figure([picture_of_theory(critical, critical.mode, *shape)])
-    eta = ETA_MAX if answer.eta_high is None else answer.eta_high or THIN
-    arch = Arch(
-        half_angle=answer.half_angle,
+    eta = ETA_MAX if of.eta_high is None else of.eta_high or THIN
+    least = Arch(
+        half_angle=arch.half_angle,
         eta=eta,
-        voussoirs=answer.voussoirs,
-        weight=answer.weight,
-        depth=answer.depth,
+        voussoirs=arch.voussoirs,
+        weight=arch.weight,
+        depth=arch.depth / arch.radius,
     )
-    return arch_figure([picture_of_arch(arch, answer.mu)])
+    return arch_figure([picture_of_arch(least, mu)])
 
 
 def _bracket_figure(answer: Bracket) -> Figure:
+    if answer.arch is not None:
+        return _arch_bracket_figure(answer.arch, answer)
     from blocksim.view.rangefigure import range_figure
 
     return range_figure(answer)

@@ -9,12 +9,13 @@ import numpy as np
 
 from blocksim.arch import limit
 from blocksim.arch.circular import Arch, Weight
-from blocksim.ask.archbracket import Bracket, bracket
+from blocksim.ask.bracket import Bracket, bracket
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine
 from blocksim.evidence.onset import onset
 from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.circular import CircularArch
 
 
 def arch_at(
@@ -38,10 +39,9 @@ def bracket_at(
 ) -> Bracket:
     """The bracket of an arch whose half-angle is given in degrees."""
     return bracket(
-        half_angle=math.radians(angle),
-        mu=mu,
-        voussoirs=count,
-        weight=weight,
+        CircularArch(
+            half_angle=math.radians(angle), friction=mu, voussoirs=count, weight=weight
+        ),
         method=method,
         tol=tol,
     )

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 
 from blocksim.arch import limit, theory
 from blocksim.arch.modes import Mode
-from blocksim.ask.archbracket import bracket
+from blocksim.ask.bracket import bracket
 from blocksim.ask.search import ETA_MAX, Answer, Bisection
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.evidence.observation import Held, hold
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import CircularArch, plain_arch
 
 tolerances = st.floats(1e-4, 0.3)
 thresholds = st.floats(1e-3, 1.99)
@@ -165,30 +165,34 @@ def test_nothing_beyond_the_range_is_asked(
 )
 def test_static_methods(degrees: float, mu: float, weight: str) -> None:
     alpha = math.radians(degrees)
-    common = {"half_angle": alpha, "mu": mu, "voussoirs": 30, "weight": weight}
+    arch = CircularArch(half_angle=alpha, friction=mu, voussoirs=30, weight=weight)
     exact = theory.least_thickness(alpha, mu, weight)
     built = limit.least_thickness(alpha, mu, 30, weight)
-    by_theory = bracket(method="theory", **common)
-    by_limit = bracket(method="limit", **common)
+    theirs, ours = (bracket(arch, method=method) for method in ("theory", "limit"))
+    by_theory, by_limit = theirs.arch, ours.arch
     assert by_theory.eta_low == by_theory.eta_high == exact.eta
     assert by_limit.eta_low == by_limit.eta_high == built.eta
     assert (by_theory.mode, by_limit.mode) == (exact.mode, built.mode)
-    assert bracket(**common).method == "limit"
+    assert bracket(arch).method == "limit"
     for found in (by_theory, by_limit):
         assert (found.eta_theory, found.eta_limit) == (exact.eta, built.eta)
         assert found.thrust == pytest.approx(exact.thrust, abs=0.1)
+    for found in (theirs, ours):
         assert found.confirmed is None
         assert found.runs == 0
 
 
 @pytest.mark.parametrize("method", ["theory", "limit", "pymunk"])
 def test_where_nothing_stands(method: str) -> None:
-    found = bracket(half_angle=math.pi / 2, mu=0.25, voussoirs=9, method=method)
-    assert found.eta_high is None
-    assert found.eta_low == 2
-    assert found.centre is None
-    assert found.mode is Mode.SS
-    assert found.eta_theory is None
+    found = bracket(
+        CircularArch(half_angle=math.pi / 2, friction=0.25, voussoirs=9, weight="centreline"),
+        method=method,
+    )
+    assert found.arch.eta_high is None
+    assert found.arch.eta_low == 2
+    assert found.arch.centre is None
+    assert found.arch.mode is Mode.SS
+    assert found.arch.eta_theory is None
 
 
 @pytest.mark.parametrize("confirm", [True, False])
@@ -201,12 +205,12 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
         held.append(arch.eta)
         return hold(problem, engine, **asked)
 
-    monkeypatch.setattr(sys.modules["blocksim.ask.archbracket"], "hold", counted)
-    asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 9, "method": "pymunk"}
-    found = bracket(**asked, confirm=confirm)
+    monkeypatch.setattr(sys.modules["blocksim.evidence.observation"], "hold", counted)
+    arch = CircularArch(half_angle=math.pi / 2, friction=0.7, voussoirs=9, weight="centreline")
+    found = bracket(arch, method="pymunk", confirm=confirm)
     assert found.runs == len(held) == len(set(held))
-    assert {found.eta_low, found.eta_high} <= set(held)
-    assert found.mode is Mode.RRR
+    assert {found.arch.eta_low, found.arch.eta_high} <= set(held)
+    assert found.arch.mode is Mode.RRR
     assert found.confirmed is (True if confirm else None)
     assert f"ends {'confirmed' if confirm else 'not tried'} by moving runs" in found.reason
 
@@ -217,17 +221,18 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
         ("tol", 0.0, "at most 0.5"),
         ("tol", 0.6, "at most 0.5"),
         ("tol", math.nan, "at most 0.5"),
-        ("mu", 0.0, "1e-06 to 1e+06 (or inf)"),
+        ("friction", 0.0, "1e-06 to 1e+06 (or inf)"),
         ("method", "fem", "theory"),
         ("half_angle", 4.0, "to 3.14159 rad"),
         ("voussoirs", 2, "3 to 1000"),
-        ("weight", "mean", "sector"),
+        ("weight", "mean", "centreline"),
     ],
 )
 def test_wrong_values(field: str, wrong: object, allowed: str) -> None:
-    good = {"half_angle": 1.0, "mu": 0.7, "voussoirs": 9}
+    made = {"half_angle": 1.0, "friction": 0.7, "voussoirs": 9}
+    asked = {field: wrong} if field in {"tol", "method"} else {}
     with pytest.raises(InputError) as caught:
-        bracket(**{**good, field: wrong})
+        bracket(CircularArch(**{**made, **({} if asked else {field: wrong})}), **asked)
     assert caught.value.field == field
     assert allowed in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -235,4 +240,8 @@ def test_wrong_values(field: str, wrong: object, allowed: str) -> None:
 
 def test_tolerance_finer_than_an_engine_can_answer() -> None:
     with pytest.raises(InputError, match=r"at least 0\.0001 for pymunk"):
-        bracket(half_angle=1.0, mu=0.7, voussoirs=9, method="pymunk", tol=1e-5)
+        bracket(
+            CircularArch(half_angle=1.0, friction=0.7, voussoirs=9, weight="centreline"),
+            method="pymunk",
+            tol=1e-5,
+        )

@@ -15,6 +15,7 @@ import blocksim
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import least_thickness as least_as_built
 from blocksim.arch.theory import least_thickness
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.report.answers import joint_names_of
 from blocksim.report.structures import joint_names
 
@@ -149,7 +150,7 @@ def test_the_thrust_of_a_critical_arch_is_the_papers() -> None:
     # The paper's figures of the semicircle.
     assert critical.eta == pytest.approx(0.1074, abs=5e-5)
     arch = Arch(half_angle=math.pi / 2, eta=critical.eta * (1 + 1e-7), voussoirs=999)
-    carried = blocksim.check(arch, mu=math.inf).carried
+    carried = blocksim.check(CircularArch.of(arch, friction=math.inf)).carried
     assert carried is not None
     assert carried.thrust is not None
     unit = arch.specific_weight * arch.thickness
@@ -174,7 +175,7 @@ def test_what_is_not_weighed_is_told_in_shares_of_its_weight() -> None:
 
 def test_an_arch_that_leans_is_told_no_factors() -> None:
     arch = Arch(half_angle=1.0, eta=0.2, voussoirs=9)
-    answer = blocksim.check(arch, mu=0.7, lean=0.02, method="pybullet")
+    answer = blocksim.check(arch_problem(arch, 0.7, 0.02), method="pybullet")
     assert answer.carried is None
     assert answer.to_dict()["geometrical_factor"] is None
 

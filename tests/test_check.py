@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from blocksim.arch import limit, theory
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
-from blocksim.ask.archcheck import check
+from blocksim.ask.check import check
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.errors import InputError
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 
 
 @given(
@@ -38,13 +38,13 @@ def test_static_methods_on_both_sides(
     eta = (least or 1.0) * ratio
     assume(eta <= 2)
     arch = Arch(half_angle=alpha, eta=eta, voussoirs=count, weight=weight)
-    seen = check(arch, mu=mu, method=method)
+    seen = check(CircularArch.of(arch, friction=mu), method=method)
     stands = least is not None and ratio > 1
     assert seen.verdict is (Verdict.STANDS if stands else Verdict.COLLAPSES)
     assert len(seen.joints) == count + 1
     assert [joint.angle for joint in seen.joints] == pytest.approx(list(arch.joint_angles))
     if stands:
-        assert seen.mode is None
+        assert seen.arch.mode is None
         assert {joint.state for joint in seen.joints} == {JointState.CLOSED}
     assert seen.simulated is None
     assert seen.state_hash is None
@@ -53,30 +53,35 @@ def test_static_methods_on_both_sides(
 
 def test_joints_of_the_limit_mechanism() -> None:
     arch = Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=20)
-    seen = check(arch, mu=0.7, method="limit")
+    seen = check(CircularArch.of(arch, friction=0.7), method="limit")
     found = [(i, joint.state) for i, joint in enumerate(seen.joints)]
     active = [(i, state) for i, state in found if state is not JointState.CLOSED]
     outside, inside = JointState.HINGE_EXTRADOS, JointState.HINGE_INTRADOS
     # beta_r = 54.5 deg: six joint spacings of 9 deg from the crown.
     assert active == [(0, outside), (4, inside), (10, outside), (16, inside), (20, outside)]
-    assert seen.mode is Mode.RRR
+    assert seen.arch.mode is Mode.RRR
 
 
 @pytest.mark.parametrize(("eta", "verdict"), [(0.1, "collapses"), (0.115, "stands")])
 def test_every_method_agrees_off_the_limit(eta: float, verdict: str) -> None:
     arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=20)
     for method in ("theory", "limit", "pymunk", "auto"):
-        seen = check(arch, mu=0.7, method=method)
+        seen = check(CircularArch.of(arch, friction=0.7), method=method)
         assert seen.verdict.value == verdict
-        assert seen.mode is (Mode.RRR if verdict == "collapses" else None)
+        assert seen.arch.mode is (Mode.RRR if verdict == "collapses" else None)
         assert seen.method == ("limit" if method == "auto" else method)
         assert (seen.state_hash is not None) == (method == "pymunk")
 
 
-@pytest.mark.parametrize(("field", "mu", "method"), [("mu", 0, "limit"), ("method", 1, "x")])
+@pytest.mark.parametrize(
+    ("field", "mu", "method"), [("friction", 0, "limit"), ("method", 1, "x")]
+)
 def test_wrong_values(field: str, mu: float, method: str) -> None:
     with pytest.raises(InputError) as caught:
-        check(Arch(half_angle=1.0, eta=0.2, voussoirs=9), mu=mu, method=method)
+        check(
+            CircularArch.of(Arch(half_angle=1.0, eta=0.2, voussoirs=9), friction=mu),
+            method=method,
+        )
     assert caught.value.field == field
 
 

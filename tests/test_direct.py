@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from arches import arch_at, bracket_at
 
-from blocksim.ask.archmotion import simulate
 from blocksim.ask.search import Answer, Bisection
+from blocksim.ask.simulate import simulate
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
@@ -18,7 +18,7 @@ from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.recorded import load_recording
 
 CASES = [
@@ -127,7 +127,8 @@ def test_scale_and_density_change_nothing():
 def test_it_is_repeatable_bit_by_bit():
     arch = arch_at(0.95, 90, 0.37, 20)
     hashes = {
-        simulate(arch, mu=0.37, method="direct", duration=1.0).state_hash for _ in range(2)
+        simulate(CircularArch.of(arch, friction=0.37), method="direct", duration=1.0).state_hash
+        for _ in range(2)
     }
     assert len(hashes) == 1
 
@@ -143,7 +144,9 @@ def test_over_its_residual_the_answer_is_undecided():
 
 
 def test_a_recording_keeps_its_quality(tmp_path):
-    recording = simulate(arch_at(0.9, 90, 0.9, 20), mu=0.9, method="direct", duration=1.5)
+    recording = simulate(
+        CircularArch.of(arch_at(0.9, 90, 0.9, 20), friction=0.9), method="direct", duration=1.5
+    )
     path = tmp_path / "run.npz"
     recording.save(path)
     quality = load_recording(path).quality
@@ -202,7 +205,7 @@ def test_friction_without_pressure_is_no_detour(half_angle_deg, voussoirs, ratio
 def test_without_slip_the_least_thickness_is_not_shifted():
     found = bracket_at(153, math.inf, 40, method="direct", tol=1e-8)
     exact = arch_at(1.0, 153, math.inf, 40).eta
-    assert found.centre == pytest.approx(exact, rel=1e-8)
+    assert found.arch.centre == pytest.approx(exact, rel=1e-8)
     assert found.confirmed
 
 

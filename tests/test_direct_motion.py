@@ -8,7 +8,7 @@ import pytest
 from arches import arch_at
 
 from blocksim.arch.circular import Arch
-from blocksim.ask.archmotion import simulate
+from blocksim.ask.simulate import simulate
 from blocksim.blocks.assembly import displacement
 from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
@@ -17,7 +17,7 @@ from blocksim.engines.ground import ground_level, piers
 from blocksim.evidence.motion import moving_run
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 
 
 def world_of(assembly, mu, step):
@@ -107,7 +107,7 @@ def test_deeper_overlap_than_allowed_is_undecided():
 
 def test_a_recording_of_a_collapse_goes_to_the_ground():
     arch = arch_at(0.8, 90, 0.9, 9)
-    recording = simulate(arch, mu=0.9, method="direct", duration=12.0)
+    recording = simulate(CircularArch.of(arch, friction=0.9), method="direct", duration=12.0)
     # It ends when the rubble lies still, not before.
     assert recording.times[-1] < 12.0
     resting = displacement(recording.poses - recording.poses[-1], recording.assembly)

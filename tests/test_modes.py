@@ -15,12 +15,12 @@ from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import load_scenario
-from blocksim.ask.archbracket import bracket
-from blocksim.ask.archcheck import check
+from blocksim.ask.bracket import bracket
+from blocksim.ask.check import check
 from blocksim.blocks.joints import JointState
 from blocksim.cli import app
 from blocksim.evidence.observation import observe
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.studies.validate import validate_one
 from blocksim.view.archfigure import picture_of_arch
 
@@ -60,9 +60,9 @@ def test_direct_confirms_pure_sliding_where_nothing_stands() -> None:
 def test_rsr_is_read_from_the_start_and_not_from_motion() -> None:
     """In motion, 0.5 % below the limit, its hinge and its sliding joint change places."""
     arch = arch_at(0.995, 149.15618426323448, 1.79, 120)
-    seen = check(arch, mu=1.79, method="direct")
-    assert seen.mode is Mode.RSR
-    assert seen.mode_in_motion is Mode.RRS
+    seen = check(CircularArch.of(arch, friction=1.79), method="direct")
+    assert seen.arch.mode is Mode.RSR
+    assert seen.arch.mode_in_motion is Mode.RRS
     active = [joint.state for joint in seen.joints if joint.state is not JointState.CLOSED]
     outside, inside = JointState.HINGE_EXTRADOS, JointState.HINGE_INTRADOS
     half = [outside, JointState.SLIDES, inside]
@@ -80,10 +80,10 @@ def test_the_scenario_of_rsr_is_confirmed(engine: str) -> None:
 def test_check_and_picture_name_the_same_mode(eta: float) -> None:
     """At 90 deg, mu 0.3 nothing stands, and thin arches start in another mode."""
     arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=27)
-    seen = check(arch, mu=0.3)
-    assert seen.mode is (Mode.SRR if eta < 0.16 else Mode.SS)
-    assert picture_of_arch(arch, 0.3).title.startswith(f"collapses, mode {seen.mode}")
-    assert (seen.mode_limit, seen.mode_theory) == (Mode.SS, Mode.SS)
+    seen = check(CircularArch.of(arch, friction=0.3))
+    assert seen.arch.mode is (Mode.SRR if eta < 0.16 else Mode.SS)
+    assert picture_of_arch(arch, 0.3).title.startswith(f"collapses, mode {seen.arch.mode}")
+    assert (seen.arch.mode_limit, seen.arch.mode_theory) == (Mode.SS, Mode.SS)
 
 
 @pytest.mark.parametrize(
@@ -94,11 +94,11 @@ def test_check_and_picture_of_arches_below_their_limit(
     angle: float, mu: float, ratio: float
 ) -> None:
     arch = arch_at(ratio, angle, mu, 40)
-    seen = check(arch, mu=mu)
-    assert seen.mode is not None
-    assert picture_of_arch(arch, mu).title.startswith(f"collapses, mode {seen.mode}")
+    seen = check(CircularArch.of(arch, friction=mu))
+    assert seen.arch.mode is not None
+    assert picture_of_arch(arch, mu).title.startswith(f"collapses, mode {seen.arch.mode}")
     if ratio > 0.98:
-        assert seen.mode is seen.mode_limit
+        assert seen.arch.mode is seen.arch.mode_limit
     assert sum(joint.state is not JointState.CLOSED for joint in seen.joints) >= 5
 
 
@@ -137,7 +137,11 @@ def test_json_has_the_mode_in_motion_apart() -> None:
 
 
 def test_a_bracket_without_moving_runs_has_no_mode_in_motion() -> None:
-    asked = {"half_angle": math.pi / 2, "mu": 0.7, "voussoirs": 15, "method": "direct"}
-    held, let_go = (bracket(**asked, confirm=confirm) for confirm in (False, True))
+    asked = CircularArch(
+        half_angle=math.pi / 2, friction=0.7, voussoirs=15, weight="centreline"
+    )
+    held, let_go = (
+        bracket(asked, method="direct", confirm=confirm).arch for confirm in (False, True)
+    )
     assert (held.mode, held.mode_in_motion) == (Mode.RRR, None)
     assert (let_go.mode, let_go.mode_in_motion) == (Mode.RRR, Mode.RRR)

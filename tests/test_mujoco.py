@@ -18,9 +18,9 @@ from analysis.structure_cases import answered, questions
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
-from blocksim.ask.archbracket import bracket
-from blocksim.ask.archmotion import simulate
+from blocksim.ask.bracket import bracket
 from blocksim.ask.doctor import examine
+from blocksim.ask.simulate import simulate
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import MissingPart
@@ -32,7 +32,7 @@ from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.limit import equilibrium, least_motion
 from blocksim.studies.validate import installed
 
@@ -83,9 +83,12 @@ def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict
 
 def test_bracket_holds_the_limit() -> None:
     found = bracket(
-        half_angle=math.pi / 2, mu=0.7, voussoirs=10, method="mujoco", tol=1e-3, confirm=False
+        CircularArch(half_angle=math.pi / 2, friction=0.7, voussoirs=10, weight="centreline"),
+        method="mujoco",
+        tol=1e-3,
+        confirm=False,
     )
-    assert found.eta_low < found.eta_limit < found.eta_high
+    assert found.arch.eta_low < found.arch.eta_limit < found.arch.eta_high
     assert found.undecided == 0
 
 
@@ -172,10 +175,14 @@ def test_a_block_on_nothing_falls_freely() -> None:
 
 def test_same_motion_in_every_run() -> None:
     first, second = (
-        simulate(SMALL, mu=0.6, method="mujoco", duration=0.2).state_hash for _ in range(2)
+        simulate(CircularArch.of(SMALL, friction=0.6), method="mujoco", duration=0.2).state_hash
+        for _ in range(2)
     )
     assert first == second
-    assert simulate(SMALL, mu=0.3, method="mujoco", duration=0.2).state_hash != first
+    assert (
+        simulate(CircularArch.of(SMALL, friction=0.3), method="mujoco", duration=0.2).state_hash
+        != first
+    )
 
 
 @pytest.mark.parametrize(("ratio", "expected"), SIDES)

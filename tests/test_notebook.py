@@ -21,7 +21,7 @@ from running import inside
 
 import blocksim
 from blocksim import Arch, ask
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.files import load_structure, structure_of
 from blocksim.limit import collapse
 from blocksim.notebook import svg_of
@@ -48,13 +48,18 @@ def shown() -> dict[str, Any]:
     return {
         "arch": ARCH,
         "problem": problem,
-        "arch check": blocksim.check(THIN, mu=0.7),
+        "arch check": blocksim.check(CircularArch.of(THIN, friction=0.7)),
         "check": ask.check(problem.with_load(0.45)),
         "arch bracket": blocksim.bracket(
-            half_angle=ARCH.half_angle, mu=0.7, voussoirs=27, method="limit"
+            CircularArch(
+                half_angle=ARCH.half_angle, friction=0.7, voussoirs=27, weight="centreline"
+            ),
+            method="limit",
         ),
         "bracket": ask.bracket(ask.family_of(problem, "tilt")),
-        "recording": blocksim.simulate(THIN, mu=0.7, method="direct", duration=0.5),
+        "recording": blocksim.simulate(
+            CircularArch.of(THIN, friction=0.7), method="direct", duration=0.5
+        ),
     }
 
 
@@ -137,12 +142,22 @@ def test_drawings_of_arches_tell_their_mode(formatted: Formatted) -> None:
         formatted("arch check")["image/svg+xml"],
     )
     assert "η = 0.1067" in formatted("arch bracket")["image/svg+xml"]
-    theory = blocksim.bracket(half_angle=ARCH.half_angle, mu=0.7, voussoirs=27, method="theory")
+    theory = blocksim.bracket(
+        CircularArch(
+            half_angle=ARCH.half_angle, friction=0.7, voussoirs=27, weight="centreline"
+        ),
+        method="theory",
+    )
     assert "purely rotational [rrr]" in theory._repr_svg_()
-    none = blocksim.bracket(half_angle=ARCH.half_angle, mu=0.3, voussoirs=27, method="limit")
+    none = blocksim.bracket(
+        CircularArch(
+            half_angle=ARCH.half_angle, friction=0.3, voussoirs=27, weight="centreline"
+        ),
+        method="limit",
+    )
     assert "η = 2" in none._repr_svg_()
-    assert none.eta_high is None
-    engine = blocksim.check(ARCH, mu=0.7, method="direct")
+    assert none.arch.eta_high is None
+    engine = blocksim.check(CircularArch.of(ARCH, friction=0.7), method="direct")
     assert "stands, by direct, μ = 0.7" in engine._repr_svg_()
 
 
@@ -204,7 +219,7 @@ def test_a_problem_as_a_dict_is_its_file(shown: dict[str, Any]) -> None:
 
 def test_a_verdict_is_its_word(shown: dict[str, Any]) -> None:
     assert shown["check"].verdict == "collapses"
-    assert blocksim.check(ARCH, mu=0.7).verdict == "stands"
+    assert blocksim.check(CircularArch.of(ARCH, friction=0.7)).verdict == "stands"
     assert f"{blocksim.Verdict.UNDECIDED}" == "undecided"
 
 
@@ -216,7 +231,7 @@ def test_reprs_are_short_whatever_they_are_of() -> None:
     )  # fmt: skip
     assert len(repr(arch)) < 200
     assert eval(repr(arch), {"Arch": Arch}) == arch  # noqa: S307 - our own
-    answer = blocksim.check(arch, mu=third)
+    answer = blocksim.check(CircularArch.of(arch, friction=third))
     assert len(repr(answer)) < 200
     titled = replace(arch_problem(arch, third), title="a\nb " * 50)
     assert len(repr(titled)) < 200
@@ -228,7 +243,7 @@ def test_importing_blocksim_draws_nothing() -> None:
     """In a process of its own: reprs and dicts load no matplotlib, drawings do."""
     code = (
         "import sys, blocksim as b; arch = b.Arch(half_angle=1, eta=0.2, voussoirs=9)\n"
-        "repr(arch), arch.to_dict(), b.check(arch, mu=1).to_dict()\n"
+        "repr(arch), arch.to_dict(), b.check(b.CircularArch.of(arch, friction=1)).to_dict()\n"
         "print('matplotlib' in sys.modules); arch._repr_svg_()\n"
         "print('matplotlib' in sys.modules, 'matplotlib.pyplot' in sys.modules)\n"
     )

@@ -31,6 +31,7 @@ from blocksim.arch.theory.regions import (
     first_sliding,
 )
 from blocksim.common.errors import InputError
+from blocksim.kinds.circular import CircularArch
 from blocksim.report.answers import bracket_lines, check_lines
 
 WEIGHTS = ("centreline", "sector")
@@ -194,22 +195,36 @@ def test_when_three_voussoirs_stand_at_any_thickness(degrees: float) -> None:
 
 def test_any_thickness_is_said() -> None:
     arch = Arch(half_angle=math.radians(60), eta=0.1, voussoirs=3)
-    seen = check(arch, mu=0.7)
+    seen = check(CircularArch.of(arch, friction=0.7))
     assert "any thickness of the voussoirs as built stands" in seen.reason
     assert "inf" not in seen.reason
     assert "eta any as built" in "\n".join(check_lines(seen))
-    found = bracket(half_angle=math.radians(60), mu=0.7, voussoirs=3)
-    assert (found.eta_low, found.eta_high, found.eta_limit, found.mode) == (None, 0, 0, None)
+    found = bracket(
+        CircularArch(
+            half_angle=math.radians(60), friction=0.7, voussoirs=3, weight="centreline"
+        )
+    )
+    assert (found.arch.eta_low, found.arch.eta_high, found.arch.eta_limit, found.arch.mode) == (
+        None,
+        0,
+        0,
+        None,
+    )
     assert bracket_lines(found)[0].startswith("ANY THICKNESS STANDS")
 
 
 @pytest.mark.parametrize("tol", [5e-3, 1e-5, 1e-8])
 def test_as_many_digits_are_printed_as_tell_the_ends_apart(tol: float) -> None:
     found = bracket(
-        half_angle=math.pi / 2, mu=0.7, voussoirs=7, method="direct", tol=tol, confirm=False
+        CircularArch(half_angle=math.pi / 2, friction=0.7, voussoirs=7, weight="centreline"),
+        method="direct",
+        tol=tol,
+        confirm=False,
     )
     head, *others = bracket_lines(found)
     (exact,) = (line for line in others if "exact" in line)
     low, high = (float(each) for each in re.findall(r"0\.\d+", head)[:2])
     assert low < float(re.findall(r"0\.\d+", exact)[0]) < high
-    assert high - low == pytest.approx((found.eta_high or 0) - (found.eta_low or 0), rel=0.1)
+    assert high - low == pytest.approx(
+        (found.arch.eta_high or 0) - (found.arch.eta_low or 0), rel=0.1
+    )

@@ -22,8 +22,8 @@ from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
-from blocksim.ask.archcheck import check
-from blocksim.ask.archmotion import simulate
+from blocksim.ask.check import check
+from blocksim.ask.simulate import simulate
 from blocksim.ask.simulate import simulate as simulate_problem
 from blocksim.blocks.assembly import SPATIAL, Array, Assembly
 from blocksim.blocks.problem import Problem
@@ -33,7 +33,7 @@ from blocksim.engines.base import Engine
 from blocksim.evidence.motion import lie_still
 from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.recorded import load_recording
 
 pytest.importorskip("pybullet", exc_type=ImportError)
@@ -169,10 +169,18 @@ def test_size_changes_nothing(ratio: float, expected: Verdict, radius: float) ->
 
 def test_same_motion_in_every_run() -> None:
     first, second = (
-        simulate(THIN, mu=0.6, method="pybullet", duration=0.5).state_hash for _ in range(2)
+        simulate(
+            CircularArch.of(THIN, friction=0.6), method="pybullet", duration=0.5
+        ).state_hash
+        for _ in range(2)
     )
     assert first == second
-    assert simulate(THIN, mu=0.3, method="pybullet", duration=0.5).state_hash != first
+    assert (
+        simulate(
+            CircularArch.of(THIN, friction=0.3), method="pybullet", duration=0.5
+        ).state_hash
+        != first
+    )
 
 
 @pytest.mark.parametrize(
@@ -278,7 +286,7 @@ def test_the_reason_names_bounded_friction() -> None:
 @pytest.mark.parametrize("method", ["theory", "limit", "direct", "pymunk"])
 def test_planar_methods_take_no_lean(method: str) -> None:
     with pytest.raises(InputError) as caught:
-        check(THIN, mu=0.7, method=method, lean=0.1)
+        check(arch_problem(THIN, 0.7, 0.1), method=method)
     assert caught.value.field == "method"
     assert "pybullet" in str(caught.value)
 
@@ -293,7 +301,7 @@ def test_other_spaces_do_not_disturb_a_held_one() -> None:
 
 def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
     thick = replace(THIN, eta=0.3)
-    recording = simulate(thick, mu=0.7, method="pybullet", duration=0.5, lean=0.7)
+    recording = simulate(arch_problem(thick, 0.7, 0.7), method="pybullet", duration=0.5)
     path = tmp_path / "run.npz"
     recording.save(path)
     again = load_recording(path)

@@ -25,7 +25,7 @@ from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness
-from blocksim.ask.archmotion import simulate
+from blocksim.ask.simulate import simulate
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.joints import JointState, joint_motion
 from blocksim.blocks.problem import Problem
@@ -37,7 +37,7 @@ from blocksim.evidence.observation import observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.limit import least_motion
 
 ARCHES = [
@@ -118,10 +118,10 @@ def test_bracket_holds_the_limit(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     found = bracket_at(angle, mu, count, weight, method="pymunk", tol=0.002)
-    assert found.mode_limit is mode
-    assert found.centre == pytest.approx(found.eta_limit, rel=0.002)
-    assert found.eta_low < found.eta_high
-    assert 1 - found.eta_low / found.eta_high <= 0.002
+    assert found.arch.mode_limit is mode
+    assert found.arch.centre == pytest.approx(found.arch.eta_limit, rel=0.002)
+    assert found.arch.eta_low < found.arch.eta_high
+    assert 1 - found.arch.eta_low / found.arch.eta_high <= 0.002
     assert found.undecided == 0
 
 
@@ -207,21 +207,25 @@ def test_the_weight_drives_the_mechanism(
 
 HASH = """
 from blocksim.arch.circular import Arch
-from blocksim.ask.archmotion import simulate
+from blocksim.ask.simulate import simulate
+from blocksim.kinds.circular import CircularArch
 arch = Arch(half_angle=1.5707963267948966, eta=0.1, voussoirs=13)
-print(simulate(arch, mu=0.6, method="pymunk", duration=1.0).state_hash)
+print(simulate(CircularArch.of(arch, friction=0.6), method="pymunk", duration=1.0).state_hash)
 """
 
 
 def test_same_motion_in_every_run_and_process() -> None:
     arch = Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13)
     first, second = (
-        simulate(arch, mu=0.6, method="pymunk", duration=1.0).state_hash for _ in range(2)
+        simulate(CircularArch.of(arch, friction=0.6), method="pymunk", duration=1.0).state_hash
+        for _ in range(2)
     )
     assert first == second
     done = subprocess.run([sys.executable, "-c", HASH], capture_output=True, check=True)
     assert done.stdout.decode().strip() == first
-    sliding = simulate(arch, mu=0.3, method="pymunk", duration=1.0).state_hash
+    sliding = simulate(
+        CircularArch.of(arch, friction=0.3), method="pymunk", duration=1.0
+    ).state_hash
     assert sliding != first
     assert len(first) == 16
 
@@ -241,8 +245,8 @@ def test_size_and_material_change_no_bit(
     other = replace(
         arch, radius=2.0**size, specific_weight=20_000 * 2.0**mass, depth=2.0**depth
     )
-    one = simulate(arch, mu=0.6, method="pymunk", duration=1.0)
-    two = simulate(other, mu=0.6, method="pymunk", duration=1.0)
+    one = simulate(CircularArch.of(arch, friction=0.6), method="pymunk", duration=1.0)
+    two = simulate(CircularArch.of(other, friction=0.6), method="pymunk", duration=1.0)
     assert one.state_hash == two.state_hash
 
 
@@ -424,7 +428,9 @@ def test_standing_arch_stays_where_it_was_built() -> None:
 
 
 def test_duration_is_kept_to() -> None:
-    recording = simulate(replace(SMALL, eta=0.05), mu=0.6, method="pymunk", duration=1.5)
+    recording = simulate(
+        CircularArch.of(replace(SMALL, eta=0.05), friction=0.6), method="pymunk", duration=1.5
+    )
     assert recording.times[0] == 0
     assert recording.times[-1] == pytest.approx(1.5, abs=0.06)
     assert np.all(np.diff(recording.times) > 0)
@@ -433,7 +439,7 @@ def test_duration_is_kept_to() -> None:
 @pytest.mark.parametrize("method", ["theory", "limit", "bullet"])
 def test_static_and_unknown_methods_move_nothing(method: str) -> None:
     with pytest.raises(InputError) as caught:
-        simulate(SMALL, mu=0.6, method=method)
+        simulate(CircularArch.of(SMALL, friction=0.6), method=method)
     assert caught.value.field == "method"
     assert "pymunk" in str(caught.value)
 

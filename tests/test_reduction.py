@@ -22,8 +22,8 @@ from blocksim.arch.limit import weakest_joints
 from blocksim.arch.limit.statics import half_joints
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.reduction import MIRROR, Reduction
-from blocksim.ask.archbracket import bracket
-from blocksim.ask.archcheck import check
+from blocksim.ask.bracket import bracket
+from blocksim.ask.check import check
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
@@ -32,7 +32,7 @@ from blocksim.evidence.observation import hold, observe
 from blocksim.evidence.onset import onset
 from blocksim.evidence.simulation import Simulation
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 
 CASES = [
     (90, 0.7, 27, "centreline"),
@@ -387,13 +387,15 @@ def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
 @pytest.mark.parametrize("method", ["direct", "pymunk"])
 @pytest.mark.parametrize("voussoirs", [20, 21])
 def test_brackets_are_those_of_all_voussoirs(method, voussoirs):
-    question = {"half_angle": math.radians(125), "mu": 0.9, "voussoirs": voussoirs}
-    few, every = (bracket(**question, method=method, tol=2e-3, reduce=r) for r in (True, False))
+    arch = CircularArch(
+        half_angle=math.radians(125), friction=0.9, voussoirs=voussoirs, weight="centreline"
+    )
+    few, every = (bracket(arch, method=method, tol=2e-3, reduce=r) for r in (True, False))
     # Where they are probed follows accelerations, which differ by how far they converged.
-    assert few.eta_low == pytest.approx(every.eta_low, rel=1e-5)
-    assert few.eta_high == pytest.approx(every.eta_high, rel=1e-5)
+    assert few.arch.eta_low == pytest.approx(every.arch.eta_low, rel=1e-5)
+    assert few.arch.eta_high == pytest.approx(every.arch.eta_high, rel=1e-5)
     assert few.confirmed
-    assert few.mode is every.mode
+    assert few.arch.mode is every.arch.mode
     assert few.blocks < 6
     assert every.blocks == voussoirs
     assert f"{few.blocks} of {voussoirs}" in few.reason
@@ -401,10 +403,14 @@ def test_brackets_are_those_of_all_voussoirs(method, voussoirs):
 
 def test_where_no_thickness_stands_none_is_found():
     found = bracket(
-        half_angle=math.radians(157), mu=2.0, voussoirs=20, method="direct", reduce=True
+        CircularArch(
+            half_angle=math.radians(157), friction=2.0, voussoirs=20, weight="centreline"
+        ),
+        method="direct",
+        reduce=True,
     )
-    assert found.eta_limit is None
-    assert found.eta_high is None
+    assert found.arch.eta_limit is None
+    assert found.arch.eta_high is None
 
 
 @pytest.mark.parametrize("voussoirs", [14, 15])
@@ -429,14 +435,14 @@ def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
 
 def test_the_answer_tells_what_was_simulated(engine):
     arch = arch_at(0.98, 90, 0.7, 27)
-    answer = check(arch, mu=0.7, method=engine, reduce=True)
+    answer = check(CircularArch.of(arch, friction=0.7), method=engine, reduce=True)
     assert answer.verdict is Verdict.COLLAPSES
     assert (answer.blocks, answer.splits) == (3, 0)
     assert "blocks: 3 of 27, joints split again: 0" in answer.reason
-    usual = check(arch, mu=0.7, method=engine)
+    usual = check(CircularArch.of(arch, friction=0.7), method=engine)
     assert usual.blocks == (27 if engine == "direct" else 3)
-    assert check(arch, mu=0.7, method=engine, reduce=False).blocks == 27
-    assert check(arch, mu=0.7, method="limit").blocks is None
+    assert check(CircularArch.of(arch, friction=0.7), method=engine, reduce=False).blocks == 27
+    assert check(CircularArch.of(arch, friction=0.7), method="limit").blocks is None
 
 
 def test_scale_and_density_change_nothing():
@@ -452,12 +458,14 @@ def test_scale_and_density_change_nothing():
 @pytest.mark.parametrize("method", ["auto", "theory", "limit"])
 def test_there_is_nothing_to_reduce_where_nothing_is_simulated(method):
     with pytest.raises(InputError, match="reduce"):
-        check(arch_at(1.0, 90, 0.7, 27), mu=0.7, method=method, reduce=True)
+        check(
+            CircularArch.of(arch_at(1.0, 90, 0.7, 27), friction=0.7), method=method, reduce=True
+        )
 
 
 def test_out_of_the_plane_nothing_is_reduced():
     with pytest.raises(InputError, match="reduce"):
-        check(arch_at(1.0, 90, 0.7, 27), mu=0.7, method="pybullet", lean=0.1, reduce=True)
+        check(arch_problem(arch_at(1.0, 90, 0.7, 27), 0.7, 0.1), method="pybullet", reduce=True)
     pytest.importorskip("pybullet")
     thick = Arch(half_angle=math.radians(60), eta=0.4, voussoirs=3)
-    assert check(thick, mu=1.0, method="pybullet", lean=0.01).blocks == 3
+    assert check(arch_problem(thick, 1.0, 0.01), method="pybullet").blocks == 3

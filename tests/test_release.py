@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import re
+import sys
 import tomllib
 from pathlib import Path
 
@@ -16,6 +18,10 @@ from blocksim.view import video
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NAME = re.compile(r"[\w.-]+")
+USED = ("dask", "dxf", "mujoco", "parquet")
+"""Extras of those who use blocksim."""
+NAMED = {"PIL": "pillow", "flint": "python-flint", "mujoco": "mujoco-core"}
+"""What is installed under another name than it is imported by."""
 
 
 def test_pages_can_be_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -81,10 +87,31 @@ def test_the_lock_has_all_that_is_declared() -> None:
     assert all("--hash=sha256:" in each for each in blocks)
 
 
+def test_what_is_imported_is_declared() -> None:
+    """What only the machine of a developer has is missing from everybody else's."""
+    needed = set[str]()
+    for path in (ROOT / "blocksim").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            match node:
+                case ast.Import(names=names):
+                    needed |= {each.name for each in names}
+                case ast.ImportFrom(module=str(name), level=0):
+                    needed.add(name)
+                case ast.Call(func=ast.Name(id="Library"), args=[ast.Constant(value=name), *_]):
+                    needed.add(str(name))
+                case _:
+                    pass
+    needed = {each.partition(".")[0] for each in needed} - {"blocksim", "__future__"}
+    extras = PROJECT["optional-dependencies"]
+    used = [*PROJECT["dependencies"], *(each for name in USED for each in extras[name])]
+    known = {NAME.match(each)[0] for each in used}
+    assert {"numpy", "flint", "pybullet", "mujoco"} <= needed
+    assert {NAMED.get(each, each) for each in needed - sys.stdlib_module_names} == known
+
+
 def test_licences_name_what_is_installed() -> None:
     notice = (ROOT / "NOTICE.md").read_text()
     extras = PROJECT["optional-dependencies"]
-    used = [*PROJECT["dependencies"], *(each for name in ("dask", "dxf", "mujoco", "parquet")
-            for each in extras[name])]  # fmt: skip
+    used = [*PROJECT["dependencies"], *(each for name in USED for each in extras[name])]
     for each in used:
         assert re.search(rf"\b{NAME.match(each)[0]}\b", notice), each

@@ -18,6 +18,7 @@ from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim import Arch, bracket, check
 from blocksim.common.errors import InputError, MissingPart
+from blocksim.kinds.circular import CircularArch
 from blocksim.many import Case, answers, read_rows, run, sweep, write_csv, write_parquet
 from blocksim.many import table as tables
 from blocksim.many.answers import Answered, Asked, answer
@@ -132,13 +133,13 @@ def test_statics_in_bulk_answer_as_single_questions_do(tmp_path: Path) -> None:
     assert {row["verdict"] for row in rows} == {"stands", "collapses"}
     for row in rows:
         arch, mu = arch_of(row, float(str(row["eta"]))), float(str(row["mu"]))
-        single = check(arch, mu=mu, method=str(row["asked"]))
+        single = check(CircularArch.of(arch, friction=mu), method=str(row["asked"]))
         assert row["verdict"] == single.verdict
         least = row["eta_theory"]
-        assert (least is None) == (single.eta_theory is None)
-        assert least is None or math.isclose(least, single.eta_theory, rel_tol=1e-12)
+        assert (least is None) == (single.arch.eta_theory is None)
+        assert least is None or math.isclose(least, single.arch.eta_theory, rel_tol=1e-12)
         if row["asked"] == "theory":
-            assert row["mode"] == single.mode
+            assert row["mode"] == single.arch.mode
 
 
 def test_without_a_thickness_the_least_one_is_asked_for(tmp_path: Path) -> None:
@@ -147,13 +148,18 @@ def test_without_a_thickness_the_least_one_is_asked_for(tmp_path: Path) -> None:
         sweep(design_of(tmp_path, text), tmp_path, executor=executor)
     for row in rows_of(tmp_path).values():
         single = bracket(
-            half_angle=math.radians(float(str(row["half_angle_deg"]))),
-            mu=float(str(row["mu"])),
-            voussoirs=int(str(row["voussoirs"])),
-            weight=row["weight"],
+            CircularArch(
+                half_angle=math.radians(float(str(row["half_angle_deg"]))),
+                friction=float(str(row["mu"])),
+                voussoirs=int(str(row["voussoirs"])),
+                weight=row["weight"],
+            ),
             method=str(row["asked"]),
         )
-        for end, exact in (("eta_low", single.eta_low), ("eta_high", single.eta_high)):
+        for end, exact in (
+            ("eta_low", single.arch.eta_low),
+            ("eta_high", single.arch.eta_high),
+        ):
             assert (row[end] is None) == (exact is None)
             assert exact is None or math.isclose(float(str(row[end])), exact, rel_tol=1e-9)
 

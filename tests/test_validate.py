@@ -55,7 +55,7 @@ def test_rows_agree_with_limit_analysis_and_are_written(tmp_path: Path) -> None:
 
 def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shift the exact value by 1 %: the row must say so."""
-    module = importlib.import_module("blocksim.ask.archbracket")
+    module = importlib.import_module("blocksim.kinds.archoffers")
     real = module.limit.least_thickness
 
     def shifted(*arguments: object) -> object:

@@ -3,7 +3,6 @@
 from blocksim.ask.bracket import Bracket as Bracket
 from blocksim.ask.bracket import bracket as bracket
 from blocksim.ask.check import Check as Check
-from blocksim.ask.check import ProblemCheck as ProblemCheck
 from blocksim.ask.check import check as check
 from blocksim.ask.families import Family as Family
 from blocksim.ask.families import family_of as family_of

@@ -6,23 +6,32 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
-from blocksim.ask.ends import Stands, Within, around, tried_ends
-from blocksim.ask.families import Family
-from blocksim.ask.methods import choose, chosen_words, merges
+from blocksim.ask.ends import Ask, Stands, Within, around, tried_ends
+from blocksim.ask.families import Family, families_of, family_of
+from blocksim.ask.methods import choose, chosen_words, engine_of, merges, reduces
+from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.search import Answer, Bisection
-from blocksim.common.checks import is_number, require
+from blocksim.blocks.problem import Problem
+from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
-from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
-from blocksim.evidence.verdict import Verdict
+from blocksim.evidence.simulation import Overrides, given_words
+from blocksim.evidence.verdict import Evidence, Verdict, aside, reason_of
+from blocksim.kinds.offers import Threshold, offers_of
 from blocksim.limit import equilibrium
 
 if TYPE_CHECKING:
+    from blocksim.arch.answers import ArchBracket
     from blocksim.ask.spread import Happening, Spreading
+    from blocksim.engines.base import Engine, Method
     from blocksim.evidence.observation import Held, Observation
+    from blocksim.evidence.simulation import Reduced
 
+USUAL = "thickness"
+"""What is bracketed over where nothing is said."""
 SURE = (1e-8, 1e-7, 1e-6)
 """How far to both sides of its value limit analysis is asked again, the first that tells,
 relative."""
@@ -84,18 +93,29 @@ class Bracket(Shown):
     stands : {"low", "high"}
         At which end it stands.
     limit : float or None
-        The exact value, where limit analysis knows it; inf where it stands at all values.
+        The exact value, where limit analysis knows it; inf where it stands at all values, and 0
+        where it stands down to none.
     confirmed : bool or None
         As of `Search`.
     runs, undecided : int
         Values tried, and those without an answer.
-    reason : str
+    evidence : tuple of Evidence
+        What was seen, by which test.
+    problem : Problem
+        One of the family: what was asked about.
+    tol : float
+        Relative width asked for.
+    blocks, splits : int or None
+        The most blocks simulated, and the number of joints that a reduction had merged and had
+        to split again. None for static methods.
     wall_s : float
     events : tuple of Happening or None
         Over the motion of supports, what happens on the way, by limit analysis.
     intervals : tuple of Stands or None
         All intervals of the range in which it stands, in order, each end tried; None where
         limit analysis does not know them.
+    arch : ArchBracket or None
+        Over the thickness of a symmetric circular arch under its own weight: ratios and modes.
     """
 
     method: str
@@ -108,10 +128,20 @@ class Bracket(Shown):
     confirmed: bool | None
     runs: int
     undecided: int
-    reason: str
+    evidence: tuple[Evidence, ...]
+    problem: Problem
+    tol: float
+    blocks: int | None = None
+    splits: int | None = None
     wall_s: float
     events: tuple[Happening, ...] | None = None
     intervals: tuple[Stands, ...] | None = None
+    arch: ArchBracket | None = None
+
+    @property
+    def reason(self) -> str:
+        """The evidence as a sentence."""
+        return reason_of(self.evidence)
 
     def __repr__(self) -> str:
         low, high = (
@@ -125,35 +155,28 @@ class Bracket(Shown):
 
 
 def bracket(
-    family: Family,
+    asked: Asked | Family,
     *,
-    method: str = "auto",
-    tol: float = 0.005,
+    over: str | None = None,
     within: tuple[float, float] | None = None,
-    settings: Overrides = BY_RULE,
-    reduce: bool | None = None,
-    progress: Progress = silent,
+    **options: Unpack[Options],
 ) -> Bracket:
-    """Find the value of a family's parameter at which it changes from standing to falling.
+    """Find the value of a parameter at which blocks change from standing to falling.
 
     Engines search with the onset test and let the blocks go at both ends. Where limit analysis
     knows the value, the search begins there, and takes nothing else from it.
 
     Parameters
     ----------
-    family : Family
-    method : str
-        `auto`, `limit`, or the name of an engine.
-    tol : float
-        Relative width at which to end, above 0 and at most 0.5.
+    asked : Problem, Maker or Family
+    over : str, optional
+        One of `blocksim.ask.families.families_of`; by default the thickness, where there is
+        one.
     within : tuple of float, optional
         Where to search; by default where limit analysis says, within the family's range.
-    settings : mapping of str to float
-        Settings that replace those of the engine's rule;
-        `blocksim.evidence.simulation.SETTINGS` has their names.
-    reduce : bool, optional
-        As of `blocksim.ask.check.check`.
-    progress : Progress, optional
+    **options
+        `method`, `settings`, `reduce`, `progress`, `tol`, `confirm`
+        (`blocksim.ask.options.Options`).
 
     Returns
     -------
@@ -165,74 +188,166 @@ def bracket(
         If a value is out of range, or the method cannot do what is asked for.
     MissingPart
         If the engine's library is not installed.
+
+    Examples
+    --------
+    >>> from blocksim.kinds.circular import CircularArch
+    >>> found = bracket(CircularArch(half_angle_deg=90, friction=0.7), method="theory")
+    >>> round(found.arch.eta_high, 4)
+    0.1075
     """
     started = time.perf_counter()
-    require(is_number(tol, 0, 0.5), "tol", tol, "above 0 and at most 0.5")
+    given = taken(options)
+    if isinstance(asked, Family):
+        require(over is None, "over", over, "left out: the family says it")
+        return _of_family(asked, within, given, started)
+    problem = problem_of(asked)
+    if over is None:
+        known = families_of(problem)
+        over = USUAL if USUAL in known else None
+        if over is None:
+            raise InputError("over", MISSING, f"one of {', '.join(known)}")
+    offered = offers_of(problem) if within is None else None
+    threshold = None if offered is None else offered.threshold(over)
+    if threshold is not None:
+        return _thinned(problem, over, threshold, given, started)
+    return _of_family(family_of(problem, over), within, given, started)
+
+
+def _thinned(
+    problem: Problem, over: str, threshold: Threshold, given: Taken, started: float
+) -> Bracket:
+    """Search over a ratio of which the maker knows more."""
+    chosen = choose(
+        given.method, given.tol, problem=problem, settings=given.settings, reduce=given.reduce
+    )
+    if chosen.is_static:
+        falls, stands, said = threshold.static(chosen.name)
+        test = "closed form" if chosen.name == "theory" else "limit analysis"
+        found, evidence = Search(falls=falls, stands=stands), (Evidence(test, said),)
+        facts = threshold.facts(low=falls, high=stands, method=chosen.name)
+    else:
+        reduced = reduces(chosen, given.reduce, is_planar=problem.is_planar)
+        found = by_engine(
+            _Reduced(threshold, engine_of(chosen), given.settings, reduce=reduced).held_at,
+            threshold.start,
+            (threshold.low, threshold.high),
+            given.tol,
+            name=threshold.name,
+            more_is_safer=True,
+            confirm=given.confirm,
+            progress=given.progress,
+        )
+        evidence = (Evidence("search", found.reason),)
+        if reduced and found.blocks is not None and found.splits is not None:
+            from blocksim.evidence.observation import reduced_words
+
+            by, most = threshold.reduced_by, threshold.blocks
+            words = reduced_words(by, found.blocks, most, found.splits)
+            evidence += (Evidence("reduction", words),)
+        facts = threshold.facts(
+            low=found.falls, high=found.stands, method=chosen.name, seen=found.collapse
+        )
+    return Bracket(
+        method=chosen.name,
+        over=over,
+        unit=threshold.unit,
+        low=threshold.value(found.falls),
+        high=threshold.value(found.stands),
+        stands="high",
+        limit=threshold.value(threshold.exact),
+        confirmed=found.confirmed,
+        runs=found.runs,
+        undecided=found.undecided,
+        evidence=evidence + _asides(given, chosen),
+        problem=problem,
+        tol=given.tol,
+        blocks=found.blocks,
+        splits=found.splits,
+        wall_s=time.perf_counter() - started,
+        arch=facts,
+    )
+
+
+class _Reduced:
+    """One problem at one value after the other, reduced alike where that is asked for."""
+
+    def __init__(
+        self, threshold: Threshold, engine: Engine, settings: Overrides, *, reduce: bool
+    ) -> None:
+        self._threshold, self._engine, self._settings = threshold, engine, settings
+        self._reduce = reduce
+        self._last: Reduced | None = None
+
+    def held_at(self, value: float) -> Held:
+        """Ask the onset test at a value."""
+        from blocksim.evidence.observation import hold
+
+        reduction = self._threshold.reduction(value, self._last) if self._reduce else None
+        problem = self._threshold.problem(value)
+        held = hold(problem, self._engine, settings=self._settings, reduction=reduction)
+        # An engine may have split it, or given it up.
+        self._last = held.simulation.reduction
+        return held
+
+
+def _asides(given: Taken, chosen: Method) -> tuple[Evidence, ...]:
+    """Say which settings were given, and what `auto` took."""
+    settings = aside("settings", given_words(given.settings))
+    return settings + aside("method", chosen_words(given.method, chosen))
+
+
+def _of_family(
+    family: Family, within: tuple[float, float] | None, given: Taken, started: float
+) -> Bracket:
+    """Search over the values of a family."""
     low, high = within or (family.low, family.high)
     ranged = family.low <= low < high <= family.high and high >= LEAST
     allowed = f"two values, the lower first, from {family.low:g} to {family.high:g}"
     require(ranged, "within", f"{low:g} {high:g}", allowed)
     probe = family.at(low + GUESS * (high - low))
-    chosen = choose(method, tol, problem=probe, settings=settings, reduce=reduce)
+    chosen = choose(
+        given.method, given.tol, problem=probe, settings=given.settings, reduce=given.reduce
+    )
     if family.spreading is not None:
-        require(
-            chosen.moves_supports,
-            "method",
-            chosen.name,
-            "limit or direct: others move no supports",
-        )
-        require(not reduce, "reduce", reduce, "left out where supports move")
+        allowed = "limit or direct: others move no supports"
+        require(chosen.moves_supports, "method", chosen.name, allowed)
+        require(not given.reduce, "reduce", given.reduce, "left out where supports move")
     # What limit analysis says is of ground at rest.
     static = probe.is_planar and probe.shaking is None
     exact = family.exact() if static else None
-    said = family.remark() if static else ""
+    remark = family.remark() if static else ""
     rises = family.stands == "high"
 
-    def ask(start: float, within: Within, rises: bool) -> Search:  # noqa: ARG001
+    def by_limit(start: float, within: Within, rises: bool) -> Search:  # noqa: ARG001
         return _by_limit(family, start, rises=rises)
 
+    ask: Ask = by_limit
+    reduced = False
     if family.spreading is not None:
         if chosen.is_static:
             found = _followed(family, family.spreading, exact)
         else:
-            found = _slowly(family.spreading, tol, high, exact, progress)
+            found = _slowly(family.spreading, given.tol, high, exact, given.progress)
     elif chosen.is_static:
         found = _by_limit(family, exact, rises=rises)
     elif probe.shaking is not None:
         start = min(max(family.start or low + GUESS * (high - low), low), high)
-        found = _shaken(family, chosen.name, start, (low, high), tol, settings, progress)
+        found = _shaken(family, engine_of(chosen), start, (low, high), given)
     else:
         known = exact and math.isfinite(exact) and low <= exact <= high
         start = exact if exact and known else low + GUESS * (high - low)
-        # What moves blocks is loaded where it is asked for.
-        from blocksim.evidence.merging import Merging
-        from blocksim.evidence.observation import hold, reduced_words
-
-        reduced = merges(chosen, reduce, probe)
-
-        def held_at(value: float) -> Held:
-            problem = family.at(value)
-            merging = Merging.of(problem) if reduced else None
-            return hold(problem, chosen.name, settings=settings, reduction=merging)
-
-        def ask(start: float, within: Within, rises: bool) -> Search:
-            least, most = max(low, within[0], start / FARTHEST), min(high, within[1])
-            if not least <= start <= most:
-                return Search()
-            return by_engine(
-                held_at,
-                start,
-                (least, most),
-                tol,
-                name=family.name,
-                more_is_safer=rises,
-                progress=progress,
-            )
-
+        reduced = merges(chosen, given.reduce, probe)
+        ask = _asking(family, engine_of(chosen), given, (low, high), merged=reduced)
         found = ask(start, around(family, start) if known else (low, high), rises)
-        most = len(probe.assembly.blocks)
-        if reduced and found.blocks is not None and found.blocks < most:
-            said += f"; {reduced_words(Merging.by, found.blocks, most, found.splits or 0)}"
+    evidence = (Evidence("search", found.reason), *aside("limit analysis", remark))
+    most = len(probe.assembly.blocks)
+    if reduced and found.blocks is not None and found.blocks < most:
+        from blocksim.evidence.merging import Merging
+        from blocksim.evidence.observation import reduced_words
+
+        words = reduced_words(Merging.by, found.blocks, most, found.splits or 0)
+        evidence += (Evidence("reduction", words),)
     ends = (found.falls, found.stands)
     lower, upper = ends if rises else ends[::-1]
     return Bracket(
@@ -246,11 +361,48 @@ def bracket(
         confirmed=found.confirmed,
         runs=found.runs,
         undecided=found.undecided,
-        reason=found.reason + said + given_words(settings) + chosen_words(method, chosen),
+        evidence=evidence + _asides(given, chosen),
+        problem=probe,
+        tol=given.tol,
+        blocks=found.blocks,
+        splits=found.splits,
         wall_s=time.perf_counter() - started,
         events=None if family.spreading is None else family.spreading.events,
         intervals=tried_ends(family, found, ask) if static else None,
     )
+
+
+def _asking(
+    family: Family, engine: Engine, given: Taken, within: Within, *, merged: bool
+) -> Ask:
+    """Return what asks an engine around a value of limit analysis."""
+    # What moves blocks is loaded where it is asked for.
+    from blocksim.evidence.merging import Merging
+    from blocksim.evidence.observation import hold
+
+    low, high = within
+
+    def held_at(value: float) -> Held:
+        problem = family.at(value)
+        merging = Merging.of(problem) if merged else None
+        return hold(problem, engine, settings=given.settings, reduction=merging)
+
+    def ask(start: float, within: Within, rises: bool) -> Search:
+        least, most = max(low, within[0], start / FARTHEST), min(high, within[1])
+        if not least <= start <= most:
+            return Search()
+        return by_engine(
+            held_at,
+            start,
+            (least, most),
+            given.tol,
+            name=family.name,
+            more_is_safer=rises,
+            confirm=given.confirm,
+            progress=given.progress,
+        )
+
+    return ask
 
 
 def _followed(family: Family, spreading: Spreading, exact: float | None) -> Search:
@@ -289,12 +441,10 @@ def _slowly(
 
 def _shaken(
     family: Family,
-    engine: str,
+    engine: Engine,
     start: float,
-    within: tuple[float, float],
-    tol: float,
-    settings: Overrides,
-    progress: Progress,
+    within: Within,
+    given: Taken,
 ) -> Search:
     """Search for the change by shaking the blocks, each time until they lie still."""
     from blocksim.evidence.shaken import shake
@@ -303,16 +453,16 @@ def _shaken(
 
     def judge(value: float) -> Answer:
         # Nothing leads from how it falls to where it stands: the bracket is halved.
-        return Answer(shake(family.at(value), engine, settings=settings).verdict, 0.0)
+        return Answer(shake(family.at(value), engine, settings=given.settings).verdict, 0.0)
 
     search, falls, stands = _sought(
         judge,
         start,
         (least, most),
-        tol,
+        given.tol,
         name=family.name,
         more_is_safer=family.stands == "high",
-        progress=progress,
+        progress=given.progress,
     )
     return Search(
         falls=falls,

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from blocksim.arch.carried import carried_by_arch
 from blocksim.blocks.problem import Problem
-from blocksim.kinds.circular import is_plain_arch, plain_arch
+from blocksim.kinds.offers import offers_of
 from blocksim.limit.carried import Carried, carried_by
 
 
@@ -22,7 +21,6 @@ def carried_of(problem: Problem, joint: int | None = None) -> Carried | None:
     """
     if not problem.is_planar or problem.shaking is not None:
         return None
-    arch = plain_arch(problem)
-    if arch is not None and is_plain_arch(problem):
-        return carried_by_arch(arch, problem, joint)
-    return carried_by(problem, joint)
+    offered = offers_of(problem)
+    own = None if offered is None else offered.carried(joint)
+    return own or carried_by(problem, joint)

@@ -6,24 +6,28 @@ import math
 import time
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Unpack
 
-from blocksim.ask.methods import choose, chosen_words, merges
+from blocksim.ask.carried import carried_of
+from blocksim.ask.methods import choose, chosen_words, engine_of, merges, reduces
+from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
-from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
-from blocksim.evidence.simulation import BY_RULE, Overrides
-from blocksim.evidence.verdict import Verdict
+from blocksim.evidence.verdict import Evidence, Verdict, aside, reason_of
+from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
-from blocksim.limit.carried import Carried, carried_by
+from blocksim.limit.carried import Carried
 from blocksim.limit.programme import NEAR
+from blocksim.limit.proof import proof_of_rest
 
 if TYPE_CHECKING:
+    from blocksim.arch.answers import ArchAnswer
     from blocksim.engines.base import Method
+    from blocksim.evidence.observation import Observation
     from blocksim.evidence.shaken import Shaken
     from blocksim.limit.proof import Proof
 
@@ -40,8 +44,9 @@ class Check(Shown):
     method : str
     verdict : Verdict
         *Stands* means that it can rest.
-    reason : str
-        A sentence.
+    evidence : tuple of Evidence
+        What was seen, by which test.
+    problem : Problem
     joints : tuple of ObservedJoint
         What each joint does as a collapse starts; closed where the blocks stand, and where
         the method does not tell.
@@ -53,6 +58,15 @@ class Check(Shown):
         Whether that was to be found out.
     motion : Moving or None
         Where it was, the motion that was found; `joints` say what they do in it.
+    load_factor : float or None
+        Largest factor on the live loads at which forces of equilibrium exist, by limit
+        analysis; inf where no live load is too much. None without live loads, or where
+        there is no equilibrium at any factor.
+    rates : (blocks, 3 or 6) float or None
+        By an engine, velocities in proportion to those with which a collapse starts.
+    shaken : Shaken or None
+        Where the ground shakes: what became of the blocks, which the verdict is of. Nothing
+        is said of rest then.
     simulated : float or None
         Time simulated [sqrt(size/g)]; None for static methods.
     state_hash : str or None
@@ -62,112 +76,108 @@ class Check(Shown):
         for static methods.
     wall_s : float
         Seconds it took.
+    arch : ArchAnswer or None
+        Ratios and modes of a symmetric circular arch under its own weight.
     """
 
     method: str
     verdict: Verdict
-    reason: str
+    evidence: tuple[Evidence, ...]
+    problem: Problem
     joints: tuple[ObservedJoint, ...]
-    rest: Rest | None
-    asked_rest: bool
-    simulated: float | None
-    state_hash: str | None
-    blocks: int | None
-    splits: int | None
-    wall_s: float
+    rest: Rest | None = None
+    asked_rest: bool = False
     motion: Moving | None = None
+    load_factor: float | None = None
+    rates: Array | None = None
+    shaken: Shaken | None = None
+    simulated: float | None = None
+    state_hash: str | None = None
+    blocks: int | None = None
+    splits: int | None = None
+    wall_s: float
+    arch: ArchAnswer | None = None
 
     @property
+    def reason(self) -> str:
+        """The evidence as a sentence."""
+        return reason_of(self.evidence)
+
+    @cached_property
+    def static(self) -> Equilibrium | None:
+        """What a linear programme says; None where gravity leans, or the ground shakes."""
+        still = self.problem.is_planar and self.shaken is None
+        return equilibrium(self.problem) if still else None
+
+    @cached_property
     def proof(self) -> Proof | None:
         """The proof of the verdict by limit analysis; None where there is none."""
-        return None
+        if self.method != "limit":
+            return None
+        found = None
+        if offers_of(self.problem) and self.carried is not None:
+            # The maker's own statics know forces: no linear programme has to be loaded.
+            forces = self.carried.forces
+            found = None if forces is None else proof_of_rest(self.problem, forces)
+        if found is None and self.static is not None:
+            found = self.static.proof
+        return found if found is not None and found.claim == self.verdict.value else None
 
     @property
     def proved(self) -> bool:
         """Whether the verdict is proved (`blocksim.verify`)."""
         return self.proof is not None
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ProblemCheck(Check):
-    """What is told of any problem besides.
-
-    Parameters
-    ----------
-    problem : Problem
-    load_factor : float or None
-        Largest factor on the live loads at which forces of equilibrium exist, by limit
-        analysis; inf where no live load is too much. None without live loads, or where
-        there is no equilibrium at any factor.
-    forces : (joints, 2, 2) float or None
-        Forces of equilibrium at the ends of the joints, along their normals and tangents,
-        in units of the mean block's weight; None where there are none.
-    mechanism : (blocks, 3) float or None
-        Rates x, y [size] and rotation with which a collapse starts, or what may move though
-        it can rest; the largest way of a corner is 1.
-    static : Equilibrium or None
-        By limit analysis, what the verdict rests on.
-    shaken : Shaken or None
-        Where the ground shakes: what became of the blocks, which the verdict is of. Nothing
-        is said of rest then.
-    """
-
-    problem: Problem
-    load_factor: float | None
-    forces: Array | None
-    mechanism: Array | None
-    shaken: Shaken | None = None
-    static: Equilibrium | None = None
-
     @property
-    def proof(self) -> Proof | None:
-        """The proof of the verdict by limit analysis; None where there is none."""
-        return None if self.static is None else self.static.proof
+    def forces(self) -> Array | None:
+        """Forces of equilibrium at the ends of the joints, along their normals and tangents.
+
+        (joints, 2, 2) float [mean block's weight]; None where there are none.
+        """
+        return None if self.static is None else self.static.forces
+
+    @cached_property
+    def mechanism(self) -> Array | None:
+        """Rates x, y [size] and rotation with which a collapse starts, (blocks, 3 or 6).
+
+        Or what may move though it can rest. The largest way of a corner is 1. None where the
+        blocks stand, or nothing is known.
+        """
+        rates = self.rates
+        if self.simulated is None and self.static is not None:
+            rates = self.static.mechanism
+        if self.motion is not None:
+            rates = self.motion.accelerations
+        return None if rates is None else _unit(rates, self.problem)
 
     @cached_property
     def carried(self) -> Carried | None:
         """What it carries; None where gravity leans, the ground shakes, or it is too large.
 
-        `blocksim.ask.carried.carried_by` has no such bound.
+        `blocksim.ask.carried.carried_of` has no such bound.
         """
-        still = self.problem.is_planar and self.shaken is None
-        small = len(self.problem.assembly.joints) <= SOUGHT
-        return carried_by(self.problem) if still and small else None
+        small = offers_of(self.problem) or len(self.problem.assembly.joints) <= SOUGHT
+        return carried_of(self.problem) if small else None
 
     def __repr__(self) -> str:
-        return f"ProblemCheck({self.verdict}, by {self.method}, of {self.problem!r})"
+        return f"Check({self.verdict}, by {self.method}, of {self.problem!r})"
 
 
-def check(
-    problem: Problem,
-    *,
-    method: str = "auto",
-    settings: Overrides = BY_RULE,
-    reduce: bool | None = None,
-    must_rest: bool = False,
-    progress: Progress = silent,
-) -> ProblemCheck:
+def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) -> Check:
     """Tell whether blocks stand under their loads.
 
     Parameters
     ----------
-    problem : Problem
-    method : str
-        `auto`, `limit`, or the name of an engine.
-    settings : mapping of str to float
-        Settings that replace those of the engine's rule;
-        `blocksim.evidence.simulation.SETTINGS` has their names.
-    reduce : bool, optional
-        Simulate blocks that do not part as one (`blocksim.evidence.merging`); by default where
-        the engine says so (`Engine.merges`), gravity lies in the plane and the ground rests.
+    asked : Problem or Maker
     must_rest : bool
         Find out as well whether it must rest, or friction may let it move
         (`blocksim.limit.starting`): a second with 8 joints, ten with 28.
-    progress : Progress, optional
+    **options
+        `method`, `settings`, `reduce`, `progress` (`blocksim.ask.options.Options`).
 
     Returns
     -------
-    ProblemCheck
+    Check
 
     Raises
     ------
@@ -176,100 +186,177 @@ def check(
         it must rest (`blocksim.ask.rest`).
     MissingPart
         If the engine's library is not installed.
+
+    Examples
+    --------
+    >>> from blocksim.kinds.circular import CircularArch
+    >>> seen = check(CircularArch(half_angle_deg=90, eta=0.2, friction=0.7), method="limit")
+    >>> seen.verdict.value, seen.arch.mode_limit.value
+    ('stands', 'FM1')
     """
     started = time.perf_counter()
-    chosen = choose(method, problem=problem, settings=settings, reduce=reduce)
+    given = taken(options, "tol", "confirm")
+    problem = problem_of(asked)
+    chosen = choose(given.method, problem=problem, settings=given.settings, reduce=given.reduce)
     if must_rest:
         require_rest(problem)
     if problem.shaking is not None:
-        # What moves blocks is loaded where it is asked for.
-        from blocksim.evidence.shaken import shake
+        found = _by_shaking(problem, chosen, given)
+    elif (offered := offers_of(problem)) is not None:
+        found = _offered(problem, offered, chosen, given)
+    else:
+        found = _general(problem, chosen, given)
+    rest = motion = None
+    if problem.shaking is None:
+        rest, motion = rest_of(
+            problem if must_rest else None,
+            exists=found.exists,
+            moved=found.moved,
+            progress=given.progress,
+        )
+    words = aside("method", chosen_words(given.method, chosen))
+    notes = tuple(Evidence("note", note) for note in problem.notes)
+    answer = replace(
+        found.answer,
+        evidence=(*found.answer.evidence, *words, *notes),
+        rest=rest,
+        asked_rest=must_rest and problem.shaking is None,
+        motion=motion,
+        joints=found.answer.joints
+        if motion is None
+        else _observed(problem, motion.accelerations),
+        wall_s=time.perf_counter() - started,
+    )
+    if found.static is not None:
+        # Asked for already.
+        vars(answer)["static"] = found.static
+    return answer
 
-        shaken = shake(problem, chosen.name, settings=settings, progress=progress)
-        return _of_shaken(problem, chosen, shaken, chosen_words(method, chosen), started)
+
+class _Found(NamedTuple):
+    """An answer, and what tells of rest: forces of equilibrium, a motion that was seen."""
+
+    answer: Check
+    exists: bool | None
+    moved: bool
+    static: Equilibrium | None = None
+
+
+def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) -> _Found:
+    """Answer by what the maker knows, or by an engine."""
+    static = offered.static(chosen.name) if chosen.is_static else None
+    if static is not None:
+        answer = Check(
+            method=chosen.name,
+            verdict=static.verdict,
+            evidence=(static.evidence,),
+            problem=problem,
+            joints=static.joints,
+            wall_s=0.0,
+            arch=offered.facts(mode=static.mode),
+        )
+        return _Found(answer, offered.stands, moved=False)
+    # What moves blocks is loaded where it is asked for.
+    from blocksim.evidence.observation import observe
+
+    reduced = reduces(chosen, given.reduce, is_planar=problem.is_planar)
+    seen = observe(
+        problem,
+        engine_of(chosen),
+        settings=given.settings,
+        reduction=offered.reduction() if reduced else None,
+        progress=given.progress,
+    )
+    facts = offered.facts(
+        mode=offered.mode(seen.joints), mode_in_motion=offered.mode(seen.joints_in_motion)
+    )
+    answer = replace(_of_seen(problem, chosen, seen), arch=facts)
+    return _Found(answer, offered.stands, moved=seen.moved)
+
+
+def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
+    """Answer by a linear programme or by an engine."""
     planar = problem.is_planar
     static = equilibrium(problem) if planar else None
     factor = collapse(problem).load_factor if planar and problem.live else None
-    joints = closed_joints(problem.assembly.joint_angles)
-    mechanism = seen = None
+    exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
-        verdict = verdict if static.decided else Verdict.UNDECIDED
-        reason = _static_words(static) + _closing_words(problem, static.exists)
-        mechanism = static.mechanism
-    else:
-        from blocksim.evidence.merging import Merging
-        from blocksim.evidence.observation import observe
-
-        seen = observe(
-            problem,
-            chosen.name,
-            settings=settings,
-            reduction=Merging.of(problem) if merges(chosen, reduce, problem) else None,
-            progress=progress,
+        answer = Check(
+            method=chosen.name,
+            verdict=verdict if static.decided else Verdict.UNDECIDED,
+            evidence=(
+                Evidence("limit analysis", _static_words(static)),
+                *_closing(problem, static.exists),
+            ),
+            problem=problem,
+            joints=_observed(problem, static.mechanism),
+            load_factor=factor,
+            wall_s=0.0,
         )
-        verdict, reason, mechanism = seen.verdict, seen.reason, seen.rates
-    exists = None if static is None else static.exists
-    moved = seen is not None and seen.moved
-    rest, motion = rest_of(
-        problem if must_rest else None, exists=exists, moved=moved, progress=progress
+        return _Found(answer, exists, moved=False, static=static)
+    from blocksim.evidence.merging import Merging
+    from blocksim.evidence.observation import observe
+
+    seen = observe(
+        problem,
+        engine_of(chosen),
+        settings=given.settings,
+        reduction=Merging.of(problem) if merges(chosen, given.reduce, problem) else None,
+        progress=given.progress,
     )
-    if motion is not None:
-        mechanism = motion.accelerations
-    if mechanism is not None:
-        mechanism = _unit(mechanism, problem)
-        if planar:
-            joints = observed_joints(problem, mechanism)
-    return ProblemCheck(
+    answer = _of_seen(problem, chosen, seen)
+    joints = _observed(problem, seen.rates) if planar else answer.joints
+    answer = replace(answer, joints=joints, load_factor=factor)
+    return _Found(answer, exists, moved=seen.moved, static=static)
+
+
+def _of_seen(problem: Problem, chosen: Method, seen: Observation) -> Check:
+    """Answer what an engine showed."""
+    return Check(
         method=chosen.name,
-        verdict=verdict,
-        reason=reason + chosen_words(method, chosen) + _notes(problem),
+        verdict=seen.verdict,
+        evidence=seen.evidence,
         problem=problem,
-        load_factor=factor,
-        rest=rest,
-        asked_rest=must_rest,
-        motion=motion,
-        joints=joints,
-        forces=None if static is None else static.forces,
-        mechanism=mechanism,
-        static=static if chosen.is_static else None,
-        simulated=seen and seen.simulated,
-        state_hash=seen and seen.state_hash,
-        blocks=seen and seen.blocks,
-        splits=seen and seen.splits,
-        wall_s=time.perf_counter() - started,
+        joints=seen.joints,
+        rates=seen.rates,
+        simulated=seen.simulated,
+        state_hash=seen.state_hash,
+        blocks=seen.blocks,
+        splits=seen.splits,
+        wall_s=0.0,
     )
 
 
-def _of_shaken(
-    problem: Problem, chosen: Method, shaken: Shaken, words: str, started: float
-) -> ProblemCheck:
+def _by_shaking(problem: Problem, chosen: Method, given: Taken) -> _Found:
     """Answer what became of blocks on ground that shakes."""
-    return ProblemCheck(
+    # What moves blocks is loaded where it is asked for.
+    from blocksim.evidence.shaken import shake
+
+    seen = shake(problem, engine_of(chosen), settings=given.settings, progress=given.progress)
+    answer = Check(
         method=chosen.name,
-        verdict=shaken.verdict,
-        reason=shaken.reason + words + _notes(problem),
+        verdict=seen.verdict,
+        evidence=(Evidence("shaking", seen.reason),),
         problem=problem,
-        load_factor=None,
-        rest=None,
-        asked_rest=False,
         joints=closed_joints(problem.assembly.joint_angles),
-        forces=None,
-        mechanism=None,
-        shaken=shaken,
-        simulated=float(shaken.recording.times[-1]),
-        state_hash=shaken.recording.state_hash,
+        shaken=seen,
+        simulated=float(seen.recording.times[-1]),
+        state_hash=seen.recording.state_hash,
         blocks=len(problem.assembly.blocks),
-        splits=None,
-        wall_s=time.perf_counter() - started,
+        wall_s=0.0,
     )
+    return _Found(answer, None, moved=False)
 
 
-def observed_joints(problem: Problem, rates: Array) -> tuple[ObservedJoint, ...]:
-    """Tell what each joint does as blocks begin to move at some rates, (blocks, 3)."""
+def _observed(problem: Problem, rates: Array | None) -> tuple[ObservedJoint, ...]:
+    """Tell what each joint does as blocks begin to move at some rates; closed at none."""
+    assembly = problem.assembly
+    if rates is None:
+        return closed_joints(assembly.joint_angles)
     from blocksim.evidence.onset import PROBE
 
-    assembly = problem.assembly
+    rates = _unit(rates, problem)
     return classify(assembly, assembly.built[:-1] + PROBE * rates[:, :3])
 
 
@@ -300,25 +387,20 @@ def _static_words(static: Equilibrium) -> str:
     )
 
 
-def _closing_words(problem: Problem, stands: bool) -> str:
+def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
     """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
     gaps = closed_gaps(problem.assembly)
     if not gaps:
-        return ""
+        return ()
     most = 1000 * max(map(abs, gaps.values()))
     for sign, words in ((1, "grown"), (-1, "shrunk")):
         assembly = resized(problem.assembly, sign)
         if equilibrium(replace(problem, assembly=assembly)).exists != stands:
             other = Verdict.COLLAPSES if stands else Verdict.STANDS
-            return (
-                f"; the drawing leaves it open: {other} with blocks {words} by what was closed "
-                f"at joints, {most:.3g} mm at most"
-            )
-    return f"; the same with blocks grown and shrunk by what was closed, {most:.3g} mm at most"
-
-
-def _notes(problem: Problem) -> str:
-    return "".join(f"; {note}" for note in problem.notes)
+            found = f"the drawing leaves it open: {other} with blocks {words} by what was "
+            return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
+    found = "the same with blocks grown and shrunk by what was closed, "
+    return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)
 
 
 def proof_words(answer: Check) -> str:

@@ -64,7 +64,7 @@ def libraries() -> dict[str, str | None]:
     names = {
         re.split(r"[^\w.-]", each, maxsplit=1)[0]
         for each in wanted
-        if not re.search(r"extra *== *['\"](dev|docs)", each)
+        if not re.search(r"extra *== *['\"](dev|docs|release)", each)
     }
     return {name: _installed(name) for name in sorted(names)}
 

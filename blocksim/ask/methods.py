@@ -14,11 +14,12 @@ from collections.abc import Iterator
 from functools import partial
 
 from blocksim.blocks.problem import Problem
-from blocksim.common.errors import InputError
+from blocksim.common.errors import InputError, MissingPart
 from blocksim.common.later import Later
 from blocksim.engines import ENGINES, NAMES, engine_named, make_known
 from blocksim.engines.base import Engine, Method
 from blocksim.evidence.simulation import BY_RULE, Overrides, require_setting
+from blocksim.kinds.offers import offers_of
 
 _STATICS = (
     Method(
@@ -48,7 +49,7 @@ CHOICES = ("auto", *METHODS.shipped)
 
 
 def choose(
-    method: str | Engine,
+    method: str | Method,
     tol: float = 0.0,
     *,
     problem: Problem | None = None,
@@ -60,7 +61,7 @@ def choose(
 
     Parameters
     ----------
-    method : str or Engine
+    method : str or Method
         One of `CHOICES`; an engine of one's own by its name, as ``module:ENGINE``, or itself.
     tol : float
         Relative width of the bracket asked for, 0 where there is none.
@@ -144,7 +145,8 @@ def _beyond(method: Method, problem: Problem | None) -> str:
     if problem.shaking and not (isinstance(method, Engine) and method.shakes):
         able = ", ".join(each.name for each in _shipped() if each.shakes)
         return f"one of {able}: {method.name} knows no ground that shakes"
-    if method.name == "theory" and problem.length_name != "r":
+    offered = offers_of(problem) if method.name == "theory" else None
+    if method.name == "theory" and (offered is None or "theory" not in offered.methods):
         return "limit or an engine: theory is of symmetric circular arches only"
     return ""
 
@@ -169,7 +171,7 @@ def merges(method: Method, reduce: bool | None, problem: Problem) -> bool:
     return still and isinstance(method, Engine) and method.merges
 
 
-def chosen_words(method: str | Engine, rung: Method) -> str:
+def chosen_words(method: str | Method, rung: Method) -> str:
     """Say what `auto` took and why, to be added to the reason of an answer."""
     if method != "auto":
         return ""
@@ -179,6 +181,20 @@ def chosen_words(method: str | Engine, rung: Method) -> str:
         seen = "sees the blocks as built" if rung.is_static else "can move blocks"
     fine = f"brackets down to {rung.finest:g}" if rung.finest else "is exact"
     return f"; auto took {rung.name}, the cheapest method that {seen} and {fine}"
+
+
+def engine_of(method: Method) -> Engine:
+    """Return a method that moves blocks as what moves them.
+
+    Raises
+    ------
+    MissingPart
+        If its library is not installed.
+    """
+    assert isinstance(method, Engine)  # noqa: S101
+    if method.missing:
+        raise MissingPart(method.name, method.missing)
+    return method
 
 
 def missing(method: Method) -> str | None:

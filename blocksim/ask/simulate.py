@@ -2,39 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
-from blocksim.ask.methods import choose
-from blocksim.blocks.problem import Problem
-from blocksim.common.progress import Progress, silent
-from blocksim.evidence.simulation import BY_RULE, Overrides
+from blocksim.ask.methods import choose, engine_of
+from blocksim.ask.options import Asked, Options, problem_of, taken
 
 if TYPE_CHECKING:
     from blocksim.evidence.recording import Recording
 
 
 def simulate(
-    problem: Problem,
-    *,
-    method: str = "auto",
-    duration: float | None = None,
-    settings: Overrides = BY_RULE,
-    progress: Progress = silent,
+    asked: Asked, *, duration: float | None = None, **options: Unpack[Options]
 ) -> Recording:
     """Let blocks go in an engine, after the onset test, and record them.
 
     Parameters
     ----------
-    problem : Problem
-    method : str
-        An engine, or `auto`.
+    asked : Problem or Maker
     duration : float, optional
         Time to record [sqrt(size/g)]; by default until the verdict is certain, or, where
         the ground shakes, until the blocks lie still.
-    settings : mapping of str to float
-        Settings that replace those of the engine's rule;
-        `blocksim.evidence.simulation.SETTINGS` has their names.
-    progress : Progress, optional
+    **options
+        `method`, `settings`, `progress` (`blocksim.ask.options.Options`).
 
     Returns
     -------
@@ -51,16 +40,18 @@ def simulate(
     from blocksim.evidence.observation import hold
     from blocksim.evidence.shaken import shake
 
-    chosen = choose(method, problem=problem, moving=True, settings=settings)
+    given, problem = taken(options, "reduce", "tol", "confirm"), problem_of(asked)
+    chosen = choose(given.method, problem=problem, moving=True, settings=given.settings)
+    engine = engine_of(chosen)
     if problem.shaking is not None:
         seen = shake(
             problem,
-            chosen.name,
+            engine,
             until=duration,
             whole=True,
-            settings=settings,
-            progress=progress,
+            settings=given.settings,
+            progress=given.progress,
         )
         return seen.recording
-    held = hold(problem, chosen.name, settings=settings, progress=progress)
-    return held.release(duration, progress).recording
+    held = hold(problem, engine, settings=given.settings, progress=given.progress)
+    return held.release(duration, given.progress).recording

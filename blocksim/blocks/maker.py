@@ -315,6 +315,13 @@ class Maker(Shown, Table, ABC):
 
         return built_of(self.made(self.unit_weight), self.unit_weight, size)
 
+    def offers(self, problem: Problem) -> Any:  # noqa: ARG002 - one of its own may
+        """Return what it knows of its problem better than the general way; None for nothing.
+
+        See `blocksim.kinds.offers.Offers`.
+        """
+        return None
+
     @property
     def unit_weight(self) -> float:
         """Weight per volume [N/m^3]; 1 where none was given."""

@@ -29,7 +29,7 @@ COMMANDS = {
     ),
     "verify": (
         "proving.verify",
-        "Check a proof that check --proof has written, in rational arithmetic.",
+        "Check a proof that blocks stand or fall, in rational arithmetic.",
     ),
     "simulate": ("commands.simulate", "Let it go and record its motion."),
     "render": ("commands.render", "Draw what is built to scale, or film its motion."),

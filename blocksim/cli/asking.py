@@ -8,8 +8,8 @@ from typing import Annotated
 import click
 
 from blocksim.arch.carried import carried_by_arch
-from blocksim.ask.archbracket import bracket as ask_bracket
-from blocksim.ask.archcheck import check as ask_check
+from blocksim.ask.bracket import bracket as ask_bracket
+from blocksim.ask.check import check as ask_check
 from blocksim.cli.arguments import Option
 from blocksim.cli.options import (
     EXIT_CODES,
@@ -32,8 +32,9 @@ from blocksim.cli.options import (
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
 from blocksim.cli.question import arch_of, joint_of, question, thickness_words
-from blocksim.common.checks import require
-from blocksim.kinds.circular import arch_problem
+from blocksim.common.checks import FRICTION, require
+from blocksim.evidence.verdict import aside
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.report.answers import (
     bracket_lines,
     bracket_record,
@@ -77,22 +78,22 @@ def check(
     arch = arch_of(asked, given.ratio)
     at_joint = None if joint is None else joint_of(joint, joint_names_of(arch))
     with named_options(), progress() as report:
+        problem = arch_problem(arch, asked.mu, asked.lean)
         answer = ask_check(
-            arch,
-            mu=asked.mu,
+            problem,
             method=method,
-            lean=asked.lean,
             settings=settings_of(settings),
             reduce=reduce,
             must_rest=must_rest,
             progress=report,
         )
     write_proof(answer, proof)
-    answer = replace(answer, reason=answer.reason + thickness_words(asked, given.ratio))
+    said = aside("note", thickness_words(asked, given.ratio))
+    answer = replace(answer, evidence=answer.evidence + said)
     at = asked.line and asked.line.at
     told = answer.carried
     if told is not None and at_joint is not None:
-        told = carried_by_arch(arch, arch_problem(arch, asked.mu), at_joint)
+        told = carried_by_arch(arch, problem, at_joint)
     answer_with(check_record(answer, told), check_lines(answer, at, told), as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 
@@ -132,15 +133,21 @@ def bracket(
     require(within is None, "--within", within, "left out over thickness")
     asked = question(scene, given)
     with named_options(), progress() as report:
-        answer = ask_bracket(
+        FRICTION.require("mu", asked.mu)
+        made = CircularArch(
             half_angle=asked.half_angle,
-            mu=asked.mu,
+            eta=1.0,
             voussoirs=asked.voussoirs,
             weight=asked.weight,
+            radius=asked.radius,
+            depth=asked.depth,
+            friction=asked.mu,
+        )
+        answer = ask_bracket(
+            made.problem().leaning(asked.lean),
+            over=THICKNESS,
             method=method,
             tol=tol,
-            lean=asked.lean,
-            depth=asked.depth / asked.radius,
             settings=settings_of(settings),
             reduce=reduce,
             progress=report,

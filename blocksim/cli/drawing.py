@@ -6,7 +6,7 @@ from pathlib import Path
 
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness
-from blocksim.ask.check import ProblemCheck, check
+from blocksim.ask.check import Check, check
 from blocksim.blocks.problem import Problem
 from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import Given, Loading, named_options
@@ -87,7 +87,7 @@ def _write_sheet(
     save_picture(sheet_figure(sheet), out, kind, height)
 
 
-def verdict_words(answer: ProblemCheck) -> str:
+def verdict_words(answer: Check) -> str:
     """Say the verdict and its method, and how an arch falls of its own weight."""
     arch = plain_arch(answer.problem)
     mode = None

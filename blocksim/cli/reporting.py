@@ -29,7 +29,7 @@ from blocksim.cli.question import question, thickness_words
 from blocksim.cli.structures import is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import require_place, write_whole
-from blocksim.evidence.verdict import Verdict
+from blocksim.evidence.verdict import Verdict, aside
 from blocksim.kinds.circular import plain_arch
 
 
@@ -57,7 +57,7 @@ def report(
         answer = check(problem, method=method, settings=own, progress=told)
     if not is_structure(scene):
         said = thickness_words(question(scene, given), given.ratio)
-        answer = replace(answer, reason=answer.reason + said)
+        answer = replace(answer, evidence=answer.evidence + aside("note", said))
     arch = plain_arch(problem)
     falls = answer.verdict is Verdict.COLLAPSES and problem.is_planar
     page = structure_page(

@@ -11,11 +11,11 @@ from blocksim.blocks.assembly import PLANAR, Array
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.base import TellsForces, World
+from blocksim.engines.base import Engine, TellsForces, World
 from blocksim.evidence.motion import Motion, moving_run
 from blocksim.evidence.onset import Onset, onset
 from blocksim.evidence.simulation import BY_RULE, Overrides, Reduced, Simulation, given_words
-from blocksim.evidence.verdict import Verdict
+from blocksim.evidence.verdict import Evidence, Verdict, aside, reason_of
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,8 +64,7 @@ class Observation:
     ----------
     verdict : Verdict
         Undecided unless onset test and moving run agree, or only the first was asked for.
-    reason : str
-        The evidence, and which kind it is.
+    evidence : tuple of Evidence
     onset : Onset
     motion : Motion or None
         None where the blocks were not let go.
@@ -81,7 +80,7 @@ class Observation:
     """
 
     verdict: Verdict
-    reason: str
+    evidence: tuple[Evidence, ...]
     onset: Onset
     motion: Motion | None
     joints: tuple[ObservedJoint, ...]
@@ -89,6 +88,11 @@ class Observation:
     rates: Array | None
     blocks: int
     splits: int
+
+    @property
+    def reason(self) -> str:
+        """The evidence as a sentence."""
+        return reason_of(self.evidence)
 
     @property
     def moved(self) -> bool:
@@ -108,7 +112,7 @@ class Observation:
 
 def observe(
     problem: Problem,
-    engine: str,
+    engine: str | Engine,
     *,
     moving: bool = True,
     settings: Overrides = BY_RULE,
@@ -120,7 +124,7 @@ def observe(
     Parameters
     ----------
     problem : Problem
-    engine : str
+    engine : str or Engine
     moving : bool
         Let the blocks go after the onset test. They are not let go where that test is
         undecided: unbalanced impulses would throw them.
@@ -140,7 +144,7 @@ def observe(
 
 def hold(
     problem: Problem,
-    engine: str,
+    engine: str | Engine,
     *,
     settings: Overrides = BY_RULE,
     reduction: Reduced | None = None,
@@ -185,13 +189,15 @@ def hold(
 def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observation:
     """Do the second part: the moving run if asked for, and what all of it shows."""
     simulation, first = held.simulation, held.onset
-    verdict, reason, motion = first.verdict, first.reason, None
+    verdict, motion = first.verdict, None
+    evidence = (Evidence("onset test", first.reason),)
     if moving and verdict is not Verdict.UNDECIDED:
         motion = held.release(progress=progress)
-        reason = f"onset test: {first.reason}; moving run: {motion.reason}"
+        evidence += (Evidence("moving run", motion.reason),)
         if motion.verdict is not verdict:
             verdict = Verdict.UNDECIDED
-    reason += _asides(held, motion) + given_words(simulation.given)
+    evidence += _asides(held, motion)
+    evidence += aside("settings", given_words(simulation.given))
     joints = closed_joints(simulation.assembly.joint_angles)
     in_motion = joints if motion else ()
     rates = None
@@ -203,7 +209,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observ
         in_motion = classify(simulation.assembly, motion.mechanism) if motion and seen else ()
     return Observation(
         verdict=verdict,
-        reason=reason,
+        evidence=evidence,
         onset=first,
         motion=motion,
         joints=joints,
@@ -214,29 +220,24 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observ
     )
 
 
-def _asides(held: Held, motion: Motion | None) -> str:
+def _asides(held: Held, motion: Motion | None) -> tuple[Evidence, ...]:
     """Tell what else there is to know of an observation."""
     simulation = held.simulation
-    said: list[str] = []
+    said: list[Evidence] = []
     if simulation.reduction:
-        said.append(
-            reduced_words(
-                simulation.reduction.by,
-                simulation.blocks,
-                len(simulation.assembly.blocks),
-                held.splits,
-            )
-        )
+        most = len(simulation.assembly.blocks)
+        words = reduced_words(simulation.reduction.by, simulation.blocks, most, held.splits)
+        said.append(Evidence("reduction", words))
     if motion and not simulation.problem.is_planar:
         way = f"{motion.recording.beyond_plane[-1]:.1e} {simulation.length}"
-        said.append(f"moved {way} out of its plane")
+        said.append(Evidence("moving run out of plane", f"moved {way} out of its plane"))
     if motion and simulation.unsure:
-        said.append(simulation.unsure)
+        said.append(Evidence("settings", simulation.unsure))
     if simulation.rougher is not None:
-        said.append(
-            f"{simulation.engine.name} took {simulation.engine.most_friction:g} as friction"
-        )
-    return "".join(f"; {each}" for each in said)
+        most = simulation.engine.most_friction
+        words = f"{simulation.engine.name} took {most:g} as friction"
+        said.append(Evidence("friction", words))
+    return tuple(said)
 
 
 def reduced_words(by: str, blocks: int, of: int, splits: int) -> str:

@@ -20,7 +20,7 @@ import numpy as np
 from blocksim.blocks.assembly import PLANAR, Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.base import trusted
+from blocksim.engines.base import Engine, trusted
 from blocksim.engines.contact.geometry import Geometry, turns_of
 from blocksim.evidence.motion import FRAME, distrust, lie_still
 from blocksim.evidence.observation import hold
@@ -86,7 +86,7 @@ class Shaken:
 
 def shake(
     problem: Problem,
-    engine: str,
+    engine: str | Engine,
     *,
     until: float | None = None,
     whole: bool = False,
@@ -99,7 +99,7 @@ def shake(
     ----------
     problem : Problem
         With `shaking`.
-    engine : str
+    engine : str or Engine
         One that `shakes`.
     until : float, optional
         Time to record for [sqrt(size/g)], or until all lies still.

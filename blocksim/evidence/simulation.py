@@ -160,13 +160,13 @@ class Simulation:
     def of(
         cls,
         problem: Problem,
-        engine: str,
+        engine: str | Engine,
         *,
         settings: Overrides = BY_RULE,
         reduction: Reduced | None = None,
     ) -> Simulation:
         """Take the settings that the engine chooses for the blocks, or those given."""
-        found = get_engine(engine)
+        found = get_engine(engine) if isinstance(engine, str) else engine
         given = {name: setting_of(name, value) for name, value in settings.items()}
         return cls(
             problem=problem,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from blocksim.common.errors import MISSING
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve
 from blocksim.kinds.strips import Voussoirs
+
+if TYPE_CHECKING:
+    from blocksim.kinds.archoffers import ArchOffers
 
 FEWEST = 3
 """Voussoirs of an arch."""
@@ -100,6 +103,9 @@ class CircularArch(CurvedArch):
 
     def __post_init__(self) -> None:
         """Work out radius, springings and thickness, and check all."""
+        if self.weight == "sector":
+            # As an arch calls it.
+            object.__setattr__(self, "weight", "curved")
         if self.span is not None or self.rise is not None:
             for name in ("span", "rise"):
                 require(getattr(self, name) is not None, name, MISSING, "given")
@@ -119,6 +125,8 @@ class CircularArch(CurvedArch):
         else:
             # Its ranges are wider than those of its kind.
             _ = self.shape
+            if self.friction is not None:
+                FRICTION.require("friction", self.friction)
             self._check_forces()
 
     def _measure(self, line: Line) -> None:
@@ -198,6 +206,29 @@ class CircularArch(CurvedArch):
         """Make the blocks."""
         plain = self.shape if self.is_plain and size is None else None
         return super().built_of(size) if plain is None else Built(assembly=plain.assembly())
+
+    def offers(self, problem: Problem) -> ArchOffers | None:
+        """Return what is known of the arch under its own weight, upright or leaning."""
+        arch = self.shape
+        # Blocks or friction may have been exchanged.
+        mine = arch is not None and self.is_plain and problem.assembly is self.built.assembly
+        alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
+        still = problem.shaking is None and not problem.is_loaded and not problem.gravity[0]
+        if arch is None or not (mine and alike and still):
+            return None
+        from blocksim.kinds.archoffers import ArchOffers
+
+        return ArchOffers(arch, problem)
+
+    def mean_radius(self, eta: float) -> float:
+        """Return the radius of the centreline at a thickness-to-radius ratio [m].
+
+        The centreline stays as it is, wherever it is known. A line that was measured says
+        where that line is, and the centreline follows.
+        """
+        if self.span is None or self.rise is None:
+            return self.radius
+        return Line(span=self.span, rise=self.rise, at=self.at).mean_radius(eta)
 
     @property
     def length_name(self) -> str:

@@ -244,17 +244,18 @@ def _widest(rows: Any, opens: Flags) -> Array | None:
 def _opening(rows: Any, opens: Flags) -> Flags:
     """Tell which rows can be above 0: all of them at once, as motions can be added."""
     count, size = rows.shape
-    able = np.flatnonzero(opens)
+    able, low_rows = np.flatnonzero(opens), np.zeros(len(opens))
     pick = sparse.csr_array(
         (-np.ones(len(able)), (able, np.arange(len(able)))), shape=(count, len(able))
     )
     cost = np.append(np.zeros(size), -np.ones(len(able)))
     ends = np.append(np.full(size, FAR), np.ones(len(able)))
     low = np.append(np.full(size, -FAR), np.zeros(len(able)))
+    matrix: Any = sparse.hstack([rows, pick], format="csc")
     found = LinearProgramme().solve(
         cost,
-        sparse.hstack([rows, pick], format="csc"),
-        (np.zeros(count), np.where(opens, math.inf, 0.0)),
+        matrix,
+        (low_rows, np.where(opens, math.inf, 0.0)),
         (low, ends),
     )
     can = np.zeros(count, dtype=bool)

@@ -219,7 +219,8 @@ def carried_weights(problem: Problem) -> Array:
     found += np.abs(pull[:, 2]) * assembly.size / assembly.reach
     neighbours: list[set[int]] = [set[int]() for _ in range(len(found))]
     first = set[int]()
-    for one, other in assembly.sides.T.tolist():
+    pairs: list[list[int]] = assembly.sides.T.tolist()
+    for one, other in pairs:
         if SUPPORT in (one, other):
             first.add(max(one, other))
         else:

@@ -26,7 +26,6 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_record
 from blocksim.common.version import __version__
 from blocksim.limit.bodies import motion_that_opens
 from blocksim.limit.cones import Cones
@@ -67,6 +66,9 @@ class Proof:
 
 def proof_record(proof: Proof) -> dict[str, Any]:
     """Return a proof as the file that `blocksim.verify` checks."""
+    # Imported here: few ask for the file, and reading files takes long to load.
+    from blocksim.blocks.structure import structure_record
+
     exact = proof.exact
     table: dict[str, Any] = {
         "format": FORMAT,

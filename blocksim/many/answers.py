@@ -13,11 +13,12 @@ from typing import NamedTuple, cast
 
 import blocksim
 from blocksim.arch.circular import Arch
-from blocksim.ask.archbracket import bracket
-from blocksim.ask.archcheck import check
+from blocksim.ask.bracket import bracket
+from blocksim.ask.check import check
 from blocksim.ask.methods import STATIC
 from blocksim.common.errors import MissingPart
 from blocksim.engines import NAMES, get_engine
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.many.case import Case, Pace, Row
 from blocksim.many.statics import by_statics
 from blocksim.many.structurecase import StructureCase, reason_of
@@ -174,22 +175,28 @@ def _by_simulation(case: Case, row: Row) -> None:
     row.update(method=case.engine, verdict=None)
     try:
         if case.is_bracket:
-            found = bracket(
+            asked = CircularArch(
                 half_angle=math.radians(case.half_angle_deg),
-                mu=case.mu,
+                eta=1.0,
                 voussoirs=case.voussoirs,
                 weight=case.weight,
+                friction=case.mu,
+            )
+            found = bracket(
+                asked,
                 method=case.engine,
                 tol=case.tol,
                 confirm=case.confirm,
                 settings=dict(case.settings),
             )
+            of = found.arch
+            assert of is not None  # noqa: S101
             row.update(
-                mode=found.mode,
-                mode_in_motion=found.mode_in_motion,
-                eta_limit=found.eta_limit,
-                eta_low=found.eta_low,
-                eta_high=found.eta_high,
+                mode=of.mode,
+                mode_in_motion=of.mode_in_motion,
+                eta_limit=of.eta_limit,
+                eta_low=of.eta_low,
+                eta_high=of.eta_high,
                 confirmed=found.confirmed,
                 reason=found.reason,
             )
@@ -200,12 +207,15 @@ def _by_simulation(case: Case, row: Row) -> None:
                 voussoirs=case.voussoirs,
                 weight=case.weight,
             )
-            seen = check(arch, mu=case.mu, method=case.engine, settings=dict(case.settings))
+            problem = arch_problem(arch, case.mu)
+            seen = check(problem, method=case.engine, settings=dict(case.settings))
+            told = seen.arch
+            assert told is not None  # noqa: S101
             row.update(
                 verdict=seen.verdict.value,
-                mode=seen.mode,
-                mode_in_motion=seen.mode_in_motion,
-                eta_limit=seen.eta_limit,
+                mode=told.mode,
+                mode_in_motion=told.mode_in_motion,
+                eta_limit=told.eta_limit,
                 reason=seen.reason,
             )
     except MissingPart:

@@ -13,8 +13,8 @@ from pydantic import BeforeValidator, Field
 
 from blocksim.arch.circular import WEIGHTS, Weight
 from blocksim.arch.scenario import read_table
-from blocksim.ask.archbracket import ETA_MAX
 from blocksim.ask.methods import CHOICES, METHODS, STATIC
+from blocksim.ask.search import ETA_MAX
 from blocksim.common.checks import ETA, FRICTION, Range, is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath

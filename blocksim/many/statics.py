@@ -11,8 +11,8 @@ import numpy as np
 from blocksim.arch.circular import Weight
 from blocksim.arch.limit.bulk import joints_of, least_thickness_of_joints, which_stand
 from blocksim.arch.theory.arrays import least_thicknesses
-from blocksim.ask.archbracket import ETA_MAX
 from blocksim.ask.methods import STATIC
+from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.assembly import Array
 from blocksim.evidence.verdict import Verdict
 from blocksim.many.case import Case, Row

@@ -8,7 +8,7 @@ import time
 from typing import Any, NamedTuple, cast
 
 from blocksim.ask.bracket import bracket
-from blocksim.ask.check import ProblemCheck, check
+from blocksim.ask.check import Check, check
 from blocksim.ask.families import family_of
 from blocksim.ask.methods import STATIC
 from blocksim.blocks.problem import Problem
@@ -161,7 +161,7 @@ class StructureCase(NamedTuple):
         }
 
 
-def _rocking(seen: ProblemCheck) -> Row:
+def _rocking(seen: Check) -> Row:
     """Tell how blocks turned on ground that shakes."""
     if seen.shaken is None:
         return {}

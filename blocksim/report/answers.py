@@ -15,19 +15,22 @@ from blocksim.report.carried import carried_lines, carried_record
 from blocksim.report.sizes import size_lines, size_record, unit_lines
 
 if TYPE_CHECKING:
+    from blocksim.arch.answers import ArchAnswer, ArchBracket
     from blocksim.arch.dimensions import At
     from blocksim.arch.modes import Mode
-    from blocksim.ask.archbracket import Bracket
-    from blocksim.ask.archcheck import ArchCheck
+    from blocksim.ask.bracket import Bracket
+    from blocksim.ask.check import Check
+    from blocksim.blocks.problem import Problem
     from blocksim.limit.carried import Carried
 
 SIX = 6
 """Digits of ratios, where no more are known."""
 
 
-def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str, object]:
+def check_record(answer: Check, carried: Carried | None = None) -> dict[str, object]:
     """Return a check as `check --json` prints it."""
-    arch, carried = answer.arch, carried or answer.carried
+    of, mu, carried = _of(answer), answer.problem.mu, carried or answer.carried
+    arch = of.shape
     seconds = None
     if answer.simulated is not None:
         seconds = answer.simulated * math.sqrt(arch.radius / GRAVITY)
@@ -38,25 +41,25 @@ def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str,
         "proved": answer.proved,
         "reason": answer.reason,
         "eta": arch.eta,
-        "mu": answer.mu,
+        "mu": mu,
         "half_angle_deg": math.degrees(arch.half_angle),
         "voussoirs": arch.voussoirs,
         "weight": arch.weight,
         "radius": arch.radius,
         "depth": arch.depth,
-        **size_record(arch, answer.mu),
-        "lean_deg": math.degrees(answer.lean),
-        "eta_limit": answer.eta_limit,
-        "eta_theory": answer.eta_theory,
+        **size_record(arch, mu),
+        "lean_deg": lean_deg(answer.problem),
+        "eta_limit": of.eta_limit,
+        "eta_theory": of.eta_theory,
         "factor_of_safety": carried and carried.geometrical_factor,
         **carried_record(carried, joint_names_of(arch)),
         "rest": answer.rest,
         "rest_goes_on": answer.motion and answer.motion.goes_on,
-        "mode": answer.mode,
-        "mode_in_motion": answer.mode_in_motion,
-        "mode_limit": answer.mode_limit,
-        "mode_theory": answer.mode_theory,
-        "modes_theory": list(answer.modes_theory),
+        "mode": of.mode,
+        "mode_in_motion": of.mode_in_motion,
+        "mode_limit": of.mode_limit,
+        "mode_theory": of.mode_theory,
+        "modes_theory": list(of.modes_theory),
         "joints": [
             {"angle_deg": math.degrees(joint.angle), "state": joint.state.value}
             for joint in answer.joints
@@ -71,29 +74,31 @@ def check_record(answer: ArchCheck, carried: Carried | None = None) -> dict[str,
 
 def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
     """Return a bracket as `bracket --json` prints it, its depth in m, as the radius is."""
+    of = bracket_of(answer)
+    arch = of.shape
     return {
         "version": __version__,
         "method": answer.method,
-        "half_angle_deg": math.degrees(answer.half_angle),
-        "mu": answer.mu,
-        "voussoirs": answer.voussoirs,
-        "weight": answer.weight,
+        "half_angle_deg": math.degrees(arch.half_angle),
+        "mu": answer.problem.mu,
+        "voussoirs": arch.voussoirs,
+        "weight": arch.weight,
         "radius": radius,
-        "depth": answer.depth * radius,
-        "lean_deg": math.degrees(answer.lean),
+        "depth": arch.depth / arch.radius * radius,
+        "lean_deg": lean_deg(answer.problem),
         "tol": answer.tol,
-        "eta_low": answer.eta_low,
-        "eta_high": answer.eta_high,
-        "eta_limit": answer.eta_limit,
-        "eta_theory": answer.eta_theory,
-        "mode": answer.mode,
-        "mode_in_motion": answer.mode_in_motion,
-        "mode_limit": answer.mode_limit,
-        "mode_theory": answer.mode_theory,
-        "modes_theory": list(answer.modes_theory),
-        "thrust": answer.thrust,
-        "beta_r_deg": _degrees(answer.beta_r),
-        "beta_s_deg": _degrees(answer.beta_s),
+        "eta_low": of.eta_low,
+        "eta_high": of.eta_high,
+        "eta_limit": of.eta_limit,
+        "eta_theory": of.eta_theory,
+        "mode": of.mode,
+        "mode_in_motion": of.mode_in_motion,
+        "mode_limit": of.mode_limit,
+        "mode_theory": of.mode_theory,
+        "modes_theory": list(of.modes_theory),
+        "thrust": of.thrust,
+        "beta_r_deg": _degrees(of.beta_r),
+        "beta_s_deg": _degrees(of.beta_s),
         "confirmed": answer.confirmed,
         "runs": answer.runs,
         "undecided": answer.undecided,
@@ -102,6 +107,23 @@ def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
         "reason": answer.reason,
         "wall_s": answer.wall_s,
     }
+
+
+def _of(answer: Check) -> ArchAnswer:
+    assert answer.arch is not None  # noqa: S101
+    return answer.arch
+
+
+def bracket_of(answer: Bracket) -> ArchBracket:
+    """Return what is known of the arch."""
+    assert answer.arch is not None  # noqa: S101
+    return answer.arch
+
+
+def lean_deg(problem: Problem) -> float:
+    """Return by how many degrees gravity leans out of the plane."""
+    x, y, z = problem.gravity.tolist()
+    return math.degrees(math.atan2(z, math.hypot(x, y)))
 
 
 def joint_names_of(arch: Arch) -> list[str]:
@@ -118,32 +140,33 @@ def _degrees(angle: float | None) -> float | None:
 
 
 def check_lines(
-    answer: ArchCheck, at: At | None = None, carried: Carried | None = None
+    answer: Check, at: At | None = None, carried: Carried | None = None
 ) -> list[str]:
     """Return a check in words; `at` is the line that was measured, if one was."""
-    arch, carried = answer.arch, carried or answer.carried
+    of, mu, carried = _of(answer), answer.problem.mu, carried or answer.carried
+    arch = of.shape
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
-        f"mu {answer.mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}, "
-        f"depth {arch.depth / arch.radius:g} r{lean_words(answer.lean)}",
-        *size_lines(arch, answer.mu, at),
+        f"mu {mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}, "
+        f"depth {arch.depth / arch.radius:g} r{lean_words(math.radians(lean_deg(answer.problem)))}",
+        *size_lines(arch, mu, at),
         f"  because {answer.reason}",
-        _exact("least  ", answer),
+        _exact("least  ", of),
         *carried_lines(carried, joint_names_of(arch)),
         *(unit_lines(arch, at) if carried else []),
     ]
     if answer.method == "theory":
-        of = "of the continuous arch at its least thickness"
-        if answer.eta_theory is None:
-            of = "of the continuous arch, of any thickness"
+        whose = "of the continuous arch at its least thickness"
+        if of.eta_theory is None:
+            whose = "of the continuous arch, of any thickness"
     else:
-        of = f"of the voussoirs as built, at eta {arch.eta:g}"
+        whose = f"of the voussoirs as built, at eta {arch.eta:g}"
     if answer.method == "limit":
         lines.append(f"  proof   {proof_words(answer)}")
     if rest := rest_words(answer.rest, answer.motion, asked=answer.asked_rest):
         lines.append(f"  rest    {rest}")
-    lines += _modes(answer, of)
+    lines += _modes(of, whose)
     active = [joint for joint in answer.joints if joint.state is not JointState.CLOSED]
     if active:
         told = ", ".join(
@@ -155,38 +178,39 @@ def check_lines(
 
 def bracket_lines(answer: Bracket) -> list[str]:
     """Return a bracket in words."""
-    digits = _digits(answer)
-    if answer.eta_high is None:
+    of = bracket_of(answer)
+    arch, digits = of.shape, _digits(of)
+    if of.eta_high is None:
         head = "NOTHING STANDS up to eta = 2"
-    elif answer.eta_high == 0:
+    elif of.eta_high == 0:
         head = "ANY THICKNESS STANDS"
-    elif answer.eta_low == answer.eta_high:
-        head = f"LEAST ETA {answer.eta_high:.12g}"
+    elif of.eta_low == of.eta_high:
+        head = f"LEAST ETA {of.eta_high:.12g}"
     else:
-        low, high = answer.eta_low or 0.0, answer.eta_high
+        low, high = of.eta_low or 0.0, of.eta_high
         head = f"LEAST ETA between {low:.{digits}g} and {high:.{digits}g}"
     lines = [
         f"{head}  ({answer.method}, {answer.wall_s:.2g} s)",
-        f"  arch    alpha {math.degrees(answer.half_angle):g} deg, mu {answer.mu:g}, "
-        f"{answer.voussoirs} voussoirs, weight {answer.weight}, "
-        f"depth {answer.depth:g} r{lean_words(answer.lean)}",
+        f"  arch    alpha {math.degrees(arch.half_angle):g} deg, mu {answer.problem.mu:g}, "
+        f"{arch.voussoirs} voussoirs, weight {arch.weight}, "
+        f"depth {arch.depth / arch.radius:g} r{lean_words(math.radians(lean_deg(answer.problem)))}",
         f"  because {answer.reason}",
-        _exact("exact  ", answer, digits),
+        _exact("exact  ", of, digits),
     ]
     whose = "continuous arch" if answer.method == "theory" else "voussoirs as built"
-    lines += _modes(answer, f"of the {whose}, at eta {ratio(answer.eta_low, digits)}")
-    if answer.thrust is not None:
-        lines.append(f"  thrust  h = {answer.thrust:.9g}, in units of gamma t d r")
-    if answer.beta_r is not None:
-        lines.append(f"  hinge   {math.degrees(answer.beta_r):.4f} deg from the crown")
-    if answer.beta_s is not None:
-        lines.append(f"  slides  {math.degrees(answer.beta_s):.4f} deg from the crown")
+    lines += _modes(of, f"of the {whose}, at eta {ratio(of.eta_low, digits)}")
+    if of.thrust is not None:
+        lines.append(f"  thrust  h = {of.thrust:.9g}, in units of gamma t d r")
+    if of.beta_r is not None:
+        lines.append(f"  hinge   {math.degrees(of.beta_r):.4f} deg from the crown")
+    if of.beta_s is not None:
+        lines.append(f"  slides  {math.degrees(of.beta_s):.4f} deg from the crown")
     if answer.undecided:
         lines.append(f"  unsure  {answer.undecided} of {answer.runs} ratios undecided")
     return lines
 
 
-def _exact(label: str, answer: ArchCheck | Bracket, digits: int = SIX) -> str:
+def _exact(label: str, answer: ArchAnswer, digits: int = SIX) -> str:
     """Tell the least thickness as built and of the continuous arch, each with its mode."""
 
     def least(eta: float | None, mode: Mode | None) -> str:
@@ -201,13 +225,13 @@ def _exact(label: str, answer: ArchCheck | Bracket, digits: int = SIX) -> str:
     )
 
 
-def _digits(answer: Bracket) -> int:
+def _digits(answer: ArchBracket) -> int:
     """Digits that tell both ends of a bracket apart, and one or two more; six at least."""
     low, high = answer.eta_low or 0.0, answer.eta_high or 0.0
     return SIX if low >= high else max(SIX, 2 - math.floor(math.log10(1 - low / high)))
 
 
-def _modes(answer: ArchCheck | Bracket, of: str) -> list[str]:
+def _modes(answer: ArchAnswer, of: str) -> list[str]:
     """Tell the mode an arch starts with and, if it is another, that in motion."""
     lines: list[str] = []
     if answer.mode:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blocksim.arch import limit, theory
-from blocksim.ask.check import ProblemCheck
+from blocksim.ask.check import Check
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
 from blocksim.kinds.circular import is_plain_arch, plain_arch, weighed_arch
@@ -142,7 +142,7 @@ def assumptions(problem: Problem) -> list[str]:
     ]
 
 
-def factor_facts(answer: ProblemCheck, sheet: Sheet) -> list[Fact]:
+def factor_facts(answer: Check, sheet: Sheet) -> list[Fact]:
     """Tell how far it is from falling."""
     problem, carried = answer.problem, sheet.carried
     facts: list[Fact] = []

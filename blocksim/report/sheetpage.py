@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from blocksim.arch import limit
 from blocksim.arch.modes import Mode
-from blocksim.ask.check import ProblemCheck, check
+from blocksim.ask.check import Check, check
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
@@ -56,13 +56,13 @@ class Fall:
 
 
 def structure_page(
-    answer: ProblemCheck, *, mode: Mode | None = None, command: str = "", settings: str = ""
+    answer: Check, *, mode: Mode | None = None, command: str = "", settings: str = ""
 ) -> str:
     """Write the report on one structure.
 
     Parameters
     ----------
-    answer : ProblemCheck
+    answer : Check
     mode : Mode or None
         In which an arch falls.
     command, settings : str
@@ -129,7 +129,7 @@ def structure_page(
     )
 
 
-def _verdicts(answer: ProblemCheck, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
+def _verdicts(answer: Check, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
     """Return method, verdict and reason: by limit analysis, and by the method asked for."""
     words = "limit analysis"
     method = words if answer.method == "limit" else answer.method
@@ -141,7 +141,7 @@ def _verdicts(answer: ProblemCheck, sheet: Sheet) -> list[tuple[str, Verdict, st
     return [(words, Verdict.STANDS if static else Verdict.COLLAPSES, reason), asked]
 
 
-def _active(answer: ProblemCheck) -> list[Fact]:
+def _active(answer: Check) -> list[Fact]:
     """Joints that take part as it falls."""
     problem = answer.problem
     is_arch = plain_arch(problem) is not None
@@ -153,7 +153,7 @@ def _active(answer: ProblemCheck) -> list[Fact]:
     ]
 
 
-def _fall(answer: ProblemCheck) -> Fall | None:
+def _fall(answer: Check) -> Fall | None:
     """Show how it falls; what stands, beyond its load factor or below its least thickness."""
     problem = answer.problem
     if answer.mechanism is not None:

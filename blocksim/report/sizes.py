@@ -10,7 +10,7 @@ from blocksim.arch.dimensions import At, dimensions_of, friction_angle
 
 if TYPE_CHECKING:
     from blocksim.arch.scenario import Scenario
-    from blocksim.ask.archbracket import Bracket
+    from blocksim.ask.bracket import Bracket
 
 
 def size_record(arch: Arch, mu: float | None = None) -> dict[str, object]:
@@ -74,7 +74,7 @@ def bracket_size_record(answer: Bracket, asked: Scenario) -> dict[str, object]:
     if asked.line is None and asked.radius == 1:
         return {}
     record: dict[str, object] = {
-        f"thickness_{end}_m": _thickness(asked, getattr(answer, f"eta_{end}"))
+        f"thickness_{end}_m": _thickness(asked, getattr(answer.arch, f"eta_{end}"))
         for end in ("low", "high", "limit", "theory")
     }
     if asked.line is not None:
@@ -95,7 +95,9 @@ def bracket_size_lines(answer: Bracket, asked: Scenario) -> list[str]:
     """Return a bracket in metres, in words; nothing where no length was given."""
     if asked.line is None and asked.radius == 1:
         return []
-    low, high = (_thickness(asked, eta) for eta in (answer.eta_low, answer.eta_high))
+    of = answer.arch
+    assert of is not None  # noqa: S101
+    low, high = (_thickness(asked, eta) for eta in (of.eta_low, of.eta_high))
     if high is None or math.isinf(high):
         return []
     least = f"{high:.6g} m" if low == high else f"{low or 0:.6g} to {high:.6g} m"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 
 from blocksim.ask.bracket import Bracket
-from blocksim.ask.check import SOUGHT, ProblemCheck, proof_words
+from blocksim.ask.check import SOUGHT, Check, proof_words
 from blocksim.ask.ends import End
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
@@ -26,7 +26,7 @@ SHOWN = 8
 """Joints and blocks told in a line of text."""
 
 
-def check_record(answer: ProblemCheck, carried: Carried | None = None) -> dict[str, object]:
+def check_record(answer: Check, carried: Carried | None = None) -> dict[str, object]:
     """Return a check of a structure as `check --json` prints it.
 
     Forces of joints are in N, as the file has them; normal forces press where they are above
@@ -88,7 +88,7 @@ def bracket_record(answer: Bracket) -> dict[str, object]:
     }
 
 
-def check_lines(answer: ProblemCheck, carried: Carried | None = None) -> list[str]:
+def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
     """Return a check of a structure in words."""
     problem, carried = answer.problem, carried or answer.carried
     lines = [
@@ -210,7 +210,7 @@ def _name(assembly: Assembly, joint: int, side: int) -> str:
     return assembly.supports[here.support].name or "support"
 
 
-def _factor_of_safety(answer: ProblemCheck, carried: Carried | None) -> float | None:
+def _factor_of_safety(answer: Check, carried: Carried | None) -> float | None:
     """Return the factor on live loads where there are any, else the geometrical one."""
     if answer.load_factor is not None and answer.problem.load > 0:
         return answer.load_factor / answer.problem.load
@@ -219,7 +219,7 @@ def _factor_of_safety(answer: ProblemCheck, carried: Carried | None) -> float | 
     return carried and carried.geometrical_factor
 
 
-def _joints(answer: ProblemCheck, carried: Carried | None) -> list[dict[str, object]]:
+def _joints(answer: Check, carried: Carried | None) -> list[dict[str, object]]:
     problem = answer.problem
     assembly, words = problem.assembly, _state_words(problem)
     found = None if carried is None else carried.resultants
@@ -248,7 +248,7 @@ def _joints(answer: ProblemCheck, carried: Carried | None) -> list[dict[str, obj
     return told
 
 
-def _shaken(answer: ProblemCheck) -> dict[str, object] | None:
+def _shaken(answer: Check) -> dict[str, object] | None:
     """Tell what became of blocks on ground that shakes; times since the release."""
     if answer.shaken is None:
         return None

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from blocksim.ask.bracket import bracket
-from blocksim.ask.check import ProblemCheck, check
+from blocksim.ask.check import Check, check
 from blocksim.ask.families import Family, family_of
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.entries import ExpectEntry
@@ -41,7 +41,7 @@ class Drawn:
     ----------
     problem : Problem
     rates : (blocks, 3) float or None
-        As of `ProblemCheck.mechanism`; None where it stands.
+        As of `Check.mechanism`; None where it stands.
     states : tuple of JointState
     method : str
         By which it falls.
@@ -270,7 +270,7 @@ def _slowly(row: StructureRow, family: Family, value: float) -> StructureRow:
     )
 
 
-def _opening(seen: ProblemCheck) -> tuple[int, ...]:
+def _opening(seen: Check) -> tuple[int, ...]:
     """Return the numbers of the joints that take part as it falls."""
     if seen.verdict is not Verdict.COLLAPSES:
         return ()
@@ -287,7 +287,7 @@ def _other_hinges(row: StructureRow, hinges: tuple[int, ...]) -> list[str]:
     return [f"opens at joints {', '.join(map(str, hinges)) or 'none'}"]
 
 
-def _drawn(seen: ProblemCheck) -> Drawn:
+def _drawn(seen: Check) -> Drawn:
     falls = seen.verdict is Verdict.COLLAPSES
     return Drawn(
         problem=seen.problem,

@@ -8,19 +8,21 @@ from concurrent.futures import as_completed
 from dataclasses import replace
 
 from blocksim.arch import limit
+from blocksim.arch.answers import ArchBracket
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import Scenario, load_scenario, shipped
-from blocksim.ask.archbracket import ETA_MAX, Bracket, bracket
+from blocksim.ask.bracket import bracket
 from blocksim.ask.methods import missing
+from blocksim.ask.search import ETA_MAX
 from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.studies.agreement import Unasked, Validation, agree
 
 ERROR_BOUND = 0.002
@@ -128,16 +130,16 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
     if scenario.expected_verdict is not None and scenario.eta is not None:
         return _judged(scenario, scenario.arch(scenario.eta), engine)
     started = time.perf_counter()
-    found = bracket(
-        half_angle=scenario.half_angle,
-        mu=scenario.mu,
-        voussoirs=scenario.voussoirs,
-        weight=scenario.weight,
+    asked = bracket(
+        made(scenario),
+        over="thickness",
         method=engine,
         tol=tol or engine_named(engine).validated_to,
         confirm=False,
         reduce=False,
     )
+    found = asked.arch
+    assert found is not None  # noqa: S101
     in_motion = below = above = recording = None
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
@@ -151,7 +153,7 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
         above = observe(arch_problem(scenario.arch(over), scenario.mu), engine).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
-    middle = found.centre or (None if found.undecided else found.eta_low)
+    middle = found.centre or (None if asked.undecided else found.eta_low)
     if middle is not None and found.eta_limit:
         error = middle / found.eta_limit - 1
     miss = "; ".join(_misses(found, error, below, above))
@@ -167,10 +169,21 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
         below=below,
         above=above,
         miss=miss,
-        note=_note(scenario, found, in_motion),
+        note=_note(scenario, found, engine, in_motion),
         wall_s=time.perf_counter() - started,
         modes_theory=found.modes_theory,
         recording=recording,
+    )
+
+
+def made(scenario: Scenario) -> CircularArch:
+    """Return what makes the arches of a scenario, at any thickness."""
+    return CircularArch(
+        half_angle=scenario.half_angle,
+        eta=1.0,
+        voussoirs=scenario.voussoirs,
+        weight=scenario.weight,
+        friction=scenario.mu,
     )
 
 
@@ -208,7 +221,7 @@ def _asked(scenario: Scenario, engine: str) -> Validation:
 
 
 def _misses(
-    found: Bracket,
+    found: ArchBracket,
     error: float | None,
     below: Verdict | None,
     above: Verdict | None,
@@ -236,7 +249,7 @@ def _misses(
     return misses
 
 
-def _note(scenario: Scenario, found: Bracket, in_motion: Mode | None) -> str:
+def _note(scenario: Scenario, found: ArchBracket, engine: str, in_motion: Mode | None) -> str:
     """Say why modes differ, where that is known, and what else to keep in mind."""
     notes: list[str] = []
     if found.mode is not found.mode_limit:
@@ -248,7 +261,7 @@ def _note(scenario: Scenario, found: Bracket, in_motion: Mode | None) -> str:
             notes.append(f"at the bracket's lower end limit analysis says {said}")
     if in_motion and in_motion is not found.mode:
         notes.append(f"in motion, 1 % below, the mode is {in_motion}")
-    most = get_engine(found.method).most_friction
+    most = get_engine(engine).most_friction
     if scenario.mu > most:
         there = limit.least_thickness(
             scenario.half_angle, most, scenario.voussoirs, scenario.weight

@@ -4,20 +4,20 @@ The exact map says that such a semicircle turns at hinges 54.5 degrees from the 
 voussoirs there are joints at 50 degrees and at 70.
 """
 
-from math import degrees, radians
+from math import degrees
 
-from blocksim import Arch, bracket, check, simulate
+from blocksim import CircularArch, bracket, check, simulate
 from blocksim.view.video import render
 
-HALF_ANGLE, MU = radians(90), 0.7
+ARCH = CircularArch(half_angle_deg=90, voussoirs=9, weight="centreline", friction=0.7)
 
-least = bracket(half_angle=HALF_ANGLE, mu=MU, voussoirs=9, method="limit").eta_high
-arch = Arch(half_angle=HALF_ANGLE, eta=0.98 * least, voussoirs=9)
-answer = check(arch, mu=MU, method="direct")
+least = bracket(ARCH, method="limit").arch.eta_high
+arch = ARCH.but(eta=0.98 * least)
+answer = check(arch, method="direct")
 hinges = [degrees(joint.angle) for joint in answer.joints if "intrados" in str(joint.state)]
 print(answer.verdict, "with hinges at the intrados at", hinges)
 
-recording = simulate(arch, mu=MU, method="direct", duration=2.4)
+recording = simulate(arch, method="direct", duration=2.4)
 render([recording], "collapse_film.gif", height=180, slow=1)
 render([recording], "collapse_film.png", height=480, at=1.9)
 

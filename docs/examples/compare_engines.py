@@ -3,20 +3,18 @@
 The arch of 11 voussoirs as built is exact by limit analysis; the continuous one has 0.107426.
 """
 
-from math import radians
-
 import matplotlib.pyplot as plt
 
-from blocksim import bracket
+from blocksim import CircularArch, bracket
 
 ENGINES = ("direct", "pymunk")  # and "pybullet", "mujoco", which take longer
-ARCH = {"half_angle": radians(90), "mu": 0.7, "voussoirs": 11}
+ARCH = CircularArch(half_angle_deg=90, voussoirs=11, weight="centreline", friction=0.7)
 
-exact = bracket(**ARCH, method="limit").eta_high
+exact = bracket(ARCH, method="limit").arch.eta_high
 figure, axes = plt.subplots(figsize=(6, 2.6), layout="constrained")
 errors = {}
 for row, engine in enumerate(ENGINES):
-    found = bracket(**ARCH, method=engine, tol=0.002)
+    found = bracket(ARCH, method=engine, tol=0.002).arch
     errors[engine] = (found.eta_low + found.eta_high) / 2 / exact - 1
     print(f"{engine}: between {found.eta_low:.6f} and {found.eta_high:.6f}")
     axes.plot([found.eta_low, found.eta_high], [row, row], lw=8, solid_capstyle="butt")

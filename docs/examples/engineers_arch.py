@@ -6,19 +6,12 @@ down at each support: the unit weight times half the area between the two circle
 
 from math import radians, tan
 
-from blocksim import Arch, check
-from blocksim.arch.dimensions import Dimensions
+from blocksim import CircularArch, check
 
-measured = Dimensions(span=8, rise=3, thickness=0.45, at="intrados")
-arch = Arch(
-    half_angle=measured.half_angle,
-    eta=measured.eta,
-    radius=measured.radius,
-    voussoirs=31,
-    weight="sector",
-    specific_weight=22_000,
+arch = CircularArch(
+    span=8, rise=3, thickness=0.45, voussoirs=31, density=22_000, friction=tan(radians(35))
 )
-answer = check(arch, mu=tan(radians(35)))
+answer = check(arch)
 told = answer.to_dict()
 print(answer.verdict, "with a geometrical factor of", round(told["geometrical_factor"], 3))
 print(f"thrust {told['thrust_min_kN_per_m']:.2f} to {told['thrust_max_kN_per_m']:.2f} kN/m")

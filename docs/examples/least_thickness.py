@@ -7,14 +7,21 @@ from math import radians
 
 import matplotlib.pyplot as plt
 
-from blocksim import bracket
+from blocksim import CircularArch, bracket
 
 HALF_ANGLE, MU = radians(90), 0.7
 
-exact = bracket(half_angle=HALF_ANGLE, mu=MU, voussoirs=27, method="theory").eta_high
+exact = bracket(
+    CircularArch(half_angle=HALF_ANGLE, friction=MU, voussoirs=27, weight="centreline"),
+    method="theory",
+).arch.eta_high
 counts = [5, 7, 9, 13, 19, 27, 39, 55, 101]
 least = [
-    bracket(half_angle=HALF_ANGLE, mu=MU, voussoirs=n, method="limit").eta_high for n in counts
+    bracket(
+        CircularArch(half_angle=HALF_ANGLE, friction=MU, voussoirs=n, weight="centreline"),
+        method="limit",
+    ).arch.eta_high
+    for n in counts
 ]
 
 figure, axes = plt.subplots(figsize=(6, 3.4), layout="constrained")

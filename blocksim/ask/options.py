@@ -1,0 +1,78 @@
+"""Options that the questions share, each said once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypedDict
+
+from blocksim.blocks.maker import Maker
+from blocksim.blocks.problem import Problem
+from blocksim.common.checks import is_number, require
+from blocksim.common.progress import Progress, silent
+from blocksim.engines.base import Method
+from blocksim.evidence.simulation import BY_RULE, Overrides
+
+Asked = Problem | Maker
+"""What is asked about; of a maker its problem."""
+
+
+class Options(TypedDict, total=False):
+    """How a question is asked.
+
+    Parameters
+    ----------
+    method : str or Engine
+        `auto`, which takes the cheapest that can answer; `theory`, `limit`, or an engine, by
+        its name or as an object.
+    settings : mapping of str to float
+        Settings that replace those of the engine's rule;
+        `blocksim.evidence.simulation.SETTINGS` has their names.
+    reduce : bool
+        Simulate no more blocks than it takes: blocks that do not part as one
+        (`blocksim.evidence.merging`), half of a symmetric arch (`blocksim.arch.reduction`). By
+        default the engine decides, and only where gravity lies in the plane and the ground is
+        at rest.
+    progress : Progress
+        What is told how far it is.
+    tol : float
+        Of a bracket, the relative width at which to end, above 0 and at most 0.5; by default
+        0.005.
+    confirm : bool
+        Of a bracket, let the blocks go at both ends, as by default; without, an engine answers
+        by the onset test alone.
+    """
+
+    method: str | Method
+    settings: Overrides
+    reduce: bool | None
+    progress: Progress
+    tol: float
+    confirm: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Taken:
+    """Options as given, or as usual."""
+
+    method: str | Method = "auto"
+    settings: Overrides = field(default_factory=lambda: BY_RULE)
+    reduce: bool | None = None
+    progress: Progress = silent
+    tol: float = 0.005
+    confirm: bool = True
+
+    def __post_init__(self) -> None:
+        """Check the width of a bracket."""
+        require(is_number(self.tol, 0, 0.5), "tol", self.tol, "above 0 and at most 0.5")
+
+
+def taken(options: Options, *without: str) -> Taken:
+    """Return options, none of which is one that makes no sense here."""
+    for name in without:
+        require(name not in options, name, options.get(name), "left out here")
+    return Taken(**options)
+
+
+def problem_of(asked: Asked) -> Problem:
+    """Return the problem that is asked about."""
+    return asked.problem() if isinstance(asked, Maker) else asked

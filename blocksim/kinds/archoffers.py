@@ -1,0 +1,245 @@
+"""What is known of symmetric circular arches under their own weight."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from blocksim.arch import limit, theory
+from blocksim.arch.answers import ArchAnswer, ArchBracket
+from blocksim.arch.carried import carried_by_arch
+from blocksim.arch.circular import Arch
+from blocksim.arch.limit import LimitState
+from blocksim.arch.modes import Mode
+from blocksim.arch.observed import observed_mode
+from blocksim.arch.theory import Critical
+from blocksim.arch.theory.equations import ETA_MAX
+from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
+from blocksim.blocks.problem import Problem
+from blocksim.evidence.simulation import Reduced
+from blocksim.evidence.verdict import Evidence, Verdict
+from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.offers import Offers, Static, Threshold
+from blocksim.limit.carried import Carried
+
+if TYPE_CHECKING:
+    from blocksim.arch.limit.mechanism import Mechanism
+    from blocksim.evidence.observation import Observation
+
+THINNEST = 1e-6
+"""Search below this ratio is given up."""
+TIMES = 0.5
+"""Share above the least thickness from which on it is told how many times that it is."""
+ANY_THICKNESS = "two joints on each half, and a line of thrust through the middle of both"
+
+
+class ArchOffers(Offers):
+    """What is known of an arch.
+
+    Parameters
+    ----------
+    arch : Arch
+    problem : Problem
+        Of this arch, under its own weight; gravity may lean out of the plane.
+    """
+
+    def __init__(self, arch: Arch, problem: Problem) -> None:
+        self.arch, self.problem = arch, problem
+        self.methods = ("limit", "theory") if problem.is_planar else ()
+
+    @cached_property
+    def built(self) -> LimitState:
+        """The voussoirs as built at their least thickness."""
+        arch = self.arch
+        return limit.least_thickness(
+            arch.half_angle, self.problem.mu, arch.voussoirs, arch.weight
+        )
+
+    @cached_property
+    def continuous(self) -> Critical:
+        """The continuous arch at its least thickness."""
+        return theory.least_thickness(self.arch.half_angle, self.problem.mu, self.arch.weight)
+
+    @property
+    def stands(self) -> bool | None:  # type: ignore[override]
+        """Whether forces of equilibrium exist; None where gravity leans."""
+        return self.built.stands_at(self.arch.eta) if self.problem.is_planar else None
+
+    def static(self, method: str) -> Static | None:
+        """Compare the thickness with the least one."""
+        arch, joints = self.arch, closed_joints(self.arch.joint_angles)
+        if method == "theory":
+            verdict, said = _compare(arch.eta, self.continuous.eta, "of the continuous arch")
+            mode = self.continuous.mode if verdict is Verdict.COLLAPSES else None
+            found = Evidence("closed form", said)
+            return Static(verdict=verdict, evidence=found, joints=joints, mode=mode)
+        verdict, said = _compare(arch.eta, self.built.eta, "of the voussoirs as built")
+        mode = None
+        if verdict is Verdict.STANDS:
+            spare = limit.slack(arch, self.problem.mu)
+            said = f"{said}; {spare:.2%} of thickness and friction could be taken away"
+        else:
+            # Its linear programmes take longer to load than an arch that stands to answer.
+            from blocksim.arch.limit.mechanism import mechanism
+
+            seen = mechanism(arch, self.problem.mu)
+            mode, joints = seen.mode, _limit_joints(seen)
+        found = Evidence("limit analysis", said)
+        return Static(verdict=verdict, evidence=found, joints=joints, mode=mode)
+
+    def carried(self, joint: int | None = None) -> Carried | None:
+        """Return what the arch carries; None where gravity leans."""
+        if not self.problem.is_planar:
+            return None
+        return carried_by_arch(self.arch, self.problem, joint)
+
+    def mode(self, joints: tuple[ObservedJoint, ...]) -> Mode | None:
+        """Return which of the seven modes it is."""
+        return observed_mode(joints, self.arch)
+
+    def reduction(self) -> Reduced | None:
+        """Return half of the arch, its voussoirs merged."""
+        # What moves blocks is loaded where it is asked for.
+        from blocksim.arch.reduction import Reduction
+
+        return Reduction.of(self.arch, self.problem.mu)
+
+    def threshold(self, over: str) -> Threshold | None:
+        """Return what is known of the least thickness."""
+        return Thinning(self) if over == "thickness" else None
+
+    def facts(self, **found: Any) -> ArchAnswer:
+        """Return ratios and modes."""
+        return ArchAnswer(shape=self.arch, **self.known, **found)
+
+    @property
+    def known(self) -> dict[str, Any]:
+        """What is known of the arch at its least thickness."""
+        return {
+            "eta_limit": self.built.eta,
+            "eta_theory": self.continuous.eta,
+            "mode_limit": self.built.mode,
+            "modes_theory": self.continuous.modes,
+        }
+
+
+class Thinning(Threshold):
+    """The least thickness of an arch, over its radius.
+
+    Ratios are tried on arches with a radius of 1 m: size and density say nothing of them.
+    """
+
+    name, unit = "eta", "m"
+    low, high = THINNEST, ETA_MAX
+    reduced_by = "symmetry and by merging"
+
+    def __init__(self, offers: ArchOffers) -> None:
+        arch = offers.arch
+        self._offers, self.blocks = offers, arch.voussoirs
+        self._arch = Arch(
+            half_angle=arch.half_angle,
+            eta=1.0,
+            voussoirs=arch.voussoirs,
+            weight=arch.weight,
+            depth=arch.depth / arch.radius,
+        )
+        self.exact = offers.built.eta
+        self.start = offers.built.eta or offers.continuous.eta or ETA_MAX
+
+    def problem(self, value: float) -> Problem:
+        """Return the arch of a thickness-to-radius ratio."""
+        asked = self._offers.problem
+        return replace(
+            arch_problem(replace(self._arch, eta=value), asked.mu), gravity=asked.gravity
+        )
+
+    def value(self, number: float | None) -> float | None:
+        """Return the thickness of a ratio [m]; the line that was measured stays."""
+        if not number:
+            return number
+        maker = self._offers.problem.maker
+        assert isinstance(maker, CircularArch)  # noqa: S101
+        return number * maker.mean_radius(number)
+
+    def reduction(self, value: float, last: Reduced | None) -> Reduced | None:
+        """Return half of the arch; what moves at one thickness is the best guess."""
+        from blocksim.arch.reduction import Reduction
+
+        built = replace(self._arch, eta=value)
+        if isinstance(last, Reduction):
+            return last.at(built)
+        return Reduction.of(built, self._offers.problem.mu)
+
+    def static(self, method: str) -> tuple[float | None, float | None, str]:
+        """Return the least ratio twice, and what it rests on."""
+        if method == "theory":
+            least = self._offers.continuous.eta
+            return (
+                ETA_MAX if least is None else least,
+                least,
+                "closed form of the continuous arch",
+            )
+        said = "static limit analysis of the voussoirs as built"
+        said += f": {ANY_THICKNESS}" if self.exact == 0 else ""
+        # Where any thickness stands none collapses.
+        return ETA_MAX if self.exact is None else self.exact or None, self.exact, said
+
+    def facts(
+        self,
+        *,
+        low: float | None,
+        high: float | None,
+        method: str,
+        seen: Observation | None = None,
+    ) -> ArchBracket:
+        """Return ratios, modes, thrust and hinges."""
+        known, angle = self._offers.known, self._arch.half_angle
+        if method == "theory":
+            least = self._offers.continuous
+            known |= {"mode": least.mode, "thrust": least.thrust}
+            known |= {"beta_r": least.beta_r, "beta_s": least.beta_s}
+        elif method == "limit":
+            built = self._offers.built
+            known |= {"mode": built.mode, "thrust": built.thrust}
+            known["beta_r"] = _inner(built.hinges_intrados)
+            known["beta_s"] = _inner(tuple(x for x in built.slides if x < angle))
+        elif seen is not None:
+            known["mode"] = observed_mode(seen.joints, self._arch)
+            known["mode_in_motion"] = observed_mode(seen.joints_in_motion, self._arch)
+        return ArchBracket(shape=self._offers.arch, eta_low=low, eta_high=high, **known)
+
+
+def _inner(angles: tuple[float, ...]) -> float | None:
+    return angles[0] if angles else None
+
+
+def _compare(eta: float, least: float | None, whose: str) -> tuple[Verdict, str]:
+    if least is None:
+        return Verdict.COLLAPSES, f"no thickness up to eta = 2 {whose} stands at this friction"
+    if least == 0:
+        return Verdict.STANDS, f"any thickness {whose} stands at this friction"
+    share = eta / least - 1
+    verdict = Verdict.STANDS if share >= 0 else Verdict.COLLAPSES
+    side = "above" if share >= 0 else "below"
+    if share > TIMES:
+        return verdict, f"eta is {1 + share:.5g} times the least thickness {whose}, {least:.6g}"
+    return verdict, f"eta is {abs(share):.2%} {side} the least thickness {whose}, {least:.6g}"
+
+
+def _limit_joints(found: Mechanism) -> tuple[ObservedJoint, ...]:
+    """Tell what the joints of a mechanism do."""
+
+    def state(outside: bool, inside: bool, *slides: bool) -> JointState:
+        if outside and inside:
+            return JointState.OPEN
+        if any(slides):
+            return JointState.HINGE_AND_SLIDES if outside or inside else JointState.SLIDES
+        if inside:
+            return JointState.HINGE_INTRADOS
+        return JointState.HINGE_EXTRADOS if outside else JointState.CLOSED
+
+    return tuple(
+        ObservedJoint(angle=angle, state=state(*row))
+        for angle, row in zip(found.angles.tolist(), found.active.tolist(), strict=True)
+    )

@@ -1,0 +1,138 @@
+"""What a maker may know better of a problem than the general way does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from blocksim.blocks.joints import ObservedJoint
+from blocksim.blocks.problem import Problem
+from blocksim.evidence.simulation import Reduced
+from blocksim.evidence.verdict import Evidence, Verdict
+from blocksim.limit.carried import Carried
+
+if TYPE_CHECKING:
+    from blocksim.evidence.observation import Observation
+
+
+@dataclass(frozen=True, kw_only=True)
+class Static:
+    """A verdict without motion.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    evidence : Evidence
+    joints : tuple of ObservedJoint
+        What each joint does as a collapse starts.
+    mode : Any
+        What the maker calls the mode of collapse; None where nothing is known of it.
+    """
+
+    verdict: Verdict
+    evidence: Evidence
+    joints: tuple[ObservedJoint, ...]
+    mode: Any = None
+
+
+class Threshold:
+    """What is known of the value of a parameter from which on blocks stand.
+
+    The search is over a number of the maker's own, a ratio, which `value` turns into the
+    parameter.
+
+    Attributes
+    ----------
+    name : str
+        Of the number.
+    low, high : float
+        Its range.
+    start : float
+        Where a search begins.
+    exact : float or None
+        Its value by statics; 0 where all values stand, None where none does.
+    unit : str
+        Of the parameter.
+    blocks : int
+        How many there are.
+    reduced_by : str
+        What a reduction does, in words.
+    """
+
+    name: str
+    low: float
+    high: float
+    start: float
+    exact: float | None
+    unit: str
+    blocks: int
+    reduced_by: str
+
+    def problem(self, value: float) -> Problem:
+        """Return the problem at a value of the number."""
+        raise NotImplementedError
+
+    def value(self, number: float | None) -> float | None:
+        """Return the parameter at a value of the number."""
+        raise NotImplementedError
+
+    def reduction(self, value: float, last: Reduced | None) -> Reduced | None:
+        """Return fewer blocks to simulate, from those of the value before."""
+        raise NotImplementedError
+
+    def static(self, method: str) -> tuple[float | None, float | None, str]:
+        """Return the largest number that falls, the least that stands, and what tells it."""
+        raise NotImplementedError
+
+    def facts(
+        self,
+        *,
+        low: float | None,
+        high: float | None,
+        method: str,
+        seen: Observation | None = None,
+    ) -> Any:
+        """Return what the maker adds to the answer.
+
+        Parameters
+        ----------
+        low, high : float or None
+            Numbers that fell and that stood.
+        method : str
+        seen : Observation or None
+            What an engine showed of the one that fell.
+        """
+        raise NotImplementedError
+
+
+class Offers:
+    """What a maker knows of one of its problems; each method may return nothing."""
+
+    methods: Sequence[str] = ()
+    """Static methods that it answers by itself: `limit`, `theory`."""
+    stands: bool | None = None
+    """Whether forces of equilibrium exist, by its own statics."""
+
+    def static(self, method: str) -> Static | None:
+        """Return a verdict by `limit` or `theory`."""
+
+    def carried(self, joint: int | None = None) -> Carried | None:
+        """Return what the blocks carry; thrust at a joint."""
+
+    def mode(self, joints: tuple[ObservedJoint, ...]) -> Any:
+        """Return what the maker calls a mechanism whose joints do this."""
+
+    def reduction(self) -> Reduced | None:
+        """Return fewer blocks to simulate."""
+
+    def threshold(self, over: str) -> Threshold | None:
+        """Return what is known of the value of a parameter from which on blocks stand."""
+
+    def facts(self, **found: Any) -> Any:
+        """Return what is put under the answer's `arch`, with modes that were found."""
+
+
+def offers_of(problem: Problem) -> Offers | None:
+    """Return what the maker of a problem knows of it; None where nothing."""
+    return None if problem.maker is None else problem.maker.offers(problem)
