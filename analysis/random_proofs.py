@@ -178,7 +178,7 @@ def _changed(problem: Problem, random: Generator) -> Problem:
         force = share * np.array([math.cos(angle), math.sin(angle)])
         dead.append(Load(force=force, blocks=(on,), point=point))
     made = replace(assembly, blocks=tuple(blocks), joints=tuple(joints))
-    return replace(problem, assembly=made, dead=tuple(dead), origin={})
+    return replace(problem, assembly=made, dead=tuple(dead), maker=None)
 
 
 def _rounded(block: Block, decimals: int) -> Block:
