@@ -173,7 +173,7 @@ MUTATIONS = (
     ),
     Mutation(
         "one friction for all joints",
-        "engines/direct.py",
+        "engines/stepping.py",
         "friction[held] = self._friction[self._keys[held]]",
         "",
         "test_direct_structures.py",

@@ -14,8 +14,9 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Move, Problem
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.direct import ENGINE, UNSOLVED, rule
+from blocksim.engines.direct import ENGINE, rule
 from blocksim.engines.moving import DEEP, OnMovingSupports
+from blocksim.engines.stepping import UNSOLVED
 from blocksim.evidence.motion import FRAME
 from blocksim.evidence.recording import Recording
 from blocksim.limit.spreading import Path, follow, lying

@@ -54,6 +54,8 @@ class Settings:
         Worst residual of the contacts at which an answer still counts.
     penetration : float
         Deepest overlap at which an answer still counts [size].
+    accuracy : float
+        Share by which motion may be off, where an engine follows one.
     repeats : int
         Most repetitions, with finer sweeps, of a moving run that contacts started.
     farthest : float
@@ -71,6 +73,7 @@ class Settings:
     noise: float = 1e-7
     residual: float = math.inf
     penetration: float = math.inf
+    accuracy: float = 1e-3
     repeats: int = 3
     farthest: float = 1e4
 
