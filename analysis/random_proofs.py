@@ -25,7 +25,7 @@ from numpy.random import Generator
 
 from analysis.command import run
 from analysis.random_problems import Case, drawn
-from blocksim import Arch
+from blocksim.arch.circular import Arch
 from blocksim.ask.check import check
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import Load, Problem

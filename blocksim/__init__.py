@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from blocksim.blocks.assembly import Assembly, Block, Joint
     from blocksim.blocks.given import Body, GivenJoint
     from blocksim.blocks.joints import JointState
-    from blocksim.blocks.maker import Built, Fill, Made, Maker, Table, count, metres, parameter
+    from blocksim.blocks.made import Built, Fill, Made
+    from blocksim.blocks.maker import Maker, Table, count, metres, parameter
     from blocksim.blocks.problem import Load, Problem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
     from blocksim.evidence.recording import Recording
@@ -118,7 +119,8 @@ _PLACES = {
     "blocks.assembly": ("Assembly", "Block", "Joint"),
     "blocks.given": ("Body", "GivenJoint"),
     "blocks.joints": ("JointState",),
-    "blocks.maker": ("Built", "Fill", "Made", "Maker", "Table", "count", "metres", "parameter"),
+    "blocks.made": ("Built", "Fill", "Made"),
+    "blocks.maker": ("Maker", "Table", "count", "metres", "parameter"),
     "blocks.problem": ("Load", "Problem"),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "evidence.recording": ("Recording",),

@@ -75,11 +75,11 @@ def test_it_agrees_with_limit_analysis_on_an_arch(ratio: float, verdict: str) ->
 
 
 def test_it_brackets_the_angle_at_which_a_column_overturns() -> None:
-    options = "--mu", "0.7", "--over", "tilt", "--tol", "0.05"
+    options = "--mu", "0.7", "--over", "tilt", "--tol", "0.2"
     done = asked("bracket", "column", *options, "--method", SPRINGS, "--json")
     found = json.loads(done.stdout)
     assert found["low"] < found["limit"] < found["high"]
-    assert found["high"] - found["low"] <= 0.05 * found["high"]
+    assert found["high"] - found["low"] <= 0.2 * found["high"]
 
 
 def test_a_package_offers_engines_and_kinds(package: Path) -> None:
@@ -94,9 +94,14 @@ def test_a_package_offers_engines_and_kinds(package: Path) -> None:
     [
         ("broken", "RuntimeError: two lines"),
         ("os:system", "must be an Engine"),
-        ("nowhere:ENGINE", "No module named 'nowhere'"),
-        ("own_engine:Springs", "must be an Engine"),
-        ("spring", "one of auto, theory, limit"),
+        *(
+            pytest.param(*each, marks=pytest.mark.long)
+            for each in (
+                ("nowhere:ENGINE", "No module named 'nowhere'"),
+                ("own_engine:Springs", "must be an Engine"),
+                ("spring", "one of auto, theory, limit"),
+            )
+        ),
     ],
 )
 def test_what_is_no_engine_is_refused_in_one_line(package: Path, method: str, why: str) -> None:

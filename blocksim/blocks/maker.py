@@ -14,7 +14,8 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, cast
 
-from blocksim.blocks.problem import Load, Problem
+from blocksim.blocks.made import Built, Made
+from blocksim.blocks.problem import Problem
 from blocksim.common.checks import (
     LENGTH,
     PER_VOLUME,
@@ -26,8 +27,7 @@ from blocksim.common.errors import MISSING, InputError, perhaps
 from blocksim.common.shown import Shown
 
 if TYPE_CHECKING:
-    from blocksim.blocks.assembly import Assembly
-    from blocksim.blocks.given import Body, GivenJoint
+    pass
 
 Array = Any
 Stands = Literal["low", "high"]
@@ -139,42 +139,6 @@ def count(default: int, about: str, **known: Any) -> Any:
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Fill:
-    """What presses on a block besides gravity.
-
-    Parameters
-    ----------
-    body : int
-        Which of the bodies bears it.
-    weight : float
-        [N]
-    point : (float, float)
-        Where its line of action meets the block [m].
-    """
-
-    body: int
-    weight: float
-    point: tuple[float, float]
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Made:
-    """What a kind makes of its parameters.
-
-    Parameters
-    ----------
-    bodies : tuple of Body
-    joints : tuple of GivenJoint or None
-        None where they are to be found.
-    fills : tuple of Fill
-    """
-
-    bodies: tuple[Body, ...]
-    joints: tuple[GivenJoint, ...] | None = None
-    fills: tuple[Fill, ...] = ()
-
-
 @dataclass(frozen=True, kw_only=True)
 class Table:
     """Parameters, each checked against its range.
@@ -201,27 +165,6 @@ class Table:
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them."""
         return {name: _plain(getattr(self, name)) for name in parameters_of(type(self))}
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Built:
-    """Blocks as engines and limit analysis take them.
-
-    Parameters
-    ----------
-    assembly : Assembly
-    fills : tuple of Load
-        What presses on blocks besides gravity.
-    notes : tuple of str
-        What was mended or assumed.
-    bodies : tuple of Body
-        Of which the blocks were made; none where they were made of nothing else.
-    """
-
-    assembly: Assembly
-    fills: tuple[Load, ...] = ()
-    notes: tuple[str, ...] = ()
-    bodies: tuple[Body, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body, GivenJoint
-from blocksim.blocks.maker import FARTHEST, Fill, Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Fill, Made
+from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.checks import VOUSSOIRS
 from blocksim.common.errors import InputError

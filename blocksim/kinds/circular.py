@@ -11,7 +11,8 @@ import numpy as np
 
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.dimensions import At, Dimensions, Line
-from blocksim.blocks.maker import Built, metres, parameter, parameters_of
+from blocksim.blocks.made import Built
+from blocksim.blocks.maker import metres, parameter, parameters_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, VOUSSOIRS, Range, require
 from blocksim.common.errors import MISSING

@@ -10,7 +10,8 @@ from scipy.spatial import Voronoi
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
-from blocksim.blocks.maker import Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Made
+from blocksim.blocks.maker import Maker, count, metres, parameter
 from blocksim.blocks.outlines import signed_area
 from blocksim.kinds.blockwork import floor
 
