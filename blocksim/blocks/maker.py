@@ -118,7 +118,11 @@ class Parameter:
         if self.whole:
             return f"a whole number from {low:g} to {high:g}"
         start = f"above {low:.6g}" if above else f"{low:.6g} or more"
-        return f"{start} and at most {high:.6g}{unit}"
+        after = math.nextafter(high, math.inf)
+        # The last number below a round one is not said as that.
+        is_next = after.is_integer() and not float(high).is_integer()
+        end = f"below {after:g}" if is_next else f"at most {high:.6g}"
+        return f"{start} and {end}{unit}"
 
 
 def parameter(default: object, about: str, **known: Any) -> Any:

@@ -12,9 +12,9 @@ import numpy as np
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.dimensions import At, Dimensions, Line
 from blocksim.blocks.made import Built
-from blocksim.blocks.maker import metres, parameter, parameters_of
+from blocksim.blocks.maker import Parameter, metres, parameter, parameters_of
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, VOUSSOIRS, Range, require
+from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, LENGTH, VOUSSOIRS, Range, require
 from blocksim.common.errors import MISSING
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve
@@ -27,6 +27,27 @@ HALF_ANGLE_DEG = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
 ROUND = 360.0
 
 
+SIZES: dict[str, Any] = {"low": LENGTH.low, "high": LENGTH.high, "above": False}
+MEASURES = {
+    "half_angle_deg": Parameter(
+        about="crown to springing, in place of left_deg and right_deg",
+        unit="deg",
+        low=HALF_ANGLE_DEG.low,
+        high=HALF_ANGLE_DEG.high,
+        above=False,
+    ),
+    "eta": Parameter(about="thickness over radius, in place of thickness", high=ETA.high),
+    "span": Parameter(
+        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
+    ),
+    "rise": Parameter(
+        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
+    ),
+    "at": Parameter(
+        about="line that span and rise are of", choices=("intrados", "centreline", "extrados")
+    ),
+}
+"""What an arch can be made by in place of parameters of its kind."""
 SPRINGINGS = "left_deg", "right_deg"
 WEIGHTS: dict[str, Weight] = {"centreline": "centreline", "curved": "sector"}
 """What an arch calls the weights of a kind that it has, too."""

@@ -23,16 +23,15 @@ from blocksim.common.processes import Crew, processes
 from blocksim.common.progress import Progress, silent
 from blocksim.many.answers import (
     Answered,
-    AnyCase,
     Asked,
     Tally,
     answer,
     failed,
+    reason_of,
     version_of,
 )
-from blocksim.many.case import Pace, Questions
+from blocksim.many.case import Case, Pace, Questions
 from blocksim.many.shards import identities, locked, write_shard
-from blocksim.many.structurecase import reason_of
 
 SHARE = 0.05
 """Time a chunk is meant to take, as a share of that gone by: what a kill loses is small."""
@@ -197,7 +196,7 @@ class _Todo:
                 break
         return chunk
 
-    def _seconds(self, case: AnyCase) -> float:
+    def _seconds(self, case: Case) -> float:
         """Time a case will take, by those of its pace so far."""
         count, seconds = self._pace.get(case.pace, (0, 0.0))
         if count:
