@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from blocksim.kinds.stack import Stack
     from blocksim.kinds.wall import Wall
     from blocksim.limit import collapse, equilibrium
+    from blocksim.many.run import sweep
 
 __all__ = [
     "Arcade",
@@ -99,6 +100,7 @@ __all__ = [
     "parameter",
     "simulate",
     "structure_of",
+    "sweep",
 ]
 
 _PLACES = {
@@ -134,6 +136,7 @@ _PLACES = {
     "kinds.stack": ("Stack",),
     "kinds.wall": ("Wall",),
     "limit": ("collapse", "equilibrium"),
+    "many.run": ("sweep",),
 }
 """Where the public names are; each is loaded when it is first used."""
 
