@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from concurrent.futures import as_completed
 from functools import partial
 
 from blocksim.ask.methods import METHODS, choose, missing
 from blocksim.blocks.entries import ExpectEntry
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
-from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
 from blocksim.kinds.files import shipped_structures
 from blocksim.kinds.known import Known, load_known
-from blocksim.studies.agreement import Unasked
+from blocksim.studies.agreement import Unasked, answered
 from blocksim.studies.questions import ASIDES, StructureRow, answer
 
 USUAL = ("direct", "pymunk")
@@ -81,19 +79,9 @@ def validate_structures(
     names = tuple(dict.fromkeys(USUAL if engines is None else engines))
     for name in names:
         require(name in ASIDES, "methods", name, f"one or more of {', '.join(ASIDES)}")
-    ask = partial(answers, engines=names)
-    if workers == 1:
-        rows: list[list[StructureRow]] = []
-        for done, known in enumerate(chosen):
-            progress(done / len(chosen), known.name)
-            rows.append(ask(known))
-    else:
-        with crew(workers) as executor:
-            futures = {executor.submit(ask, known): known for known in chosen}
-            for done, future in enumerate(as_completed(futures)):
-                progress((done + 1) / len(chosen), futures[future].name)
-            rows = [future.result() for future in futures]
-    return [row for each in rows for row in each]
+    jobs = [(known.name, known) for known in chosen]
+    found = answered(partial(answers, engines=names), jobs, workers, progress)
+    return [row for rows in found for row in rows]
 
 
 def answers(known: Known, engines: Sequence[str]) -> list[StructureRow]:

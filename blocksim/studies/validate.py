@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
-from concurrent.futures import as_completed
 from dataclasses import replace
 
 from blocksim.arch import limit
@@ -18,13 +17,12 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.methods import METHODS, SPATIAL, missing
 from blocksim.ask.search import ETA_MAX
 from blocksim.common.checks import require
-from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import get_engine
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
-from blocksim.studies.agreement import Unasked, Validation, agree
+from blocksim.studies.agreement import Unasked, Validation, agree, answered
 
 TOLS = {"direct": 1e-6, "pymunk": 0.001, "pybullet": 0.004, "mujoco": 0.004}
 """Relative width of each engine's brackets."""
@@ -98,22 +96,16 @@ def validate(
         require(name in TOLS, "methods", name, f"one or more of {', '.join(TOLS)}")
         get_engine(name)
     jobs = [
-        (scenario, engine)
+        (scenario.name, (scenario, engine))
         for scenario in chosen
         for engine in names
         if METHODS[engine].is_spatial or not scenario.lean
     ]
-    if workers == 1:
-        rows: list[Validation] = []
-        for done, job in enumerate(jobs):
-            progress(done / len(jobs), job[0].name)
-            rows.append(validate_one(*job))
-        return rows
-    with crew(workers) as executor:
-        futures = {executor.submit(validate_one, *job): job for job in jobs}
-        for done, future in enumerate(as_completed(futures)):
-            progress((done + 1) / len(jobs), futures[future][0].name)
-        return [future.result() for future in futures]
+    return answered(_asked_of, jobs, workers, progress)
+
+
+def _asked_of(job: tuple[Scenario, str]) -> Validation:
+    return validate_one(*job)
 
 
 def validate_one(scenario: Scenario, engine: str) -> Validation:
