@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from blocksim.kinds.stack import Stack
     from blocksim.kinds.wall import Wall
     from blocksim.limit import collapse, equilibrium
+    from blocksim.many.run import sweep
 
 __all__ = [
     "Arcade",
@@ -106,6 +107,7 @@ __all__ = [
     "parameter",
     "simulate",
     "structure_of",
+    "sweep",
 ]
 
 _PLACES = {
@@ -143,6 +145,7 @@ _PLACES = {
     "kinds.stack": ("Stack",),
     "kinds.wall": ("Wall",),
     "limit": ("collapse", "equilibrium"),
+    "many.run": ("sweep",),
 }
 """Where the public names are; each is loaded when it is first used."""
 

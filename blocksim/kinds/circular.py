@@ -36,7 +36,12 @@ MEASURES = {
         high=HALF_ANGLE_DEG.high,
         above=False,
     ),
-    "eta": Parameter(about="thickness over radius, in place of thickness", high=ETA.high),
+    "eta": Parameter(
+        about="thickness over radius, in place of thickness",
+        low=ETA.low,
+        high=ETA.high,
+        above=False,
+    ),
     "span": Parameter(
         about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
     ),
