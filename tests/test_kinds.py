@@ -459,7 +459,7 @@ SAID = [
     (pointed(thickness=True), "thickness = True: must be 1e-06 or more"),
     (pointed(thickness=math.nan), "thickness = nan: must be 1e-06 or more"),
     (pointed(voussoirs=7), "voussoirs = 7: must be an even number"),
-    (pointed(voussoirs=3.5), "voussoirs = 3.5: must be a whole number from 2 to 1000"),
+    (pointed(voussoirs=3.5), "voussoirs = 3.5: must be a whole number from 2 to 10000"),
     (pointed(joints="oblique"), "joints = 'oblique': must be one of normal, radial, vertical"),
     (pointed(radius=0.9), "radius = 0.9: must be above 1 and at most 1e+06 m"),
     (pointed(fill=-1), "fill = -1: must be 0 or more and at most 1e+06 m"),

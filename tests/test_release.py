@@ -62,7 +62,7 @@ def test_what_is_missing_is_named_with_its_remedy(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     (tmp_path / "drawn.dxf").write_text("0\nEOF\n")
-    arch = CircularArch(thickness=0.3, friction=0.7, voussoirs=3)
+    arch = CircularArch(half_angle_deg=86, eta=0.3, voussoirs=3, friction=0.7)
     simulate(arch, method="direct", duration=0.02).save(tmp_path / "run.npz")
     before = sorted(tmp_path.iterdir())
     monkeypatch.setattr(later, "find_spec", lambda name: None if name == library else name)

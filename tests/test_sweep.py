@@ -76,7 +76,7 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
         (("[0.5, 0.9, inf]", "[]"), "mu = []"),
         (("[0.5, 0.9, inf]", '["rough"]'), "mu.values.0 = 'rough'"),
         (("[0.5, 0.9, inf]", "nan"), "mu = nan"),
-        (("[9, 12]", "[9.5]"), "voussoirs = 9.5: must be a whole number from 3 to 1000"),
+        (("[9, 12]", "[9.5]"), "voussoirs = 9.5: must be a whole number from 3 to 10000"),
         (("[9, 12]", "2"), "voussoirs = 2.0"),
         (("[9, 12]", "{ low = 3, high = 1000, steps = 3 }"), "voussoirs = 501.5"),
         (("0.1]", "2.1]"), "eta = 2.1: must be above 0 and at most 2"),

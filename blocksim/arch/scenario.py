@@ -20,7 +20,7 @@ from blocksim.arch.dimensions import (
 )
 from blocksim.arch.modes import Mode
 from blocksim.blocks.entries import Density, Length, allowed_words
-from blocksim.common.checks import ETA, FRICTION, require
+from blocksim.common.checks import ETA, FRICTION, VOUSSOIRS, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath, read_file, shipped_files, toml_of
 from blocksim.evidence.verdict import Verdict
@@ -79,7 +79,7 @@ class ArchTable:
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    voussoirs: Annotated[int, Field(ge=3, le=1000, strict=True)]
+    voussoirs: Annotated[int, Field(ge=VOUSSOIRS.low, le=VOUSSOIRS.high, strict=True)]
     half_angle_deg: Angle | None = None
     eta: Ratio | None = None
     radius: Length | None = None

@@ -14,7 +14,7 @@ from blocksim.arch.dimensions import At, Dimensions, Line
 from blocksim.blocks.made import Built
 from blocksim.blocks.maker import metres, parameter, parameters_of
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, Range, require
+from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, VOUSSOIRS, Range, require
 from blocksim.common.errors import MISSING
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve
@@ -23,8 +23,6 @@ from blocksim.kinds.strips import Voussoirs
 if TYPE_CHECKING:
     from blocksim.kinds.archoffers import ArchOffers
 
-FEWEST = 3
-"""Voussoirs of an arch."""
 HALF_ANGLE_DEG = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
 ROUND = 360.0
 
@@ -177,7 +175,7 @@ class CircularArch(CurvedArch):
         if angle is None:
             angle = math.radians(self.left_deg)
             equal = self.left_deg == self.right_deg and HALF_ANGLE.has(angle)
-            if not equal or self.voussoirs < FEWEST:
+            if not equal or not VOUSSOIRS.has(self.voussoirs):
                 return None
         if self.weight not in WEIGHTS or self.joints == "vertical":
             return None

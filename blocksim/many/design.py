@@ -15,7 +15,7 @@ from blocksim.arch.circular import WEIGHTS, Weight
 from blocksim.arch.scenario import read_table
 from blocksim.ask.methods import CHOICES, METHODS, STATIC
 from blocksim.ask.search import ETA_MAX
-from blocksim.common.checks import ETA, FRICTION, Range, is_number, require
+from blocksim.common.checks import ETA, FRICTION, VOUSSOIRS, Range, is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
 from blocksim.engines import NAMES
@@ -258,7 +258,7 @@ def _require_ranges(design: Design) -> None:
     for field, known, allowed in (
         ("half_angle_deg", DEGREES, "above 0 and below 180"),
         ("mu", FRICTION, FRICTION.words),
-        ("voussoirs", Range(low=3, high=1000), "a whole number from 3 to 1000"),
+        ("voussoirs", VOUSSOIRS, f"a whole number from {VOUSSOIRS.words}"),
         ("eta", Range(low=ETA.low, high=ETA_MAX), "above 0 and at most 2"),
         ("ratio", Range(low=1e-6, high=100), "1e-06 to 100"),
     ):
