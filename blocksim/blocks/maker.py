@@ -156,7 +156,11 @@ class Table:
     def __post_init__(self) -> None:
         """Check first each value alone, then those that depend on others."""
         for name, known in parameters_of(type(self)).items():
-            known.require(name, getattr(self, name))
+            value = getattr(self, name)
+            known.require(name, value)
+            if known.whole and isinstance(value, float):
+                # 40.0 of a file is 40.
+                object.__setattr__(self, name, int(value))
         # What all kinds have comes first and depends on what comes after it.
         for name, known in reversed(parameters_of(type(self)).items()):
             known.require(name, getattr(self, name), self.limits(name))

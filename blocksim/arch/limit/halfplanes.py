@@ -190,6 +190,7 @@ def least_met(
         half * force - (bow - spread * lift),
     )
     found: set[int] = set()
+    rest: Any
     for short, way in zip(ends, (-1, 1), strict=True):
         if not np.isfinite(short):
             continue
