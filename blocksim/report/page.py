@@ -12,7 +12,7 @@ from blocksim.arch.circular import GRAVITY
 from blocksim.arch.modes import Mode
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
-from blocksim.report.answers import ratio
+from blocksim.report.answerwords import ratio
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import ArchDrawing, drawing

@@ -30,7 +30,7 @@ from blocksim.report.sheetfacts import (
     reaction_table,
     thrust_facts,
 )
-from blocksim.report.structures import joint_names
+from blocksim.report.problems import joint_names
 from blocksim.studies.questions import Drawn
 from blocksim.view import style
 from blocksim.view.drawing import save_figure, state_of_any, words_of
