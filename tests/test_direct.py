@@ -205,7 +205,7 @@ def test_friction_without_pressure_is_no_detour(half_angle_deg, voussoirs, ratio
 def test_without_slip_the_least_thickness_is_not_shifted():
     found = bracket_at(153, math.inf, 40, method="direct", tol=1e-8)
     exact = arch_at(1.0, 153, math.inf, 40).eta
-    assert found.centre == pytest.approx(exact, rel=1e-8)
+    assert found.arch.centre == pytest.approx(exact, rel=1e-8)
     assert found.confirmed
 
 

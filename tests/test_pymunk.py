@@ -118,10 +118,10 @@ def test_bracket_holds_the_limit(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     found = bracket_at(angle, mu, count, weight, method="pymunk", tol=0.002)
-    assert found.mode_limit is mode
-    assert found.centre == pytest.approx(found.eta_limit, rel=0.002)
-    assert found.eta_low < found.eta_high
-    assert 1 - found.eta_low / found.eta_high <= 0.002
+    assert found.arch.mode_limit is mode
+    assert found.arch.centre == pytest.approx(found.arch.eta_limit, rel=0.002)
+    assert found.arch.eta_low < found.arch.eta_high
+    assert 1 - found.arch.eta_low / found.arch.eta_high <= 0.002
     assert found.undecided == 0
 
 
@@ -208,8 +208,9 @@ def test_the_weight_drives_the_mechanism(
 HASH = """
 from blocksim.arch.circular import Arch
 from blocksim.ask.simulate import simulate
+from blocksim.kinds.circular import CircularArch
 arch = Arch(half_angle=1.5707963267948966, eta=0.1, voussoirs=13)
-print(simulate(arch, mu=0.6, method="pymunk", duration=1.0).state_hash)
+print(simulate(CircularArch.of(arch, friction=0.6), method="pymunk", duration=1.0).state_hash)
 """
 
 

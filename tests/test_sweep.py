@@ -16,7 +16,7 @@ from running import inside
 from running import inside as blocksim
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
-from blocksim import Arch, bracket, check
+from blocksim import Arch, Problem, bracket, check
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.kinds.circular import CircularArch
 from blocksim.many import Case, answers, read_rows, run, sweep, write_csv, write_parquet
@@ -228,8 +228,8 @@ def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
 def test_a_failing_case_becomes_a_row_that_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fails(arch: Arch, **_: object) -> None:
-        raise RuntimeError(f"out of\nluck with {arch.voussoirs}")
+    def fails(problem: Problem, **_: object) -> None:
+        raise RuntimeError(f"out of\nluck with {len(problem.assembly.blocks)}")
 
     monkeypatch.setattr(answers, "check", fails)
     text = 'half_angle_deg = 90\nmu = [0.1, 0.7]\nratio = [1, 60]\nmethod = ["limit", "direct"]'

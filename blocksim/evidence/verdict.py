@@ -37,12 +37,13 @@ def aside(test: str, words: str) -> tuple[Evidence, ...]:
     return (Evidence(test, words.removeprefix("; ")),) if words else ()
 
 
-SEEN = ("onset test", "moving run")
-"""Tests that are named in a sentence, too."""
+SEEN = {"onset test", "moving run"}
+"""Tests that are named in a sentence, too, where there were both."""
 
 
 def reason_of(evidence: Sequence[Evidence]) -> str:
     """Return all evidence as one sentence."""
+    named = SEEN if SEEN <= {each.test for each in evidence} else set[str]()
     return "; ".join(
-        f"{each.test}: {each.found}" if each.test in SEEN else each.found for each in evidence
+        f"{each.test}: {each.found}" if each.test in named else each.found for each in evidence
     )
