@@ -9,7 +9,7 @@ from __future__ import annotations
 import html
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from io import BytesIO
@@ -56,7 +56,7 @@ def dict_of(shown: object) -> dict[str, Any]:
         Of an answer what `--json` prints; of a problem its structure file; of a recording
         what it shows, without its poses.
     """
-    found: dict[type, Callable[[Any], dict[str, object]]] = {
+    found: dict[type, Callable[[Any], Mapping[str, object]]] = {
         Arch: _arch_record,
         Problem: structure_record,
         Check: check_record,

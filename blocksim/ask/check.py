@@ -117,8 +117,8 @@ class Check(Shown):
 
         The largest way of a corner is 1. None where the blocks stand, or nothing is known.
         """
-        rates = self.rates
-        if self.simulated is None and self.static is not None:
+        rates, falls = self.rates, self.verdict is not Verdict.STANDS
+        if self.method == "limit" and falls and self.static is not None:
             rates = self.static.mechanism
         return None if rates is None else _unit(rates, self.problem)
 

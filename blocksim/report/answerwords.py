@@ -43,7 +43,9 @@ def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
     problem, carried, of = answer.problem, carried or answer.carried, answer.arch
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
-        f"  what    {described(problem)}" if of is None else _arch_line(of, problem, tried=True),
+        f"  what    {described(problem)}"
+        if of is None
+        else _arch_line(of, problem, tried=True),
         *size_lines(problem),
         f"  because {answer.reason}",
     ]
@@ -125,7 +127,8 @@ def _arch_line(of: ArchAnswer, problem: Problem, *, tried: bool) -> str:
     leans = f", gravity leans {lean:g} deg out of the plane" if lean else ""
     return (
         f"  arch    alpha {math.degrees(arch.half_angle):g} deg, {eta}mu {problem.mu:g}, "
-        f"{arch.voussoirs} voussoirs, weight {arch.weight}, depth {arch.depth / radius:g} r{leans}"
+        f"{arch.voussoirs} voussoirs, weight {arch.weight}, "
+        f"depth {arch.depth / radius:g} r{leans}"
     )
 
 

@@ -57,8 +57,10 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
         "weight_kN": weight_of(problem) / 1000,
         "fill_m": None if fill is None else fill.height,
         "fill_weight_kN": None if fill is None else fill.weight / 1000,
-        "live_weight_kN": -_live(problem) / 1000,
+        "live_weight_kN": 0.0 - _live(problem) / 1000,
     }
+    if not problem.weighed:
+        said["unit_weight_kN_per_m3"] = None
     if over is not None:
         said |= dict.fromkeys(FOLLOWS.get(over, BUILT)) | _fixed_sizes(problem, over)
     return said  # type: ignore[return-value]
@@ -70,7 +72,11 @@ def _fixed_sizes(problem: Problem, over: str) -> dict[str, object]:
     if over != "thickness" or not isinstance(maker, CircularArch) or maker.shape is None:
         return {}
     line = maker.line
-    return {"radius_m": maker.radius} if line is None else {"span_m": line.span, "rise_m": line.rise}
+    return (
+        {"radius_m": maker.radius}
+        if line is None
+        else {"span_m": line.span, "rise_m": line.rise}
+    )
 
 
 def size_record(arch: Arch) -> dict[str, object]:

@@ -36,11 +36,11 @@ class ProblemRecord(TypedDict):
     thickness_m: float | None
     radius_m: float | None
     depth_m: float | None
-    unit_weight_kN_per_m3: float | None  # noqa: N815 - as the unit is written
-    weight_kN: float | None  # noqa: N815
+    unit_weight_kN_per_m3: float | None
+    weight_kN: float | None
     fill_m: float | None
-    fill_weight_kN: float | None  # noqa: N815
-    live_weight_kN: float  # noqa: N815
+    fill_weight_kN: float | None
+    live_weight_kN: float
 
 
 class ArchRecord(TypedDict):
@@ -112,8 +112,8 @@ class ReactionRecord(TypedDict):
     """What a support bears, and where."""
 
     support: str
-    horizontal_kN: float  # noqa: N815
-    vertical_kN: float  # noqa: N815
+    horizontal_kN: float
+    vertical_kN: float
     x_m: float
     y_m: float
 
@@ -134,12 +134,12 @@ class CarriedRecord(TypedDict):
     least_friction: float | None
     strength_used: float | None
     weights_given: bool | None
-    weight_kN: float | None  # noqa: N815
+    weight_kN: float | None
     thrust_joint: str | None
-    thrust_min_kN: Number | None  # noqa: N815
-    thrust_max_kN: Number | None  # noqa: N815
-    thrust_min_kN_per_m: Number | None  # noqa: N815
-    thrust_max_kN_per_m: Number | None  # noqa: N815
+    thrust_min_kN: Number | None
+    thrust_max_kN: Number | None
+    thrust_min_kN_per_m: Number | None
+    thrust_max_kN_per_m: Number | None
     thrust_min_per_weight: Number | None
     thrust_max_per_weight: Number | None
     reactions: list[ReactionRecord] | None
