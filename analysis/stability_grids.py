@@ -42,7 +42,7 @@ class Grid:
     lasting: tuple[Case, ...] = (ARCHES[0], ARCHES[1], (45, 0.9, 13))
     last: float = 500.0
     away: tuple[Case, ...] = ((90, 0.7, 9), (125, 0.9, 9))
-    distances: tuple[float, ...] = tuple(10.0**k for k in range(11))
+    distances: tuple[float, ...] = tuple(10.0**k for k in range(9))
 
 
 GRIDS = {
@@ -90,5 +90,5 @@ QUICK = Grid(
     lasting=((90, 0.7, 9),),
     last=20.0,
     away=((90, 0.7, 9),),
-    distances=(1.0, 1e10),
+    distances=(1.0, 1e8),
 )

@@ -5,11 +5,15 @@ from __future__ import annotations
 import importlib as _importlib
 
 from blocksim.common import interrupts
+from blocksim.common import shown as _shown
 from blocksim.common.version import __version__
 
 if interrupts.is_program():
     # Before the imports that commands make.
     interrupts.install()
+
+# The package is above all its rooms, and names who shows things of theirs in a notebook.
+_shown.show_by(lambda: _importlib.import_module("blocksim.notebook"))
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -17,6 +21,7 @@ if TYPE_CHECKING:
     from blocksim.arch.modes import Mode
     from blocksim.ask.bracket import Bracket, bracket
     from blocksim.ask.check import Check, check
+    from blocksim.ask.citing import cite
     from blocksim.ask.options import Options
     from blocksim.ask.simulate import simulate
     from blocksim.blocks.assembly import Assembly, Block, Joint
@@ -89,6 +94,7 @@ __all__ = [
     "__version__",
     "bracket",
     "check",
+    "cite",
     "collapse",
     "count",
     "equilibrium",
@@ -106,6 +112,7 @@ _PLACES = {
     "arch.modes": ("Mode",),
     "ask.bracket": ("Bracket", "bracket"),
     "ask.check": ("Check", "check"),
+    "ask.citing": ("cite",),
     "ask.options": ("Options",),
     "ask.simulate": ("simulate",),
     "blocks.assembly": ("Assembly", "Block", "Joint"),

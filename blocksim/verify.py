@@ -1,177 +1,150 @@
 """Check a proof that blocks stand or fall: `python verify.py FILE`.
 
-This needs the standard library alone, and shares no code with blocksim. All arithmetic is of
+It needs the standard library alone, and shares no code with the rest. All arithmetic is of
 rational numbers, so nothing is rounded. A decimal in the file means the binary number next to
-it (IEEE 754, 64 bits), a text "p/q" means that fraction.
+it (IEEE 754, 64 bits); a text "p/q" means that fraction. The file has a `problem`, which is a
+structure file, a `claim`, and what proves it:
 
-The file has a `problem`, which is a structure file, a `claim`, and what proves it:
+- "stands": `forces`, a pair a, b at both ends of each joint: the force a n + b t on block `b`,
+  and its opposite on block `a`. t leads from the first end to the second, n is t turned
+  clockwise by a right angle; a corner on a face has its `normal` n. Friction holds where a >= 0
+  and |b| <= friction a. Forces, weight and loads have to balance on each block.
+- "collapses": `rates`, the velocity x, y of the centre of each block and its rate of rotation.
+  No end of a joint may close, and each has to open at least by the friction times its slip.
+  Weights and loads have to do work. By virtual work no such forces balance them then.
 
-- "stands": `forces`. At each end of each joint a pair a, b: the force a n + b t on the block
-  `b` of the joint, and its opposite on `a`. t leads from the first end to the second, and n is
-  t turned by a right angle clockwise; a corner on a face has its `normal` n. Friction holds
-  where a >= 0 and |b| <= friction a. All forces on each block, with its weight and loads, have
-  to balance.
-- "collapses": `rates`, the velocities x, y of the centre of each block and its rate of
-  rotation. No joint may close at an end, and each has to open at least by the friction times
-  its slip. The weights and loads have to do work. By virtual work no forces as above balance
-  them then.
-
-What may be left over is stated as `tolerance`, over the weight of the block: stands means that
-the loads as given balance, or others that differ by no more; collapses means that neither do.
+Loads may differ from those given by `tolerance`, over the weight of each block (0: not at all):
+the forces are for some such loads; no forces balance any of them.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import re
 import sys
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 FORMAT = "blocksim proof 1"
-MOST = Fraction(1, 10**9)
-"""Largest tolerance that is taken."""
-BYTES = 10**9
-"""Largest file that is read."""
+NOTHING = Fraction(0)
+Vector = list[Fraction]
+
+
+def require(holds: bool, words: str) -> None:
+    """Refuse what does not hold."""
+    if not holds:
+        raise ValueError(words)
 
 
 def number(value: Any) -> Fraction:
     """Read a number, or the text of a fraction."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise ValueError(f"{value!r} is no number")
+    plain = isinstance(value, str) and re.fullmatch(r"-?[0-9]+(/[0-9]+)?", value)
+    require(bool(plain) or type(value) in {int, float}, f"{value!r} is no number")
     return Fraction(value)
 
 
-def vector(values: Any, size: int = 2) -> list[Fraction]:
+def vector(values: Any, size: int = 2) -> Vector:
     """Read so many numbers."""
-    if not isinstance(values, list) or len(values) != size:
-        raise ValueError(f"{values!r} must be {size} numbers")
+    require(type(values) is list and len(values) == size, f"{values!r} is no vector")
     return [number(value) for value in values]
 
 
-def cross(one: list[Fraction], other: list[Fraction]) -> Fraction:
-    """Return the moment of a force about a point."""
-    return one[0] * other[1] - one[1] * other[0]
+def minus(one: Vector, other: Vector) -> Vector:
+    """Subtract vectors."""
+    return [one[0] - other[0], one[1] - other[1]]
 
 
 def seal(table: dict[str, Any]) -> str:
     """Return the fingerprint of all but the fingerprint."""
     kept = {key: value for key, value in table.items() if key != "sha256"}
-    text = json.dumps(kept, sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()
 
 
-def loads(problem: dict[str, Any], blocks: dict[str, Any]) -> dict[str, list[Fraction]]:
+def plus(total: Vector, force: Vector, arm: Vector, times: Fraction | int = 1) -> Vector:
+    """Add a force, so many times, and its moment about a point."""
+    more = (*force, arm[0] * force[1] - arm[1] * force[0])
+    return [one + times * other for one, other in zip(total, more, strict=True)]
+
+
+def loads(problem: Any, blocks: Any, centres: dict[str, Vector]) -> dict[str, Vector]:
     """Sum weight and loads on each block: x, y, and the moment about its centre."""
-    found = {name: [Fraction(0)] * 3 for name in blocks}
+    found = {name: [NOTHING] * 3 for name in blocks}
     for factor, key in ((Fraction(1), "dead"), (number(problem["load"]), "live")):
         for load in problem[key]:
-            if "body" in load:
-                on = [(str(name), number(blocks[str(name)]["weight"]))
-                      for name in load.get("blocks", blocks)]  # fmt: skip
-                force = vector(load["body"][:2])
-            else:
-                on, force = [(str(load["block"]), Fraction(1))], vector(load["force"])
-            for name, times in on:
-                x, y = (factor * times * each for each in force)
-                moment = Fraction(0)
-                if "point" in load:
-                    centre = vector(blocks[name]["centre"])
-                    arm = [p - c for p, c in zip(vector(load["point"]), centre, strict=True)]
-                    moment = cross(arm, [x, y])
-                found[name] = [a + b for a, b in zip(found[name], (x, y, moment), strict=True)]
+            whole = "body" in load
+            force = vector(load["body"][:2] if whole else load["force"])
+            for name in load.get("blocks", blocks) if whole else [load["block"]]:
+                times = factor * (number(blocks[name]["weight"]) if whole else 1)
+                point = vector(load["point"]) if "point" in load else centres[name]
+                found[name] = plus(found[name], force, minus(point, centres[name]), times)
     return found
 
 
-def verify(table: dict[str, Any]) -> str:
+def verify(table: Any) -> str:
     """Return what is proved; raise ValueError where it is not."""
-    if table.get("format") != FORMAT:
-        raise ValueError(f"the format is not {FORMAT!r}")
-    if table.get("sha256") != seal(table):
-        raise ValueError("the file was changed after it was written")
-    problem, slack = table["problem"], number(table["tolerance"])
-    if not 0 <= slack <= MOST:
-        raise ValueError("the tolerance is too large")
-    fixed = {str(each["id"]) for each in problem["blocks"] if each.get("fixed")}
-    blocks = {str(each["id"]): each for each in problem["blocks"] if not each.get("fixed")}
-    if len(fixed) + len(blocks) != len(problem["blocks"]) or not blocks:
-        raise ValueError("blocks need names of their own, and one has to be free")
-    centres = {name: vector(each["centre"]) for name, each in blocks.items()}
-    pull = loads(problem, blocks)
-    still = [Fraction(0)] * 3
-    stands = table["claim"] == "stands"
-    if not stands and table["claim"] != "collapses":
-        raise ValueError("the claim is neither stands nor collapses")
-    given = table["forces" if stands else "rates"]
-    if len(given) != len(problem["joints"] if stands else blocks):
-        raise ValueError("forces or rates are missing")
+    require(table["format"] == FORMAT, f"the format is not {FORMAT!r}")
+    require(table["sha256"] == seal(table), "the file was changed after it was written")
+    problem, slack, claim = table["problem"], number(table["tolerance"]), table["claim"]
+    require(0 <= slack <= Fraction(1, 10**9), "the tolerance is out of range")
+    fixed = {each["id"] for each in problem["blocks"] if each.get("fixed")}
+    blocks = {each["id"]: each for each in problem["blocks"] if not each.get("fixed")}
+    require(len(fixed) + len(blocks) == len(problem["blocks"]), "blocks share a name")
+    centres = {name: vector(block["centre"]) for name, block in blocks.items()}
+    left = loads(problem, blocks, centres)
+    stands, still, work = {"stands": True, "collapses": False}[claim], [NOTHING] * 3, NOTHING
+    given = table["forces"] if stands else table["rates"]
+    require(len(given) == len(problem["joints"] if stands else blocks) > 0, "some are missing")
     rates = {} if stands else {name: vector(given[name], 3) for name in blocks}
     for at, joint in enumerate(problem["joints"]):
-        sides, ends = (str(joint["a"]), str(joint["b"])), [vector(p) for p in joint["ends"]]
-        if any(side not in blocks and side not in fixed for side in sides):
-            raise ValueError(f"joint {at}: a block is missing")
-        if len(ends) == 1:
-            n = vector(joint["normal"])
-            ends, t = ends * 2, [-n[1], n[0]]
-        else:
-            t = [q - p for p, q in zip(*ends, strict=True)]
-            n = [t[1], -t[0]]
+        before, after = joint["a"], joint["b"]
+        require({before, after} <= fixed | blocks.keys(), f"joint {at}: a block is missing")
+        ends = [vector(point) for point in joint["ends"]]
+        t = minus(ends[1], ends[0]) if len(ends) == 2 else []
+        n = [t[1], -t[0]] if t else vector(joint["normal"])
+        t = t or [-n[1], n[0]]
         mu = joint.get("friction", problem["friction"])
-        mu = None if mu == "inf" else number(mu)
-        if mu is not None and mu < 0:
-            raise ValueError(f"joint {at}: friction below 0")
-        for end, point in enumerate(ends):
+        rough, mu = mu == "inf", NOTHING if mu == "inf" else number(mu)
+        require(mu >= 0, f"joint {at}: friction is below 0")
+        for point, force in zip((ends * 2)[:2], given[at] if stands else (0, 0), strict=True):
+            arms = {name: minus(point, centres.get(name, point)) for name in (before, after)}
             if stands:
-                a, b = vector(given[at][end])
-                if a < 0 or (mu is not None and abs(b) > mu * a):
-                    raise ValueError(f"joint {at}: a force pulls, or exceeds friction")
-                force = [a * p + b * q for p, q in zip(n, t, strict=True)]
-                for side, sign in zip(sides, (-1, 1), strict=True):
-                    if side in blocks:
-                        arm = [p - c for p, c in zip(point, centres[side], strict=True)]
-                        wrench = [*force, cross(arm, force)]
-                        pull[side] = [
-                            p + sign * w for p, w in zip(pull[side], wrench, strict=True)
-                        ]
-            else:
-                way = [Fraction(0)] * 2
-                for side, sign in zip(sides, (-1, 1), strict=True):
-                    x, y, turn = rates.get(side, still)
-                    c = centres.get(side, point)
-                    way[0] += sign * (x - turn * (point[1] - c[1]))
-                    way[1] += sign * (y + turn * (point[0] - c[0]))
-                opens = way[0] * n[0] + way[1] * n[1]
-                slips = abs(way[0] * t[0] + way[1] * t[1])
-                if opens < 0 or (slips > 0 if mu is None else mu * slips > opens):
-                    raise ValueError(f"joint {at}: it closes, or slips without opening")
-    work = Fraction(0)
+                a, b = vector(force)
+                require(a >= 0, f"joint {at}: a force pulls")
+                require(rough or abs(b) <= mu * a, f"joint {at}: a force exceeds friction")
+                push = [a * n[0] + b * t[0], a * n[1] + b * t[1]]
+                for name, sign in ((before, -1), (after, 1)):
+                    left[name] = plus(left.get(name, still), push, arms[name], sign)
+                continue
+            moved = [(rates.get(name, still), arms[name]) for name in (after, before)]
+            way = minus(*([x - turn * q, y + turn * p] for (x, y, turn), (p, q) in moved))
+            opens, slips = (way[0] * each[0] + way[1] * each[1] for each in (n, t))
+            lawful = mu * abs(slips) <= opens and not (rough and slips)
+            require(lawful, f"joint {at}: it closes, or slips without opening")
     for name, block in blocks.items():
-        corners = [vector(p) for part in block["polygons"] for p in part]
-        c, weight = centres[name], number(block["weight"])
-        reach = max(abs(x - c[0]) + abs(y - c[1]) for x, y in corners)
-        most = [slack * weight, slack * weight, slack * weight * reach]
-        for left, allowed, rate in zip(pull[name], most, rates.get(name, still), strict=True):
-            if stands and abs(left) > allowed:
-                raise ValueError(f"block {name}: forces do not balance")
-            work += left * rate - allowed * abs(rate)
-    if not stands and work <= 0:
-        raise ValueError("the loads do no work")
-    exact = "" if slack else ", exactly"
-    return f"proved: {table['claim']}{exact} ({len(blocks)} blocks, {len(problem['joints'])} joints)"
+        arms = [minus(vector(p), centres[name]) for part in block["polygons"] for p in part]
+        allowed = slack * number(block["weight"])
+        far = allowed * max(abs(x) + abs(y) for x, y in arms)
+        require(far >= 0, f"block {name}: its weight is below 0")
+        for at, most in enumerate((allowed, allowed, far)):
+            over, rate = left[name][at], rates.get(name, still)[at]
+            require(not stands or abs(over) <= most, f"block {name}: forces do not balance")
+            work += over * rate - most * abs(rate)
+    require(stands or work > 0, "loads do no work")
+    return f"proved: {claim}, {len(blocks)} blocks and {len(problem['joints'])} joints"
 
 
-def main(path: str) -> str:
-    """Check the proof in a file."""
+def checked(text: str) -> str:
+    """Check the proof that a text is; raise ValueError where it is none."""
     try:
-        with open(path, encoding="utf-8") as file:
-            return verify(json.loads(file.read(BYTES)))
-    except (ValueError, TypeError, KeyError, LookupError, AttributeError, OverflowError,
-            ZeroDivisionError, RecursionError) as error:  # fmt: skip
+        return verify(json.loads(text))
+    except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError) as error:
         raise ValueError(f"not proved: {error}") from error
 
 
 if __name__ == "__main__":
     try:
-        print(main(sys.argv[1]))  # noqa: T201
+        print(checked(Path(sys.argv[1]).read_text(encoding="utf-8")))  # noqa: T201
     except (ValueError, OSError) as problem:
         sys.exit(str(problem))

@@ -21,6 +21,9 @@ PAGES = {
     "CONTRIBUTING.md": "contributing.md",
     "ARCHITECTURE.md": "architecture.md",
     "CHANGELOG.md": "changelog.md",
+    "NOTICE.md": "licences.md",
+    "SECURITY.md": "security.md",
+    "RELEASING.md": "releasing.md",
     "analysis/README.md": "studies.md",
     "analysis/sector.md": "theory/sector.md",
 }

@@ -96,9 +96,17 @@ class Ended:
             found.append("memory")
         if self.left:
             found.append("left")
-        if self.code == 2 and not _is_line(self.err):
+        if self.code in {2, 74} and not _is_line(self.err):
             found.append("no line")
+        if not _is_plain(self.out + self.err):
+            found.append("unprintable")
         return tuple(found)
+
+
+def _is_plain(said: bytes) -> bool:
+    """Tell whether a terminal finds nothing in it to obey."""
+    spaces = {"\n": " ", "\N{NO-BREAK SPACE}": " "}
+    return said.decode(errors="replace").translate(str.maketrans(spaces)).isprintable()
 
 
 def _is_line(said: bytes) -> bool:

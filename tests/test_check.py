@@ -73,7 +73,9 @@ def test_every_method_agrees_off_the_limit(eta: float, verdict: str) -> None:
         assert (seen.state_hash is not None) == (method == "pymunk")
 
 
-@pytest.mark.parametrize(("field", "mu", "method"), [("friction", 0, "limit"), ("method", 1, "x")])
+@pytest.mark.parametrize(
+    ("field", "mu", "method"), [("friction", 0, "limit"), ("method", 1, "x")]
+)
 def test_wrong_values(field: str, mu: float, method: str) -> None:
     with pytest.raises(InputError) as caught:
         check(

@@ -34,7 +34,11 @@ def test_check_answers_with_its_exit_code(
     assert answer["arch"]["mode"] == (None if code == 0 else "rrr")
     assert len(answer["joints"]) == 28
     promised = "method reason eta mu half_angle_deg voussoirs weight eta_limit eta_theory"
-    assert {*promised.split(), "simulated_s", "state_hash", "wall_s"} <= {*answer, *answer["problem"], *answer["arch"]}
+    assert {*promised.split(), "simulated_s", "state_hash", "wall_s"} <= {
+        *answer,
+        *answer["problem"],
+        *answer["arch"],
+    }
 
 
 def test_check_exits_with_3_where_it_cannot_tell() -> None:

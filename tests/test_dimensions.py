@@ -143,7 +143,8 @@ def test_the_line_that_was_measured_is_said(at: str, radius: float) -> None:
     assert told["problem"]["radius_m"] == pytest.approx(radius, rel=EXACT)
     assert told["arch"]["half_angle_deg"] == pytest.approx(math.degrees(ALPHA), rel=EXACT)
     # What is told is the clear span, whichever was given.
-    assert told["problem"]["span_m"] == pytest.approx(8 * (radius - 0.225) / (25 / 6), rel=EXACT)
+    clear = 8 * (radius - 0.225) / (25 / 6)
+    assert told["problem"]["span_m"] == pytest.approx(clear, rel=EXACT)
 
 
 def test_both_forms_are_one_question() -> None:

@@ -81,8 +81,9 @@ def test_a_collapse_ends_on_the_ground_with_no_block_in_another(
         for i, shape in enumerate(shapes):
             for other in everything[i + 1 :]:
                 assert clipped(shape, other) < 0.02 * area
-    # Impacts take energy, nothing gives any, and at last all lies still.
-    assert np.diff(energies).max() < 1e-9
+    # Impacts take energy, nothing gives more than steps are off, and at last all lies still.
+    gained = np.array(energies) - np.minimum.accumulate(energies)
+    assert gained.max() < 1e-4 * (energies[0] - energies[-1])
     assert world.poses()[:, 1].max() < 0.5 + level + arch.eta * 3
     assert world.quality().residual < 1e-7
     assert world.quality().penetration < 0.02

@@ -236,7 +236,7 @@ def test_a_block_slides_along_the_whole_face_and_tips_at_its_end() -> None:
         world.advance(1)
         time += 0.01
         x, y, turned = world.poses()[0]
-        way = speeding * time * (time + 0.01) / 2
+        way = speeding * time**2 / 2
         assert x - start[0] == pytest.approx(way, rel=1e-6)
         assert abs(turned) < 1e-9
         assert y == pytest.approx(start[1], abs=1e-9)

@@ -103,7 +103,17 @@ def test_for_long(nursery: Nursery, tmp_path: Path) -> None:
             )(given(st.just(kind), attacks())(one))
             seed(number)(run)()
     total = sum(tried[kind] for kind in ATTACKS)
-    names = ("traceback", "hang", "memory", "abort", "killed", "left", "no line", "code")
+    names = (
+        "traceback",
+        "hang",
+        "memory",
+        "abort",
+        "killed",
+        "left",
+        "no line",
+        "unprintable",
+        "code",
+    )
     told = ", ".join(f"{name} {seen[name]}" for name in names)
     print(f"\n{total} attacks in {MINUTES:g} min from seed {first}: {told}")  # noqa: T201
     print(", ".join(f"{name} {count}" for name, count in sorted(tried.items())))  # noqa: T201

@@ -19,13 +19,13 @@ from blocksim.arch.scenario import shipped
 from blocksim.ask.families import families_of
 from blocksim.blocks.joints import JointState
 from blocksim.common.errors import InputError
+from blocksim.engines import ENGINES
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import load_structure, shipped_structures
 from blocksim.kinds.known import load_known
 from blocksim.report.page import report_page
 from blocksim.report.tables import write_results
-from blocksim.studies import questions
 from blocksim.studies.questions import StructureRow, answer
 from blocksim.studies.structures import (
     structures,
@@ -218,7 +218,7 @@ def test_what_is_not_asked_is_said() -> None:
         "pymunk: catenary (more than 40 blocks)",
         "pymunk: spread_90_12_20 (it moves no supports)",
     ]
-    with pytest.raises(InputError, match="one or more of direct"):
+    with pytest.raises(InputError, match="one of direct"):
         validate_structures(chosen, ("limit",))
 
 
@@ -286,7 +286,7 @@ def test_rows_are_written(tmp_path: Path, rows: list[StructureRow]) -> None:
     part = document["structures"]
     assert [row["structure"] for row in part["rows"][::3]] == list(QUICK)
     assert part["rows"][0]["value"] == pytest.approx(0.3705338738135736)
-    assert part["settings"]["aside"]["direct"] == questions.ASIDES["direct"] == 0.001
+    assert part["settings"]["aside"]["direct"] == ENGINES["direct"].aside == 0.001
     assert part["not_asked"][0]["scenarios"] == ["catenary"]
     assert "drawn" not in part["rows"][0]
     with (tmp_path / "structures.csv").open(newline="") as file:

@@ -135,8 +135,8 @@ def test_a_name_that_was_nearly_right_is_asked_for(
 
 
 def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:
-    asked = ("check", "semicircle", "--ratio", "0.999", "--depth", "2.5", "--json")
-    answer = json.loads(blocksim(*asked).stdout)
+    asked = ("check", "semicircle", "--depth", "2.5", "--json")
+    answer = json.loads(blocksim(*asked, "--ratio", "0.999").stdout)
     arch = answer["arch"]
     assert arch["eta"] == pytest.approx(0.999 * arch["eta_limit"], rel=1e-14)
     assert (arch["depth"], answer["verdict"]) == (2.5, "collapses")

@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import math
+import re
+import subprocess
+import sys
 import warnings
+from collections.abc import Iterator
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
-from running import blocksim
+from running import PROGRAM, blocksim
 
-from blocksim import Arch, structure_of
+from analysis import random_proofs
+from analysis.random_problems import Case, drawn
+from blocksim import Arch, Problem, structure_of
+from blocksim import verify as verify_module
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch
+from blocksim.limit.proof import proof_record
+from blocksim.verify import checked, seal, verify
 
 Table = dict[str, Any]
 BED = {"id": "bed", "fixed": True, "vertices": [[6, -1], [9, -1], [9, 0], [6, 0]]}
@@ -117,8 +128,10 @@ def test_a_column_of_unlike_drums_tips_where_it_must(
                 "ends": [[-half, low], [half, low]],
             }
         )
-        above = [(w * h, sum(heights[at:k]) + h / 2)
-                 for k, (w, h) in enumerate(zip(widths, heights, strict=True)) if k >= at]  # fmt: skip
+        above = [
+            (widths[k] * heights[k], sum(heights[at:k]) + heights[k] / 2)
+            for k in range(at, len(widths))
+        ]
         arm = sum(w * y for w, y in above) / sum(w for w, _ in above)
         least = min(least, half / arm)
         low, last = low + height, width
@@ -177,3 +190,123 @@ def test_three_voussoirs_without_bound_on_friction(degrees: float, eta: float) -
         assert found.carried is not None
         assert found.carried.strength_used == 0
         assert found.carried.resultants is not None
+
+
+def proof_of(problem: Problem) -> Table:
+    """The file that `check --proof` writes."""
+    found = check(problem, method="limit")
+    assert found.proof is not None
+    assert found.proved
+    return json.loads(json.dumps(proof_record(found.proof)))
+
+
+def proofs() -> Iterator[Table]:
+    """Of arches, walls, kinds, corners and loads; half of them of collapse."""
+    for mu in (0.7, math.inf):
+        for eta in (0.09, 0.15):
+            yield proof_of(Arch(half_angle=math.pi / 2, eta=eta, voussoirs=7).problem(mu))
+    for tilt in (0, 50):
+        yield proof_of(structure_of(wall(2, 2, 10, 8, 0.6)).tilted(math.radians(tilt)))
+    for friction in (0.2, 0.6):
+        yield proof_of(structure_of(on_a_ramp(1e-3, 0.5, friction)))
+    for index in range(20, 30):
+        yield proof_of(drawn(Case(index, 16)).problem)
+
+
+@pytest.fixture(scope="module")
+def written() -> list[Table]:
+    return list(proofs())
+
+
+def test_proofs_are_accepted(written: list[Table]) -> None:
+    claims = {each["claim"] for each in written}
+    assert claims == {"stands", "collapses"}
+    for table in written:
+        assert verify(table).startswith(f"proved: {table['claim']}")
+
+
+def spoilt(table: Table, random: np.random.Generator) -> Table:
+    """Change a force, a rate, a corner, a sign, or leave out a block; sealed anew."""
+    made = copy.deepcopy(table)
+    problem = made["problem"]
+    free = [each for each in problem["blocks"] if not each.get("fixed")]
+    joint = problem["joints"][random.integers(len(problem["joints"]))]
+    what = random.choice(["value", "sign", "corner", "block", "joint"])
+    if what == "corner":
+        end = joint["ends"][random.integers(len(joint["ends"]))]
+        end[random.integers(2)] += 10.0 ** random.uniform(-1, 1)
+    elif what == "block":
+        problem["blocks"].remove(free[random.integers(len(free))])
+    elif what == "joint":
+        problem["joints"].remove(joint)
+    elif made["claim"] == "collapses":
+        # All of them the other way, or none.
+        times = -1 if what == "sign" else 0
+        made["rates"] = {
+            name: [str(times * Fraction(each)) for each in rate]
+            for name, rate in made["rates"].items()
+        }
+    else:
+        pressed = [end for joint in made["forces"] for end in joint if end != ["0", "0"]]
+        end = pressed[random.integers(len(pressed))]
+        at = 0 if end[1] == "0" else random.integers(2)
+        share = -1 if what == "sign" else 1 + Fraction(1, 10**6)
+        end[at] = str(share * Fraction(end[at]))
+    if made["claim"] == "collapses" and what in {"corner", "joint"}:
+        # It may be a proof of the other problem: the seal tells that it is not the same.
+        return made
+    return {**made, "sha256": seal(made)}
+
+
+def test_spoilt_proofs_are_refused(written: list[Table]) -> None:
+    """1,000 of them, as if somebody had sealed them."""
+    random = np.random.default_rng(35)
+    for at in range(1000):
+        with pytest.raises(ValueError, match="not proved"):
+            checked(json.dumps(spoilt(written[at % len(written)], random)))
+
+
+@pytest.mark.parametrize("index", range(40))
+def test_verdicts_at_the_edges_are_proved(index: int) -> None:
+    """Unlike sizes and weights, rounding, friction of each joint, loads off centre."""
+    row = random_proofs.asked(index)
+    assert row.verified or row.index == 33, row
+
+
+@given(st.integers(10**6, 10**9))
+@settings(max_examples=10)
+def test_no_proof_at_the_edges_is_refused(index: int) -> None:
+    row = random_proofs.asked(index)
+    assert row.verified or not row.proved, row
+
+
+def test_the_commands(tmp_path: Path) -> None:
+    """A proof is written, checked by the command and by the file alone, refused if spoilt."""
+    file, proof = tmp_path / "pebble.json", tmp_path / "proof.json"
+    file.write_text(json.dumps(on_a_ramp(1e-3, 0.5, 0.6)))
+    done = blocksim("check", str(file), "--proof", str(proof), "--json")
+    assert json.loads(done.stdout)["proved"] is True
+    alone = [sys.executable, "-I", verify_module.__file__, str(proof)]
+    for command in ([*PROGRAM, "verify", str(proof)], alone):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.stdout == "proved: stands, 2 blocks and 2 joints\n", done.stderr
+    proof.write_text(proof.read_text().replace("pebble", "people"))
+    done = blocksim("verify", str(proof))
+    assert done.returncode == 2
+    assert "the file was changed" in done.stderr
+    refused = blocksim("check", str(file), "--method", "direct", "--proof", str(proof))
+    assert refused.returncode == 2
+    assert "limit proves" in refused.stderr
+
+
+def test_the_checker_shares_no_code() -> None:
+    source = Path(str(verify_module.__file__)).read_text(encoding="utf-8")
+    assert len(source.splitlines()) <= 150
+    taken = set(re.findall(r"^(?:from|import) (\w+)", source, re.MULTILINE))
+    assert taken - {"__future__"} <= sys.stdlib_module_names
+
+
+def test_a_file_that_was_changed_is_refused(written: list[Table]) -> None:
+    for table in written:
+        with pytest.raises(ValueError, match="changed after"):
+            verify({**table, "version": "0"})

@@ -55,7 +55,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "pushed.json").write_text(json.dumps(PUSHED))
     for name, asked, code in (
         ("arch", (*ASKED, *FRICTION), 0),
-        ("thin", (*ASKED, *FRICTION, "--thickness", "0.2"), 1),
+        ("thin", (*(each.replace("0.45", "0.2") for each in ASKED), *FRICTION), 1),
         ("pushed", (str(folder / "pushed.json"), "--method", "direct"), 0),
         ("wall", ("wall", "--mu", "0.6"), 0),
         ("road", (*ASKED, *FRICTION, "--fill", "0.5", "--point-load", "1", "20"), 0),

@@ -324,7 +324,7 @@ def test_a_flat_block_slides_as_coulomb_says() -> None:
     problem = replace(block(2.0, 0.4, mu), shaking=shaking)
     speed = (amplitude - mu) * G * duration
     wanted = speed * duration / 2 + speed**2 / (2 * mu * G)
-    seen = shake(problem, "direct")
+    seen = shake(problem, "direct", settings={"step": 0.01})
     assert seen.verdict is Verdict.STANDS
     way = seen.recording.poses[0, 0, 0] - seen.recording.poses[-1, 0, 0]
     assert way * problem.assembly.size == pytest.approx(wanted, rel=2e-5)
@@ -336,7 +336,9 @@ def test_mirrored_ground_moves_blocks_the_other_way() -> None:
     there = Shaking(shape="full-sine", amplitude=0.5, duration=0.6)
     back = table_of(times, -0.5 * np.sin(2 * math.pi * times / 0.6))
     one, two = (
-        shake(replace(block(), shaking=each), "direct", until=3.0).recording.poses[:, 0, 2]
+        shake(
+            replace(block(), shaking=each), "direct", until=3.0, settings={"step": 0.01}
+        ).recording.poses[:, 0, 2]
         for each in (there, back)
     )
     assert np.abs(one).max() > 0.05
@@ -347,11 +349,11 @@ def test_mirrored_ground_moves_blocks_the_other_way() -> None:
     "name", ["rocking_1x4_5", pytest.param("rocking_0_5x4_5", marks=pytest.mark.long)]
 )
 def test_time_to_the_first_impact_converges_to_housners(name: str) -> None:
-    """Errors halve with the step, and what two of them leave is less than 2e-5."""
+    """Errors fall as the step squared, and the usual step's is less than 3e-5."""
     known, problem = case(name), structure_of(tipped(name))
     wanted = known["expected"]["time_to_first_impact_s"]
     errors: list[float] = []
-    for step in (0.004, 0.002):
+    for step in (0.05, 0.025, 0.0125):
         # On ground that shakes by nothing `direct` takes its own steps from the first.
         nothing = Shaking(shape="constant", amplitude=0.0, duration=1.1 * wanted)
         recording = shake(
@@ -363,9 +365,9 @@ def test_time_to_the_first_impact_converges_to_housners(name: str) -> None:
         impact = rocking_of(recording).impact
         assert impact is not None
         errors.append(impact * problem.seconds / wanted - 1)
-    assert errors[0] / errors[1] == pytest.approx(2, rel=0.05)
-    assert abs(2 * errors[1] - errors[0]) < 2e-5
-    assert abs(errors[1]) < 1e-3
+    one, two = np.diff(errors)
+    assert one / two == pytest.approx(4, rel=0.25)
+    assert np.abs(errors).max() < 3e-5
 
 
 def written(folder: Path, **more: object) -> str:

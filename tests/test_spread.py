@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from running import inside as blocksim
+from scipy.optimize import brentq
 from structure_cases import case
 
 from blocksim.ask.bracket import bracket
@@ -125,6 +127,147 @@ def test_a_three_hinged_arch_of_two_blocks_falls_when_it_is_flat(steps: int | No
     assert JointState.CLOSED not in path.events[0].after.states
     assert path.ends == "collapse"
     assert path.value == pytest.approx(flat, rel=1e-8)
+
+
+TWELVE = (
+    *((7, 0.35), (8, 0.35), (9, 0.2), (11, 0.4), (13, 0.25), (15, 0.4)),
+    *((17, 0.15), (19, 0.3), (21, 0.2), (25, 0.35), (27, 0.15), (31, 0.25)),
+)
+"""Voussoirs and thickness of semicircles."""
+Hinges = tuple[int, int, int]
+
+
+def ends_pressed(voussoirs: int, thickness: float, hinges: Hinges, apart: float) -> float:
+    """Least force at any end of any joint of a semicircle on three hinges, by statics.
+
+    Of the joints named the outer two turn about their intrados, the middle one about its
+    extrados. Two bars go from hinge to hinge: where they are, geometry says, and what they
+    carry, moments about the hinges. nan where the bars do not reach.
+    """
+    first, crown, last = hinges
+    angles = np.linspace(-math.pi / 2, math.pi / 2, voussoirs + 1)
+    radial = np.column_stack([np.sin(angles), np.cos(angles)])
+    inner, outer = (1 - thickness / 2) * radial, (1 + thickness / 2) * radial
+    half = math.pi / voussoirs / 2
+    mean = (1 + thickness**2 / 12) * math.sin(half) / half  # of a sector's centroid
+    middles = (angles[1:] + angles[:-1]) / 2
+    centres = mean * np.column_stack([np.sin(middles), np.cos(middles)])
+    shift = np.array([apart / 2, 0.0])
+    left, right = inner[first] - shift, inner[last] + shift
+    bars = [np.linalg.norm(outer[crown] - inner[at]) for at in (first, last)]
+    span = np.linalg.norm(right - left)
+    if span >= sum(bars):
+        return math.nan
+    along = (bars[0] ** 2 - bars[1] ** 2 + span**2) / (2 * span)
+    way = (right - left) / span
+    top = left + along * way + math.sqrt(bars[0] ** 2 - along**2) * np.array([-way[1], way[0]])
+
+    def carried(points: np.ndarray, fixed: np.ndarray, now: np.ndarray) -> np.ndarray:
+        """Points of a bar that turns about its foot, which has moved."""
+        before, after = outer[crown] - fixed, top - now
+        turn = math.atan2(after[1], after[0]) - math.atan2(before[1], before[0])
+        cos, sin = math.cos(turn), math.sin(turn)
+        return now + (points - fixed) @ np.array([[cos, sin], [-sin, cos]])
+
+    def placed(points: np.ndarray, at: np.ndarray, side: float) -> np.ndarray:
+        """All points where they are; on the joint at the crown by the side asked for."""
+        found = np.where(at[:, None] < first, points - shift, points + shift)
+        on = (at >= first) & (at < crown + side)
+        found[on] = carried(points[on], inner[first], left)
+        on = (at >= crown + side) & (at <= last - 1 + side)
+        found[on] = carried(points[on], inner[last], right)
+        return found
+
+    blocks, joints = np.arange(voussoirs), np.arange(voussoirs + 1)
+    centres = placed(centres, blocks, 0.0)
+    inner, outer = (placed(points, joints, 0.5) for points in (inner, outer))
+    weights = np.ones(voussoirs)
+    # Moments about the right hinge of all, about the top of the left bar.
+    one, two = slice(first, crown), slice(crown, last)
+    arms = centres[:, 0]
+    rise, reach = top[1] - left[1], top[0] - left[0]
+    own = float((weights[one] * (top[0] - arms[one])).sum())
+    all_ = own + float((weights[two] * (top[0] - arms[two])).sum())
+    other = all_ - own
+    back, fall = right[0] - top[0], top[1] - right[1]
+    # H rise = V reach - own, and H fall = (W - V) back + other (moments of the right bar).
+    load = float(weights[first:last].sum())
+    matrix = np.array([[rise, -reach], [fall, back]])
+    thrust, lift = np.linalg.solve(matrix, np.array([-own, load * back + other]))
+    least = math.inf
+    for joint in joints.tolist():
+        between = slice(min(first, joint), max(first, joint))
+        sign = 1.0 if joint >= first else -1.0
+
+        def moment(about: np.ndarray, between: slice = between, sign: float = sign) -> float:
+            """Of the force through the joint: that of the hinge, less that of weights."""
+            arm = left - about
+            weighed = -weights[between] * (arms[between] - about[0])
+            return arm[0] * lift - arm[1] * thrust + sign * float(weighed.sum())
+
+        ends = [-moment(inner[joint]), moment(outer[joint])]
+        if joint in hinges:
+            ends = ends[:1] if joint == crown else ends[1:]
+        least = min(least, *ends)
+    return least / thickness
+
+
+def first_fall(voussoirs: int, thickness: float) -> set[float]:
+    """How far supports go apart until forces no longer fit, on all hinges that fit at first."""
+    start, found = 1e-3, set[float]()
+    for hinges in combinations(range(voussoirs + 1), 3):
+        if not ends_pressed(voussoirs, thickness, hinges, start) > 0:
+            continue
+        grid = np.linspace(start, 1.5, 1500)
+        pressed = [ends_pressed(voussoirs, thickness, hinges, at) for at in grid.tolist()]
+        beyond = next(at for at, each in enumerate(pressed) if not each > 0)
+
+        def lacking(at: float, hinges: Hinges = hinges) -> float:
+            return ends_pressed(voussoirs, thickness, hinges, at)
+
+        found.add(round(brentq(lacking, grid[beyond - 1], grid[beyond], xtol=1e-14), 9))
+    return found
+
+
+def shared(voussoirs: int, thickness: float, share: float) -> Spreading:
+    """A semicircle whose left support does a share of the motion."""
+    ways = (("left", -share), ("right", 1 - share))
+    moves = [{"block": end, "direction": [way, 0]} for end, way in ways]
+    return Spreading(structure_of(semicircle(thickness, voussoirs=voussoirs, move=moves)))
+
+
+@pytest.mark.parametrize(
+    "arch",
+    [
+        pytest.param(arch, marks=[] if arch in {(7, 0.35), (9, 0.2)} else pytest.mark.long)
+        for arch in TWELVE
+    ],
+)
+def test_spread_is_one_value_however_it_is_shared(arch: tuple[int, float]) -> None:
+    """That of the stable branch: of two halves that mirror each other one leads."""
+    (want,) = first_fall(*arch)
+    for share in (0.5, 0.51) if arch[0] < 10 else (0.5, 0.51, 0.0, 1.0, 0.25):
+        assert shared(*arch, share).exact == pytest.approx(want, abs=1e-6)
+
+
+def test_a_support_that_turns_takes_the_branch_that_rests() -> None:
+    """Two hinges may open alike at first, of which one falls at once."""
+    turns = [{"block": "right", "turn_deg": 30}]
+    path = Spreading(structure_of(semicircle(0.12, voussoirs=12, move=turns))).path
+    assert [event.what for event in path.events] == ["hinges", "collapse"]
+    assert path.first_fall == pytest.approx(0.90458816, rel=1e-6)  # as rows of analysis have it
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("arch", [(7, 0.35), (9, 0.2), (11, 0.4), (17, 0.15)])
+@pytest.mark.parametrize("share", [0.5, 0.3])
+def test_direct_brackets_the_stable_branch(arch: tuple[int, float], share: float) -> None:
+    (want,) = first_fall(*arch)
+    found = bracket(family_of(shared(*arch, share).asked, "spread"), method="direct")
+    assert found.low is not None
+    assert found.high is not None
+    assert 0.998 * want < found.low < found.high < 1.002 * want
+    assert found.confirmed
 
 
 def test_mirrored_and_scaled_supports_move_alike() -> None:

@@ -14,8 +14,8 @@ from running import inside as blocksim
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.ask.check import check
-from blocksim.blocks.problem import Problem
-from blocksim.blocks.structure import structure_of
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.structure import structure_of, structure_record
 from blocksim.common.errors import InputError
 from blocksim.kinds.circular import arch_problem
 from blocksim.limit import equilibrium
@@ -146,6 +146,67 @@ def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
     assert may_start(problem).moves is False
 
 
+def beside(problem: Problem, weight: float) -> Problem:
+    """The same with a block at rest on ground of its own, of so many times its weight."""
+    table = structure_record(problem)
+    total = sum(block.mass for block in problem.assembly.blocks) * STANDARD_GRAVITY
+    table["blocks"] += [
+        {"id": "bed", "vertices": [[9, -6], [10, -6], [10, -5], [9, -5]], "fixed": True},
+        {
+            "id": "other",
+            "vertices": [[9, -5], [10, -5], [10, -4], [9, -4]],
+            "weight": weight * total,
+        },
+    ]
+    table["joints"] += [{"a": "bed", "b": "other", "ends": [[9, -5], [10, -5]]}]
+    return structure_of(table)
+
+
+@pytest.mark.parametrize(
+    "weight", [1e5, *(pytest.param(each, marks=pytest.mark.long) for each in (1e-6, 1.0, 1e9))]
+)
+def test_what_rests_beside_it_hides_no_motion(weight: float) -> None:
+    alone, together = arch(3.0, 1.2, 7), beside(arch(3.0, 1.2, 7), weight)
+    want, found = may_start(alone), may_start(together)
+    assert found.moves
+    assert found.power == pytest.approx(want.power, rel=1e-4)
+    assert found.accelerations is not None
+    assert np.abs(found.accelerations[-1]).max() == 0
+    assert wrong(together, found) < 1e-6 * max(1.0, weight)
+
+
+def test_the_motion_is_shown_and_goes_on_in_direct() -> None:
+    said = check(beside(arch(3.0, 1.2, 7), 1e5), method="limit", must_rest=True)
+    assert (said.verdict.value, said.rest) == ("stands", "can")
+    assert said.motion is not None
+    assert said.motion.goes_on
+    assert said.mechanism is not None
+    assert np.abs(said.mechanism[:-1]).max() > 0.1
+    assert {joint.state.value for joint in said.joints} > {"closed"}
+
+
+def test_what_a_heavy_block_that_it_touches_may_hide_is_not_told() -> None:
+    """It hangs by friction between a wall and a block 1e5 times as heavy: it may fall."""
+    light = structure_record(between_walls(-0.2, 0.5))
+    for block in light["blocks"]:
+        if block["id"] == "right":
+            block.update(fixed=False, weight=1e5)
+        if block["id"] == "block":
+            block["weight"] = 1.0
+    floor = [[0.4, -1.5], [3, -1.5], [3, -0.5], [0.4, -0.5]]
+    light["blocks"] += [{"id": "floor", "vertices": floor, "fixed": True}]
+    problem = structure_of({"friction": 0.5, "blocks": light["blocks"]})
+    assert may_start(problem).moves is not False
+
+
+def test_two_groups_are_asked_by_themselves() -> None:
+    """One that must rest does not hide one that may move, nor does it move with it."""
+    problem = beside(between_walls(-0.2, 0.5), 3.0)
+    start = may_start(problem)
+    assert start.accelerations == pytest.approx(np.array([[0, -1, 0], [0, 0, 0]]), abs=1e-6)
+    assert may_start(beside(between_walls(0.3, 0.5), 1e4)).moves is False
+
+
 def test_below_the_least_thickness_it_moves() -> None:
     problem = arch(3.0, 0.98)
     start = may_start(problem)
@@ -170,7 +231,10 @@ def test_the_command_says_it() -> None:
     wide = ("--alpha", "155", "--mu", "3", "--voussoirs", "3")
     narrow = ("--alpha", "60", "--mu", "0.9", "--voussoirs", "4")
     words = blocksim("check", *wide, "--ratio", "1.05", *asked).stdout
-    assert "  rest    it can rest, and friction may let it move as well\n" in words
+    assert (
+        "  rest    it can rest, and friction may let it move as well; let go along that motion"
+        in words
+    )
     found = json.loads(blocksim("check", *narrow, "--ratio", "1.5", *asked, "--json").stdout)
     assert found["rest"] == "must"
 

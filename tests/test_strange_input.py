@@ -344,6 +344,35 @@ def test_a_problem_of_a_stranger_is_checked(change: dict[str, Any], tmp_path: Pa
     one_line(blocksim("render", str(tmp_path / "a.npz"), "--out", out))
 
 
+@pytest.mark.parametrize(
+    ("what", "field", "value"),
+    [
+        ("blocks", "centre", ["inf", 0.0]),
+        ("blocks", "centre", [0.0, 1e29]),
+        ("joints", "after", True),
+        ("joints", "before", 0.0),
+        ("joints", "inner", [1e29, 0.0]),
+        ("joints", "faces", [[[1e29, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]]),
+        ("joints", "gap", "inf"),
+        ("joints", "support", False),
+        ("supports", "polygons", [[[0.0, 0.0], [1e29, 0.0], [0.0, 1.0]]]),
+    ],
+)
+def test_an_assembly_of_a_stranger_is_checked(
+    what: str, field: str, value: object, tmp_path: Path
+) -> None:
+    header, times, poses = copy.deepcopy(_good())
+    entries = header["problem"]["assembly"][what]
+    if not entries:
+        entries.append({"name": ""})
+    entries[0][field] = value
+    (tmp_path / "a.npz").write_bytes(packed(header, times, poses))
+    said = one_line(
+        blocksim("render", str(tmp_path / "a.npz"), "--out", str(tmp_path / "o.svg"))
+    )
+    assert "recording" in said
+
+
 def test_three_voussoirs_of_which_any_thickness_stands_are_filmed(tmp_path: Path) -> None:
     (tmp_path / "a.npz").write_bytes(packed(*_good()))
     out = tmp_path / "o.svg"

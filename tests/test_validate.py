@@ -68,20 +68,17 @@ def test_a_wrong_engine_would_be_a_miss(monkeypatch: pytest.MonkeyPatch) -> None
     assert "mode rrr, limit says srr" in row.miss
 
 
-def test_modes_that_coincide_on_a_line_of_the_map_are_both_right(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_modes_that_coincide_on_a_line_of_the_map_are_both_right() -> None:
     """Fig. 22 prints both modes; where friction is 1e-4 more theory has but one of them.
 
     In a wide bracket `direct` sees rrr at the lower end; at the limit they are rrs.
     """
-    monkeypatch.setitem(validate_one.__globals__["TOLS"], "direct", 4e-3)
     scenario = load_scenario("fig22_first_sliding_149")
-    on_it = validate_one(scenario, "direct")
+    on_it = validate_one(scenario, "direct", tol=4e-3)
     assert (on_it.mode_observed, on_it.mode_limit) == (Mode.RRR, Mode.RRS)
     assert on_it.miss == ""
     assert on_it.note.startswith("on a line of the map")
-    beside = validate_one(replace(scenario, mu=1.0001 * scenario.mu), "direct")
+    beside = validate_one(replace(scenario, mu=1.0001 * scenario.mu), "direct", tol=4e-3)
     assert (beside.mode_observed, beside.mode_limit) == (Mode.RRR, Mode.RRS)
     assert beside.miss == "mode rrr, limit says rrs"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import math
 import re
 import xml.etree.ElementTree as ET
@@ -458,6 +459,27 @@ def test_command_films_a_scenario(tmp_path: Path) -> None:
     change = [np.abs(b - a).max() for a, b in pairwise(shown)]
     # While it falls frames differ, and at the end they do not.
     assert max(change[: len(change) // 2]) > 100 > 30 > max(change[-12:])
+
+
+def test_a_film_says_that_blocks_still_move_as_it_ends(tmp_path: Path) -> None:
+    """A slab slides down a slope: g (sin phi - mu cos phi) t after a time t."""
+    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
+    slab = {"id": 1, "vertices": [[0, 0], [1, 0], [1, 0.2], [0, 0.2]]}
+    problem = {"friction": 0.2, "blocks": [floor, slab]}
+    (tmp_path / "slab.json").write_text(json.dumps(problem))
+    asked = ("render", str(tmp_path / "slab.json"), "--height", "180")
+    done = inside(*asked, "--tilt", "30", "--out", str(tmp_path / "slides.mp4"))
+    assert done.returncode == 0, done.stderr
+    said = re.search(
+        r": ([\d.]+) s of motion.* still move as it ends, at ([\d.]+) m/s", done.stdout
+    )
+    assert said is not None
+    speed = 9.81 * (math.sin(math.pi / 6) - 0.2 * math.cos(math.pi / 6)) * float(said[1])
+    assert float(said[2]) == pytest.approx(speed, rel=0.06)
+    # The film ends before the slab has left the picture.
+    with av.open(str(tmp_path / "slides.mp4")) as container:
+        frames = [each.to_ndarray(format="gray") for each in container.decode(video=0)]
+    assert np.abs(frames[-1].astype(int) - frames[0]).max() > 20
 
 
 def drawn_words(film: Film, at: float | None = None) -> list[str]:

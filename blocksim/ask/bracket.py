@@ -41,6 +41,8 @@ FARTHEST = 1e3
 """How far from its first value a search goes, as a ratio."""
 FINEST_SPREAD = 1e-4
 """Narrowest bracket over the motion of supports by `direct`, relative."""
+ALIKE = 0.005
+"""How far beyond the ends that `direct` finds limit analysis still agrees with it, relative."""
 GUESS = 0.1
 """Share of the range at which a search begins where limit analysis gives no value."""
 
@@ -308,8 +310,8 @@ def _of_family(
         given.method, given.tol, problem=probe, settings=given.settings, reduce=given.reduce
     )
     if family.spreading is not None:
-        able = chosen.name in {"limit", "direct"}
-        require(able, "method", chosen.name, "limit or direct: others move no supports")
+        allowed = "limit or direct: others move no supports"
+        require(chosen.moves_supports, "method", chosen.name, allowed)
         require(not given.reduce, "reduce", given.reduce, "left out where supports move")
     # What limit analysis says is of ground at rest.
     static = probe.is_planar and probe.shaking is None
@@ -326,7 +328,7 @@ def _of_family(
         if chosen.is_static:
             found = _followed(family, family.spreading, exact)
         else:
-            found = _slowly(family.spreading, given.tol, high, given.progress)
+            found = _slowly(family.spreading, given.tol, high, exact, given.progress)
     elif chosen.is_static:
         found = _by_limit(family, exact, rises=rises)
     elif probe.shaking is not None:
@@ -416,14 +418,20 @@ def _followed(family: Family, spreading: Spreading, exact: float | None) -> Sear
     )
 
 
-def _slowly(spreading: Spreading, tol: float, highest: float, progress: Progress) -> Search:
+def _slowly(
+    spreading: Spreading, tol: float, highest: float, exact: float | None, progress: Progress
+) -> Search:
     """Move the supports slowly in `direct`, and stop them."""
     seen = spreading.slowly(max(tol, FINEST_SPREAD), highest, progress)
     way = "" if seen.solved else "; a step was not solved"
+    low, high = seen.low or 0.0, math.inf if seen.high is None else seen.high
+    agree = exact is None or (1 - ALIKE) * low <= exact <= (1 + ALIKE) * high
+    if not agree:
+        way += f"; limit analysis says {exact:.6g}: which of both is right is open"
     return Search(
         falls=seen.high,
         stands=seen.low,
-        confirmed=seen.solved,
+        confirmed=seen.solved and agree,
         runs=seen.runs,
         reason=f"supports moved slowly and stopped {seen.runs} times: up to one value blocks "
         "stay, from the other on they move by themselves (whether something catches them "

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple, Unpack
 from blocksim.ask.carried import carried_of
 from blocksim.ask.methods import choose, chosen_words, engine_of, merges, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
-from blocksim.ask.rest import Rest, require_rest, rest_of
+from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
 from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.shown import Shown
@@ -21,12 +22,14 @@ from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
 from blocksim.limit.programme import NEAR
+from blocksim.limit.proof import proof_of_rest
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer
     from blocksim.engines.base import Method
     from blocksim.evidence.observation import Observation
     from blocksim.evidence.shaken import Shaken
+    from blocksim.limit.proof import Proof
 
 SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
@@ -53,6 +56,8 @@ class Check(Shown):
         forces; None where it was not found out whether it must rest.
     asked_rest : bool
         Whether that was to be found out.
+    motion : Moving or None
+        Where it was, the motion that was found; `joints` say what they do in it.
     load_factor : float or None
         Largest factor on the live loads at which forces of equilibrium exist, by limit
         analysis; inf where no live load is too much. None without live loads, or where
@@ -82,6 +87,7 @@ class Check(Shown):
     joints: tuple[ObservedJoint, ...]
     rest: Rest | None = None
     asked_rest: bool = False
+    motion: Moving | None = None
     load_factor: float | None = None
     rates: Array | None = None
     shaken: Shaken | None = None
@@ -103,6 +109,25 @@ class Check(Shown):
         still = self.problem.is_planar and self.shaken is None
         return equilibrium(self.problem) if still else None
 
+    @cached_property
+    def proof(self) -> Proof | None:
+        """The proof of the verdict by limit analysis; None where there is none."""
+        if self.method != "limit":
+            return None
+        found = None
+        if offers_of(self.problem) and self.carried is not None:
+            # The maker's own statics know forces: no linear programme has to be loaded.
+            forces = self.carried.forces
+            found = None if forces is None else proof_of_rest(self.problem, forces)
+        if found is None and self.static is not None:
+            found = self.static.proof
+        return found if found is not None and found.claim == self.verdict.value else None
+
+    @property
+    def proved(self) -> bool:
+        """Whether the verdict is proved (`blocksim.verify`)."""
+        return self.proof is not None
+
     @property
     def forces(self) -> Array | None:
         """Forces of equilibrium at the ends of the joints, along their normals and tangents.
@@ -115,11 +140,14 @@ class Check(Shown):
     def mechanism(self) -> Array | None:
         """Rates x, y [size] and rotation with which a collapse starts, (blocks, 3 or 6).
 
-        The largest way of a corner is 1. None where the blocks stand, or nothing is known.
+        Or what may move though it can rest. The largest way of a corner is 1. None where the
+        blocks stand, or nothing is known.
         """
         rates, falls = self.rates, self.verdict is not Verdict.STANDS
         if self.method == "limit" and falls and self.static is not None:
             rates = self.static.mechanism
+        if self.motion is not None:
+            rates = self.motion.accelerations
         return None if rates is None else _unit(rates, self.problem)
 
     @cached_property
@@ -178,9 +206,9 @@ def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) 
         found = _offered(problem, offered, chosen, given)
     else:
         found = _general(problem, chosen, given)
-    rest = None
+    rest = motion = None
     if problem.shaking is None:
-        rest = rest_of(
+        rest, motion = rest_of(
             problem if must_rest else None,
             exists=found.exists,
             moved=found.moved,
@@ -193,6 +221,10 @@ def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) 
         evidence=(*found.answer.evidence, *words, *notes),
         rest=rest,
         asked_rest=must_rest and problem.shaking is None,
+        motion=motion,
+        joints=found.answer.joints
+        if motion is None
+        else _observed(problem, motion.accelerations),
         wall_s=time.perf_counter() - started,
     )
     if found.static is not None:
@@ -253,7 +285,10 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
         answer = Check(
             method=chosen.name,
             verdict=verdict if static.decided else Verdict.UNDECIDED,
-            evidence=(Evidence("limit analysis", _static_words(static)),),
+            evidence=(
+                Evidence("limit analysis", _static_words(static)),
+                *_closing(problem, static.exists),
+            ),
             problem=problem,
             joints=_observed(problem, static.mechanism),
             load_factor=factor,
@@ -341,8 +376,8 @@ def _static_words(static: Equilibrium) -> str:
     if static.exists:
         return (
             "forces of equilibrium exist, every contact pressing by "
-            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its friction "
-            "cone, or more"
+            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its "
+            "friction cone, or more"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
@@ -350,3 +385,31 @@ def _static_words(static: Equilibrium) -> str:
         "no forces of equilibrium exist: contacts would have to pull by "
         f"{-static.margin:.3g} of what they carry"
     )
+
+
+def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
+    """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
+    gaps = closed_gaps(problem.assembly)
+    if not gaps:
+        return ()
+    most = 1000 * max(map(abs, gaps.values()))
+    for sign, words in ((1, "grown"), (-1, "shrunk")):
+        assembly = resized(problem.assembly, sign)
+        if equilibrium(replace(problem, assembly=assembly)).exists != stands:
+            other = Verdict.COLLAPSES if stands else Verdict.STANDS
+            found = f"the drawing leaves it open: {other} with blocks {words} by what was "
+            return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
+    found = "the same with blocks grown and shrunk by what was closed, "
+    return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)
+
+
+def proof_words(answer: Check) -> str:
+    """Say whether a verdict by limit analysis is proved, and by what."""
+    proof = answer.proof
+    if proof is None:
+        return "none was found"
+    if proof.claim == "collapses":
+        return "a motion that no joint forbids gains work, in rational arithmetic"
+    if proof.tolerance:
+        return "forces within friction balance to 1e-12 of each weight, in rational arithmetic"
+    return "forces within friction balance exactly, in rational arithmetic"

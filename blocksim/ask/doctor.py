@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 
 from blocksim.ask.methods import METHODS, Method, missing
+from blocksim.common.errors import InputError
 from blocksim.common.version import __version__
 from blocksim.engines import get_engine
 
@@ -36,16 +37,22 @@ class Finding:
 
 def examine() -> list[Finding]:
     """Look at every method of the ladder."""
-    return [
-        Finding(
-            method=method.name,
-            sees=method.sees,
-            finest=method.finest,
-            remedy=missing(method),
-            version=_version(method),
-        )
-        for method in METHODS.values()
-    ]
+    return [_finding(name) for name in METHODS]
+
+
+def _finding(name: str) -> Finding:
+    """Look at one method; an engine of another package may be beyond loading."""
+    try:
+        method = METHODS[name]
+    except InputError as error:
+        return Finding(method=name, sees="", finest=0.0, remedy=str(error), version=None)
+    return Finding(
+        method=method.name,
+        sees=method.sees,
+        finest=method.finest,
+        remedy=missing(method),
+        version=_version(method),
+    )
 
 
 def libraries() -> dict[str, str | None]:
@@ -57,7 +64,7 @@ def libraries() -> dict[str, str | None]:
     names = {
         re.split(r"[^\w.-]", each, maxsplit=1)[0]
         for each in wanted
-        if not re.search(r"extra *== *['\"](dev|docs)", each)
+        if not re.search(r"extra *== *['\"](dev|docs|release)", each)
     }
     return {name: _installed(name) for name in sorted(names)}
 

@@ -10,12 +10,13 @@ says how fine a bracket it is good for, as measured (`analysis/random_arches.py`
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.common.later import Later
-from blocksim.engines import ENGINES
+from blocksim.engines import ENGINES, NAMES, engine_named, make_known
 from blocksim.engines.base import Engine, Method
 from blocksim.evidence.simulation import BY_RULE, Overrides, require_setting
 from blocksim.kinds.offers import offers_of
@@ -30,6 +31,7 @@ _STATICS = (
         name="limit",
         sees="the arch as built: the same, and the joints that turn or slide",
         finest=0.0,
+        moves_supports=True,
         chart={"voussoirs": (7, 13, 27, 53, 101, 201, 401)},
         colour="#E69F00",
         tint="#fbeccc",
@@ -39,12 +41,11 @@ _STATICS = (
 STATIC = tuple(method.name for method in _STATICS)
 METHODS = Later[Method](
     {method.name: partial(_STATICS.__getitem__, k) for k, method in enumerate(_STATICS)}
-    | {name: partial(ENGINES.__getitem__, name) for name in ENGINES}
+    | {name: partial(ENGINES.__getitem__, name) for name in NAMES},
+    beyond=ENGINES,
 )
-SPATIAL = "pybullet"
-"""The method that sees out of the plane."""
-
-CHOICES = ("auto", *METHODS)
+CHOICES = ("auto", *METHODS.shipped)
+"""What comes with blocksim; `METHODS` has engines of one's own, too."""
 
 
 def choose(
@@ -61,7 +62,7 @@ def choose(
     Parameters
     ----------
     method : str or Method
-        One of `CHOICES`, or a method itself.
+        One of `CHOICES`; an engine of one's own by its name, as ``module:ENGINE``, or itself.
     tol : float
         Relative width of the bracket asked for, 0 where there is none.
     problem : Problem, optional
@@ -80,30 +81,30 @@ def choose(
         nothing or does not see out of the plane where that is asked, or knows no such
         setting; if there is nothing to reduce.
     """
-    if isinstance(method, str) and method not in CHOICES:
-        raise InputError("method", method, f"one of {', '.join(CHOICES)}")
     if method == "auto":
+        # Of engines of one's own it is not known which is right, nor how dear they are.
         able = (
             each
-            for each in METHODS.values()
+            for each in map(METHODS.__getitem__, METHODS.shipped)
             if each.name != "theory"
             and each.finest <= (tol or math.inf)
             and each.is_static <= (not moving)
         )
         rung = next((each for each in able if not _beyond(each, problem)), None)
         if rung is None:
-            raise InputError("method", method, f"another: {_beyond(METHODS[SPATIAL], problem)}")
+            last = next(each for each in _shipped() if each.is_spatial)
+            raise InputError("method", method, f"another: {_beyond(last, problem)}")
     else:
-        rung = METHODS[method] if isinstance(method, str) else method
+        rung = _named(method)
     beyond = _beyond(rung, problem)
     if beyond:
         raise InputError("method", rung.name, beyond)
     if moving and rung.is_static:
-        able = ", ".join(ENGINES)
+        able = ", ".join(NAMES)
         raise InputError("method", rung.name, f"one of {able}: {rung.name} moves no blocks")
     still = problem is None or (problem.is_planar and problem.shaking is None)
     if reduce and not (still and _can_reduce(rung)):
-        able = ", ".join(each.name for each in ENGINES.values() if _can_reduce(each))
+        able = ", ".join(each.name for each in _shipped() if _can_reduce(each))
         allowed = f"left out but for {able}, in the plane, on ground at rest"
         raise InputError("reduce", reduce, allowed)
     if tol and tol < rung.finest:
@@ -117,14 +118,32 @@ def choose(
     return rung
 
 
+def _named(method: str | Engine) -> Method:
+    """Return the method of a name, or the engine that is given itself."""
+    if isinstance(method, Engine):
+        return make_known(method, method.name)
+    if method in METHODS:
+        return METHODS[method]
+    if ":" in method:
+        return engine_named(method)
+    every = ", ".join(("auto", *METHODS))
+    raise InputError("method", method, f"one of {every}, or your own as module:ENGINE")
+
+
+def _shipped() -> Iterator[Engine]:
+    """Go through the engines that come with blocksim, which errors offer instead."""
+    return map(ENGINES.__getitem__, NAMES)
+
+
 def _beyond(method: Method, problem: Problem | None) -> str:
     """Say what is allowed where a problem is beyond a method; empty where it is not."""
     if problem is None:
         return ""
     if not problem.is_planar and not method.is_spatial:
-        return f"{SPATIAL} where gravity leans out of the plane"
+        able = " or ".join(each.name for each in _shipped() if each.is_spatial)
+        return f"{able} where gravity leans out of the plane"
     if problem.shaking and not (isinstance(method, Engine) and method.shakes):
-        able = ", ".join(each.name for each in ENGINES.values() if each.shakes)
+        able = ", ".join(each.name for each in _shipped() if each.shakes)
         return f"one of {able}: {method.name} knows no ground that shakes"
     offered = offers_of(problem) if method.name == "theory" else None
     if method.name == "theory" and (offered is None or "theory" not in offered.methods):

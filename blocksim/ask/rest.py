@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.groups import groups_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.common.progress import Progress, silent
 
+SPEED, FAR, STILL = 1e-3, 0.05, 1e-6
+"""Speed with which blocks are let go along a motion [size/sqrt(size/g)], the way that counts as
+gone on [size], and the speed that counts as rest."""
+LONG, LOOKS = 30.0, 100
+"""How long they are watched [sqrt(size/g)], and how often at most they are looked at."""
 Rest = Literal["must", "can", "cannot"]
 WORDS = {
     "must": "it must rest: friction lets no motion begin",
@@ -18,9 +26,29 @@ WORDS = {
 NOT_FOUND = "it can rest; whether it must was not found out in the time allowed"
 
 
-def rest_words(rest: Rest | None, *, asked: bool) -> str | None:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Moving:
+    """A motion that friction lets begin although blocks can rest.
+
+    Parameters
+    ----------
+    accelerations : (blocks, 3) float
+        x, y [g] and rotation [g/size].
+    goes_on : bool
+        Whether it goes on in `direct`, let go slowly along it.
+    """
+
+    accelerations: Array
+    goes_on: bool
+
+
+def rest_words(rest: Rest | None, motion: Moving | None = None, *, asked: bool) -> str | None:
     """Return what is said of blocks that can rest; None where nothing is to be said."""
-    return (NOT_FOUND if asked else None) if rest is None else WORDS.get(rest)
+    said = (NOT_FOUND if asked else None) if rest is None else WORDS.get(rest)
+    if motion is None:
+        return said
+    ends = "it goes on" if motion.goes_on else "it comes to rest"
+    return f"{said}; let go along that motion in direct {ends}"
 
 
 def require_rest(problem: Problem) -> None:
@@ -37,7 +65,7 @@ def rest_of(
     exists: bool | None,
     moved: bool,
     progress: Progress = silent,
-) -> Rest | None:
+) -> tuple[Rest | None, Moving | None]:
     """Tell what friction allows blocks at rest.
 
     Parameters
@@ -52,17 +80,45 @@ def rest_of(
 
     Returns
     -------
-    {"must", "can", "cannot"} or None
+    rest : {"must", "can", "cannot"} or None
         None where it was not found out whether it must rest.
-
+    motion : Moving or None
+        Where it was asked for and found.
     """
     if not exists:
-        return None if exists is None else "cannot"
+        return (None if exists is None else "cannot"), None
     if moved or problem is None:
-        return "can" if moved else None
+        return ("can" if moved else None), None
     # Imported here: few ask, and it takes longer to load than an answer.
     from blocksim.limit.starting import may_start
 
     progress(1.0, "motions that friction lets begin")
-    moves = may_start(problem).moves
-    return None if moves is None else "can" if moves else "must"
+    start = may_start(problem)
+    if start.accelerations is None:
+        return (None if start.moves is None else "must"), None
+    way = start.accelerations
+    # What moves is let go without what rests, which may be heavier by far.
+    goes_on = any(
+        _goes_on(group.problem, way[group.blocks])
+        for group in groups_of(problem)
+        if way[group.blocks].any()
+    )
+    return "can", Moving(accelerations=way, goes_on=goes_on)
+
+
+def _goes_on(problem: Problem, way: Array) -> bool:
+    """Let blocks go slowly along a motion, and tell whether it goes on."""
+    from blocksim.engines.direct import Blocks, rule
+
+    assembly = problem.assembly
+    world = Blocks(problem, rule(assembly))
+    built = world.poses()
+    world.push(way * SPEED / float(displacement(way, assembly)))
+    steps = round(LONG / rule(assembly).step / LOOKS)
+    for _ in range(LOOKS):
+        world.advance(steps)
+        if float(displacement(world.poses() - built, assembly)) > FAR:
+            return True
+        if float(displacement(world.velocities, assembly)) < STILL:
+            break
+    return False

@@ -14,8 +14,9 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Move, Problem
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
-from blocksim.engines.direct import ENGINE, UNSOLVED, rule
+from blocksim.engines.direct import ENGINE, rule
 from blocksim.engines.moving import DEEP, OnMovingSupports
+from blocksim.engines.stepping import UNSOLVED
 from blocksim.evidence.motion import FRAME
 from blocksim.evidence.recording import Recording
 from blocksim.limit.spreading import Path, follow, lying
@@ -31,6 +32,8 @@ SEEN, AFTER = 0.01, 6.0
 blocks fall [sqrt(size/g)]."""
 SHALLOW = 0.5
 """How far below the structure a recording shows the ground, if no support sinks [size]."""
+SIDEWAYS = 0.5
+"""Speed with which blocks begin, over that of their supports."""
 FAST = 30.0
 """Speed of blocks, over that of their supports, from which on they fall."""
 STARTS = 1e-5
@@ -139,9 +142,12 @@ class Spreading:
 
     @property
     def exact(self) -> float | None:
-        """How far the supports can move [m]; None where that was not followed."""
-        ends = {"collapse": self.path.value, "range": math.inf}
-        return ends.get(self.path.ends)
+        """How far the supports can move until blocks first fall, caught again or not [m].
+
+        None where what they do before that was not followed.
+        """
+        falls = self.path.first_fall
+        return math.inf if falls is None and self.path.ends == "range" else falls
 
     @property
     def words(self) -> str:
@@ -200,6 +206,10 @@ class Spreading:
 
         speed, runs, whole = SPEED, 0, True
         world = OnMovingSupports(problem, settings, speed)
+        # Blocks that mirror each other would balance where any breath lets them fall.
+        sideways = np.zeros_like(world.poses())
+        sideways[: len(problem.assembly.blocks), 0] = SIDEWAYS * speed
+        world.push(sideways)
         first = frames = _run(world, highest, FAST * speed, progress)
         while True:
             whole = whole and solved(world)

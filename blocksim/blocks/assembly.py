@@ -166,6 +166,9 @@ class Joint:
         where a face reaches beyond the joint.
     support : int or None
         Which of the assembly's supports it lies on, where they are known.
+    gap : float
+        How far apart the faces are drawn that it closes, below 0 where they overlap [m]; 0
+        where they lie on each other.
     """
 
     before: int
@@ -176,6 +179,7 @@ class Joint:
     across: Array | None = None
     faces: Array | None = None
     support: int | None = None
+    gap: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -470,11 +474,11 @@ def displacement(moved: Array, assembly: Assembly) -> Array:
     (...) float
         Largest over the blocks of the translation or the corner's way by rotation.
     """
-    reach = assembly.reach / assembly.size
+    reach = (assembly.reach / assembly.size) ** 2
     square = moved**2
-    shift, turn = square[..., 0] + square[..., 1], square[..., 2]
+    shift, turn = square[..., 0] + square[..., 1], square[..., 2] * reach
     if moved.shape[-1] == SPATIAL:
-        reach = np.hypot(reach, assembly.depths / 2)
+        # About an axis in the plane a corner's lever has half the depth, too.
         shift = shift + square[..., 3]
-        turn = turn + square[..., 4] + square[..., 5]
-    return np.sqrt(np.maximum(shift, turn * reach**2)).max(axis=-1)
+        turn = turn + (square[..., 4] + square[..., 5]) * (reach + (assembly.depths / 2) ** 2)
+    return np.sqrt(np.maximum(shift, turn)).max(axis=-1)

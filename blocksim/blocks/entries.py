@@ -42,6 +42,7 @@ Degrees = Annotated[float, Field(ge=-TURN.high, le=TURN.high, allow_inf_nan=Fals
 Length = Annotated[
     float, Field(ge=LENGTH.low, le=LENGTH.high, allow_inf_nan=False, strict=True)
 ]
+Step = Annotated[float, Field(ge=0, le=LENGTH.high, allow_inf_nan=False, strict=True)]
 Weight = Annotated[
     float, Field(ge=WEIGHT.low, le=WEIGHT.high, allow_inf_nan=False, strict=True)
 ]
@@ -315,10 +316,17 @@ class StructureFile(Around):
         At least two, one of them fixed.
     joints : list of joint
         By default found: where faces lie on each other, and where corners rest on a face.
+    tolerance : float
+        Gaps and overlaps up to this are closed where joints are found [m], but no more than a
+        tenth of the narrower block; by default what rounding explains.
+    rounding : float
+        Step to which corners were rounded [m]; by default as their decimals say, up to twelve.
     """
 
     blocks: Annotated[list[BlockEntry], Field(min_length=2, max_length=MOST_BLOCKS)]
     joints: Annotated[list[JointEntry], Field(max_length=20 * MOST_BLOCKS)] | None = None
+    tolerance: Step | None = None
+    rounding: Step | None = None
 
 
 _TABLES = (

@@ -6,11 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 
+Index = NDArray[np.int64]
 STRAIGHT = 1e-3
 """A corner is straight if it is off its neighbours' line by this share of the tolerance."""
+MOST_DECIMALS = 12
+"""Of numbers that are taken for rounded ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +46,17 @@ def before(corners: Array) -> Array:
     return np.concatenate([corners[-1:], corners[:-1]])
 
 
+def step_of(values: Array) -> float:
+    """Return the step to which numbers are rounded, by their decimals; 0 if they have many."""
+    for decimals in range(MOST_DECIMALS + 1):
+        with np.errstate(over="ignore", invalid="ignore"):
+            scaled = values * 10.0**decimals
+            off = np.abs(scaled - np.round(scaled))
+            if (off <= 8 * np.finfo(float).eps * np.abs(scaled)).all():
+                return 10.0**-decimals
+    return 0.0
+
+
 def signed_area(vertices: Array) -> float:
     """Return the area of a polygon, negative where its corners are clockwise."""
     x, y = (vertices - vertices[0]).T
@@ -56,18 +71,22 @@ def moments(polygons: Sequence[Array]) -> Moments:
     polygons : sequence of (k, 2) float
         Corners, counter-clockwise; they do not overlap.
     """
-    about = polygons[0].mean(axis=0)
-    area, first, second = 0.0, np.zeros(2), 0.0
+    # Plain numbers: blocks have few corners, and drawings many blocks.
+    corners = polygons[0].tolist()
+    x0, y0 = (sum(each) / len(corners) for each in zip(*corners, strict=True))
+    area = first_x = first_y = second = 0.0
     for polygon in polygons:
-        near = polygon - about
-        after = following(near)
-        cross = near[:, 0] * after[:, 1] - after[:, 0] * near[:, 1]
-        area += float(cross.sum()) / 2
-        first += (cross[:, None] * (near + after)).sum(axis=0) / 6
-        squares = (near * near + near * after + after * after).sum(axis=1)
-        second += float((cross * squares).sum()) / 12
-    shift = first / area
-    return Moments(area, about + shift, second - area * float(shift @ shift))
+        near = [(x - x0, y - y0) for x, y in polygon.tolist()]
+        x, y = near[-1]
+        for u, v in near:
+            cross = x * v - u * y
+            area += cross / 2
+            first_x += cross * (x + u) / 6
+            first_y += cross * (y + v) / 6
+            second += cross * (x * x + y * y + x * u + y * v + u * u + v * v) / 12
+            x, y = u, v
+    x, y = first_x / area, first_y / area
+    return Moments(area, np.array([x0 + x, y0 + y]), second - area * (x * x + y * y))
 
 
 def mended(vertices: Array, tolerance: float) -> tuple[Array, list[str]]:
@@ -112,6 +131,78 @@ def is_convex(vertices: Array, tolerance: float) -> bool:
     back, on = vertices - before(vertices), following(vertices) - vertices
     cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
     return bool((cross >= -tolerance * np.hypot(*(back + on).T)).all())
+
+
+@dataclass(frozen=True, eq=False)
+class Extents:
+    """Measures of many bodies at once, each of one polygon or several.
+
+    Parameters
+    ----------
+    wide : (bodies,) float
+        Larger side of the box around it [m].
+    across : (bodies,) float
+        Diagonal of that box [m].
+    far : (bodies,) float
+        Largest coordinate [m].
+    area : (bodies,) float
+        Of its polygons, whichever way they are drawn [m^2].
+    """
+
+    wide: Array
+    across: Array
+    far: Array
+    area: Array
+
+
+def extents(bodies: Sequence[Sequence[Array]]) -> Extents:
+    """Measure many bodies at once."""
+    polygons = [polygon for body in bodies for polygon in body]
+    points, first, after = _around(polygons)
+    of_body = np.cumsum([0, *(len(body) for body in bodies)])[:-1]
+    start = first[of_body]
+    box = np.maximum.reduceat(points, start) - np.minimum.reduceat(points, start)
+    count = np.diff(np.append(first, len(points)))
+    near = points - np.repeat(points[first], count, axis=0)
+    cross = near[:, 0] * near[after, 1] - near[after, 0] * near[:, 1]
+    return Extents(
+        box.max(axis=1),
+        np.hypot(*box.T),
+        np.maximum.reduceat(np.abs(points).max(axis=1), start),
+        np.add.reduceat(np.abs(np.add.reduceat(cross, first)) / 2, of_body),
+    )
+
+
+def are_plain(polygons: Sequence[Array], tolerance: Array) -> NDArray[np.bool_]:
+    """Tell which of many polygons have nothing to be mended: convex, and counter-clockwise.
+
+    Parameters
+    ----------
+    polygons : sequence of (k, 2) float
+    tolerance : (polygons,) float
+        As of `mended` [m].
+    """
+    points, first, after = _around(polygons)
+    count = np.diff(np.append(first, len(points)))
+    on = points[after] - points
+    back = np.empty_like(on)
+    back[after] = on
+    cross = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
+    dot = (back * on).sum(axis=1)
+    slack = np.repeat(tolerance, count)
+    fine = (np.hypot(*on.T) > slack) & (cross > STRAIGHT * slack * np.hypot(*(back + on).T))
+    # Stars turn left everywhere, too, but twice around.
+    turned = np.add.reduceat(np.arctan2(cross, dot), first)
+    return np.logical_and.reduceat(fine, first) & (turned < 3 * np.pi)
+
+
+def _around(polygons: Sequence[Array]) -> tuple[Array, Index, Index]:
+    """All corners in a row, where each polygon begins, and for each corner the next one."""
+    count = np.array([len(polygon) for polygon in polygons])
+    first = np.cumsum(count) - count
+    after = np.arange(1, int(count.sum()) + 1)
+    after[first + count - 1] = first
+    return np.concatenate(polygons), first, after
 
 
 def joined(pieces: Sequence[Array], tolerance: float) -> tuple[Array, ...]:

@@ -1,8 +1,4 @@
-"""Assemblies from polygons alone: joints are found where blocks touch.
-
-The one file that imports shapely: what is near what, whether polygons cross themselves,
-how deep they overlap, and triangles of those that are not convex.
-"""
+"""Assemblies from polygons alone: joints are found where blocks touch."""
 
 from __future__ import annotations
 
@@ -11,30 +7,36 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
-import shapely
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
 from blocksim.blocks.given import Body as Body
 from blocksim.blocks.given import GivenJoint, as_given
-from blocksim.blocks.outlines import is_convex, joined, mended, moments
+from blocksim.blocks.outlines import Extents, are_plain, extents, mended, moments, step_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
-from blocksim.blocks.touching import (
-    NEARLY,
-    Faces,
-    Touch,
-    faces_of_polygons,
-    merged,
-    touches,
+from blocksim.blocks.regions import (
+    convex_parts,
+    hull,
+    is_simple,
+    near_faces,
+    overlap_each_other,
+    overlaps,
 )
+from blocksim.blocks.touching import Slack, Touch, faces_of_polygons, merged, touches
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.words import counted
 
 TOLERANCE = 1e-6
-"""Distance within which blocks touch, in units of the size of the assembly."""
+"""Distance within which blocks touch, in units of half the larger side of the smaller one."""
+ROUNDED = 1.5
+"""Steps of rounding by which faces may part: three points are off by 0.71 steps at most."""
+NARROW, NARROW_ASKED = 1 / 40, 1 / 10
+"""Share of a block's width up to which gaps are closed: due to rounding, and asked for."""
+SHOWN = 5
+"""Pairs of blocks that a line names."""
 MOST_BLOCKS = 100_000
 MOST_CORNERS = 1_000
 """Of one block."""
@@ -96,6 +98,8 @@ def assembly_of_bodies(
     joints: Sequence[GivenJoint] | None = None,
     density: float = 1.0,
     size: float | None = None,
+    tolerance: float | None = None,
+    rounding: float | None = None,
 ) -> tuple[Assembly, tuple[str, ...]]:
     """Build an assembly, and say what was mended.
 
@@ -103,12 +107,16 @@ def assembly_of_bodies(
     ----------
     bodies : sequence of Body
     joints : sequence of GivenJoint, optional
-        Taken as they are; by default found: faces that lie on each other within
-        `TOLERANCE`, and corners that rest on a face (see `touching.touches`).
+        Taken as they are; by default found: faces that lie on each other, and corners that
+        rest on a face (see `touching.touches`).
     density : float
         Weight per volume [N/m^3] of bodies without a weight.
     size : float, optional
         Characteristic length [m]; by default half the larger extent of what can move.
+    tolerance : float, optional
+        Gaps and overlaps up to this are closed [m]; by default what rounding explains.
+    rounding : float, optional
+        Step to which coordinates were rounded [m]; by default as their decimals say.
 
     Returns
     -------
@@ -135,33 +143,41 @@ def assembly_of_bodies(
     points = np.concatenate([polygon for index in moving for polygon in raw[index]])
     size = float(np.ptp(points, axis=0).max()) / 2 if size is None else size
     require(size > 0, "blocks", "no extent", "polygons with an area")
-    tolerance = TOLERANCE * size
     farthest = max(float(np.abs(polygon).max()) for polygons in raw for polygon in polygons)
     require(
-        farthest * _ROUNDING <= tolerance,
+        farthest * _ROUNDING <= TOLERANCE * size,
         "blocks",
         f"coordinates up to {farthest:g} m",
-        f"below {tolerance / _ROUNDING:.3g} m for this size: move the drawing to its origin",
+        f"below {TOLERANCE * size / _ROUNDING:.3g} m for this size: "
+        "move the drawing to its origin",
     )
     notes: list[str] = []
-    shapes = [_shape(raw[index], bodies, index, tolerance, notes) for index in range(len(raw))]
-    overlaps = _overlaps(shapes, bodies, tolerance)
+    fixed_ones = np.array([body.fixed for body in bodies])
+    if rounding is None:
+        rounding = step_of(np.concatenate([each.ravel() for of in raw for each in of]))
+    measured = extents(raw)
+    exact = np.maximum(TOLERANCE * measured.wide / 2, _ROUNDING * measured.far)
+    slack = _slack(measured, exact, fixed_ones, rounding, tolerance)
+    shapes = _shapes(raw, bodies, exact, notes)
+    parts = [shape.parts for shape in shapes]
     if joints is None:
-        if overlaps:
-            one, other, depth = overlaps[0]
+        for one, other, depth in overlaps(parts, fixed_ones, slack, 1):
+            most = float(slack.at(one, other).close)
             raise InputError(
                 f"overlap of blocks {_name(bodies, one)} and {_name(bodies, other)}",
                 f"{depth:.3g} m",
-                f"at most {tolerance:.3g} m: move one of them, or give the joints",
+                f"at most {most:.3g} m: move one of them, give the joints, or --tolerance",
             )
-        found = [(touch, None) for touch in _found(shapes, bodies, tolerance, notes)]
+        found = [(touch, None) for touch in _found(shapes, bodies, slack, notes)]
+        notes += _said(found, bodies, slack, rounding, tolerance)
     else:
-        if overlaps:
-            pairs = [(one, other) for one, other, _ in overlaps]
+        deep = overlaps(parts, fixed_ones, slack, SHOWN)
+        if deep:
+            pairs = [(one, other) for one, other, _ in deep]
             notes.append(f"overlaps taken, as joints are given: {_pairs(bodies, pairs)}")
         outlines = [shape.outlines for shape in shapes]
         names = [_name(bodies, index) for index in range(len(bodies))]
-        found = as_given(joints, outlines, names, size, tolerance, notes)
+        found = as_given(joints, outlines, names, size, TOLERANCE * size, notes)
         notes.append(f"{counted(len(found), 'joint')} as given")
     _require_held([touch for touch, _ in found], bodies)
     blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
@@ -204,6 +220,19 @@ def _finite(body: Body, index: int) -> tuple[Array, ...]:
     return tuple(polygons)
 
 
+def _shapes(
+    raw: Sequence[tuple[Array, ...]], bodies: Sequence[Body], exact: Array, notes: list[str]
+) -> list[_Shape]:
+    """Mend all bodies; those with nothing to be mended are told all at once."""
+    plain = are_plain([polygons[0] for polygons in raw], exact)
+    return [
+        _Shape(polygons, polygons)
+        if len(polygons) == 1 and plain[index]
+        else _shape(polygons, bodies, index, float(exact[index]), notes)
+        for index, polygons in enumerate(raw)
+    ]
+
+
 def _shape(
     polygons: tuple[Array, ...],
     bodies: Sequence[Body],
@@ -218,67 +247,71 @@ def _shape(
     for polygon in polygons:
         outline, done = mended(polygon, tolerance)
         notes += [f"block {_name(bodies, index)}: {what}" for what in done]
-        require(
-            len(outline) >= 3, field, polygon.tolist(), "at least three corners that differ"
-        )
-        region = shapely.Polygon(outline)
-        require(
-            region.is_valid, field, polygon.tolist(), "a polygon that does not cross itself"
-        )
+        said = polygon.tolist()
+        require(len(outline) >= 3, field, said, "at least three corners that differ")
+        require(is_simple(outline), field, said, "a polygon that does not cross itself")
         outlines.append(outline)
-        if is_convex(outline, 0.0) or is_convex(outline, tolerance):
-            parts.append(outline)
-        else:
-            triangles = shapely.constrained_delaunay_triangles(region)
-            pieces = [_corners(piece) for piece in shapely.get_parts(triangles)]
-            parts += joined(pieces, 0.0)
+        parts += convex_parts(outline, tolerance)
     if len(polygons) > 1:
-        regions = [shapely.Polygon(part) for part in parts]
-        twice = sum(region.area for region in regions) - shapely.union_all(regions).area
-        around = sum(region.length for region in regions)
-        require(
-            twice <= tolerance * around,
-            field,
-            polygons,
-            "polygons that do not overlap each other",
-        )
+        apart = not overlap_each_other(parts, tolerance)
+        require(apart, field, polygons, "polygons that do not overlap each other")
     return _Shape(tuple(outlines), tuple(parts))
 
 
-def _corners(region: Any) -> Array:
-    """Return the corners of shapely's polygon, counter-clockwise."""
-    turned: Any = shapely.orient_polygons(region)
-    return shapely.get_coordinates(turned.exterior)[:-1]
+def _slack(
+    measured: Extents,
+    exact: Array,
+    fixed: NDArray[np.bool_],
+    step: float,
+    tolerance: float | None,
+) -> Slack:
+    """How far apart each body may be drawn from others and touch them nevertheless."""
+    most, share = ROUNDED * step, NARROW
+    least = exact
+    if tolerance is not None:
+        most, share = tolerance, NARROW_ASKED
+        least = np.minimum(exact, tolerance)
+    width = measured.area / np.where(measured.across > 0, measured.across, 1.0)
+    close = np.maximum(least, np.minimum(most, share * width))
+    return Slack(*(np.where(fixed, np.inf, each) for each in (least, close)))
 
 
-def _overlaps(
-    shapes: Sequence[_Shape], bodies: Sequence[Body], tolerance: float
-) -> list[tuple[int, int, float]]:
-    """Find bodies that overlap, and how deep: twice the area over the perimeter."""
-    owner = np.repeat(np.arange(len(shapes)), [len(shape.parts) for shape in shapes])
-    parts = np.array([shapely.Polygon(part) for shape in shapes for part in shape.parts])
-    fixed = np.array([body.fixed for body in bodies])[owner]
-    one, other = shapely.STRtree(parts).query(parts, predicate="intersects")
-    real = (owner[one] < owner[other]) & ~(fixed[one] & fixed[other])
-    one, other = one[real], other[real]
-    common = shapely.intersection(parts[one], parts[other])
-    area, around = cast(Any, shapely).area(common), cast(Any, shapely).length(common)
-    depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
-    deep = np.flatnonzero(depth > tolerance)
-    found = [(int(owner[one[k]]), int(owner[other[k]]), float(depth[k])) for k in deep]
-    return sorted(found)
+def _said(
+    found: Sequence[tuple[Touch, object]],
+    bodies: Sequence[Body],
+    slack: Slack,
+    step: float,
+    tolerance: float | None,
+) -> list[str]:
+    """Say within what distance joints were found, and what was closed."""
+    closed = sorted((touch for touch, _ in found if touch.gap), key=lambda t: -abs(t.gap))
+    notes = [f"{counted(len(found), 'joint')} found"]
+    if not closed and tolerance is None:
+        return [f"{notes[0]}, within {TOLERANCE:g} of the smaller block's size"]
+    close = slack.close[np.isfinite(slack.close)]
+    why = f"coordinates are rounded to {step:.3g} m" if tolerance is None else "as asked"
+    notes[0] += f", within {close.max():.3g} m ({why})"
+    if closed:
+        listed = ", ".join(
+            f"{_name(bodies, each.one)}-{_name(bodies, each.other)} {1000 * each.gap:+.3g} mm"
+            for each in closed[:SHOWN]
+        )
+        more = f" and {len(closed) - SHOWN} more" if len(closed) > SHOWN else ""
+        notes.append(f"gaps (+) and overlaps (-) closed at joints: {listed}{more}")
+    return notes
 
 
 def _found(
-    shapes: Sequence[_Shape], bodies: Sequence[Body], tolerance: float, notes: list[str]
+    shapes: Sequence[_Shape], bodies: Sequence[Body], slack: Slack, notes: list[str]
 ) -> list[Touch]:
     """Find where bodies touch, in a fixed order and sense."""
     outlines = [outline for shape in shapes for outline in shape.outlines]
     owner = [index for index, shape in enumerate(shapes) for _ in shape.outlines]
     faces = faces_of_polygons(outlines, owner)
-    found, near = touches(faces, _near(faces, bodies, NEARLY * tolerance), tolerance)
+    fixed = np.array([body.fixed for body in bodies])
+    found, near = touches(faces, near_faces(faces, fixed, slack), slack)
     if any(len(shape.outlines) > 1 for shape in shapes):
-        found = merged(found, tolerance)
+        found = merged(found, slack)
 
     def sense(touch: Touch) -> Touch:
         before = (not bodies[touch.one].fixed, touch.one)
@@ -286,34 +319,23 @@ def _found(
         return touch if before < after else touch.turned()
 
     found = [sense(touch) for touch in found]
-    found.sort(key=lambda touch: (touch.one, touch.other, *touch.ends[0], *touch.ends[1]))
-    notes.append(
-        f"{counted(len(found), 'joint')} found, within {tolerance:.3g} m "
-        f"({TOLERANCE:g} of the size)"
-    )
+    found.sort(key=lambda touch: (touch.one, touch.other, *touch.ends.ravel().tolist()))
     if near:
+        one, other = np.array(near).T
+        here = slack.at(one, other)
+        close = f"{here.close.max():.3g} m"
         notes.append(
-            f"nearly touching, more than {tolerance:.3g} m apart or along less than "
-            f"{NEARLY * tolerance:.3g} m, so no joint there: {_pairs(bodies, near)}"
+            f"nearly touching, more than {close} apart or along less than "
+            f"{here.near.max():.3g} m, so no joint there: {_pairs(bodies, near)}"
         )
     return found
-
-
-def _near(faces: Faces, bodies: Sequence[Body], distance: float) -> Any:
-    """Pairs of faces of different bodies, not both fixed, within a distance."""
-    lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
-    one, other = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=distance)
-    fixed = np.array([body.fixed for body in bodies])
-    a, b = faces.body[one], faces.body[other]
-    real = (one < other) & (a != b) & ~(fixed[a] & fixed[b])
-    return np.stack([one[real], other[real]], axis=1).astype(np.int64)
 
 
 def _pairs(bodies: Sequence[Body], pairs: Sequence[tuple[int, int]]) -> str:
     """Name pairs of blocks, not more than a line holds."""
     shown = [f"{_name(bodies, a)} and {_name(bodies, b)}" for a, b in sorted(set(pairs))]
-    more = f" and {len(shown) - 5} pairs more" if len(shown) > 5 else ""
-    return "blocks " + ", ".join(shown[:5]) + more
+    more = f" and {len(shown) - SHOWN} pairs more" if len(shown) > SHOWN else ""
+    return "blocks " + ", ".join(shown[:SHOWN]) + more
 
 
 def _require_held(found: Sequence[Touch], bodies: Sequence[Body]) -> None:
@@ -351,14 +373,13 @@ def _block(body: Body, shape: _Shape, index: int, density: float) -> Block:
     )
     if len(shape.parts) == 1:
         return Block(shape.parts[0], centre, mass, inertia, body.depth, body.name)
-    hull = _corners(shapely.MultiPoint(np.concatenate(shape.parts)).convex_hull)
-    return Block(hull, centre, mass, inertia, body.depth, body.name, shape.parts)
+    return Block(hull(shape.parts), centre, mass, inertia, body.depth, body.name, shape.parts)
 
 
 def _joint(
     touch: Touch, friction: float | None, place: dict[int, int], bed: dict[int, int]
 ) -> Joint:
-    whole = all(np.array_equal(face, touch.ends) for face in touch.faces)
+    whole = bool((touch.faces == touch.ends).all())
     return Joint(
         place.get(touch.one, SUPPORT),
         place.get(touch.other, SUPPORT),
@@ -368,4 +389,5 @@ def _joint(
         touch.normal,
         None if whole else touch.faces,
         bed.get(touch.one, bed.get(touch.other)),
+        touch.gap,
     )

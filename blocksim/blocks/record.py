@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from blocksim.blocks.assembly import Assembly, Block, Joint, Support
+from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
 from blocksim.blocks.problem import Load, Move, Problem
 from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH
@@ -82,8 +82,8 @@ def from_record(
     dead, live = (tuple(_load(each) for each in given.pop(name)) for name in ("dead", "live"))
     moves = tuple(Move(**each) for each in given.pop("moves"))
     on = [each for load in (*dead, *live) for each in load.blocks]
-    known = all(each in range(len(assembly.blocks)) for each in on)
-    known &= all(move.support in range(len(assembly.supports)) for move in moves)
+    known = all(_is_place(each, len(assembly.blocks)) for each in on)
+    known &= all(_is_place(move.support, len(assembly.supports)) for move in moves)
     words = all(isinstance(given.get(name, ""), str) for name in ("title", "source"))
     origin = _numbers(given.pop("origin"))
     road = tuple(
@@ -139,6 +139,15 @@ def _numbers(record: Mapping[str, Any]) -> dict[str, object]:
     return {key: math.inf if value == "inf" else value for key, value in record.items()}
 
 
+def _sides(joint: Joint) -> tuple[object, object]:
+    return joint.before, joint.after
+
+
+def _is_place(value: object, count: int, least: int = 0) -> bool:
+    """Whether a stranger names one of so many things by a whole number; true is none."""
+    return type(value) is int and least <= value < count
+
+
 def _require_sound(assembly: Assembly) -> None:
     """Raise `ValueError` where a stranger's record cannot be of blocks."""
     count, supports = len(assembly.blocks), len(assembly.supports)
@@ -147,13 +156,21 @@ def _require_sound(assembly: Assembly) -> None:
         numbers += [block.mass, block.inertia, block.depth]
     sound = count > 0 and all(math.isfinite(each) and each > 0 for each in numbers)
     for joint in assembly.joints:
-        sides = (joint.before, joint.after)
-        sound = sound and all(side in range(-1, count) for side in sides)
-        sound = sound and (joint.support is None or joint.support in range(supports))
+        sound = sound and all(_is_place(each, count, SUPPORT) for each in _sides(joint))
+        sound = sound and (joint.support is None or _is_place(joint.support, supports))
         own = joint.friction
         sound = sound and (own is None or SMOOTH_OR_ROUGH.has(own))
-        ends = np.concatenate([joint.inner, joint.outer])
-        sound = sound and all(map(COORDINATE.has, ends.tolist()))
+        sound = sound and (joint.gap == 0 or COORDINATE.has(joint.gap))
+    points = [block.centre for block in assembly.blocks]
+    points += [
+        part for each in (*assembly.blocks, *assembly.supports) for part in each.polygons
+    ]
+    for joint in assembly.joints:
+        given = (joint.inner, joint.outer, joint.across, joint.faces)
+        points += [each for each in given if each is not None]
+    far = np.abs(np.concatenate([each.ravel() for each in points]))
+    # Not a number is not below anything.
+    sound = sound and bool((far <= COORDINATE.high).all())
     if not sound:
         message = "no assembly of blocks"
         raise ValueError(message)

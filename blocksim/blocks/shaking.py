@@ -29,6 +29,8 @@ SHAPES: dict[str, Callable[[float], float]] = {
     "full-sine": lambda share: (1 - math.cos(2 * math.pi * share)) / (2 * math.pi),
 }
 """Velocity gained in a share of the duration, in units of amplitude times duration."""
+PARTS = 20
+"""Parts of a pulse in which its acceleration hardly changes."""
 TABLE = "table"
 """The shape of an acceleration that is given over time."""
 STRONGEST = 100.0
@@ -93,6 +95,11 @@ class Shaking:
         """Return by how much the ground's velocity grows between two times [s], in g s."""
         whole = self.amplitude * self.duration
         return whole * (self._by(end) - self._by(start))
+
+    @property
+    def spacing(self) -> float:
+        """Mean time between the rows of a table, or a share of a pulse's duration [s]."""
+        return self.duration / max(len(self.table) - 1, PARTS)
 
     @property
     def words(self) -> str:

@@ -42,8 +42,17 @@ def structure_of(data: object) -> Problem:
     written = entries_of(table)
     bodies = _bodies(written)
     joints = _joints(written, bodies)
+    allowed = "left out: joints are given, none is found"
+    require(
+        joints is None or written.tolerance is None, "tolerance", written.tolerance, allowed
+    )
     found = assembly_of_bodies(
-        bodies, joints=joints, density=written.unit_weight, size=written.size
+        bodies,
+        joints=joints,
+        density=written.unit_weight,
+        size=written.size,
+        tolerance=written.tolerance,
+        rounding=written.rounding,
     )
     return problem_of(written, bodies, *found)
 

@@ -13,7 +13,9 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import following
 
 NEARLY = 100.0
-"""A gap up to this many tolerances is nearly a joint: said, but no joint. So is a length."""
+"""A gap up to this many exact tolerances is nearly a joint: said, but none. So is a length."""
+ROUGHLY = 4.0
+"""The same in units of the distance up to which gaps are closed."""
 
 Index = NDArray[np.int64]
 
@@ -39,6 +41,32 @@ class Faces(NamedTuple):
         return way / np.hypot(*way.T)[:, None]
 
 
+class Slack(NamedTuple):
+    """How far apart blocks may be drawn and touch nevertheless, one number a body [m].
+
+    At a joint the smaller one of its two bodies counts. Bodies that are fixed have inf.
+
+    Parameters
+    ----------
+    exact : (bodies,) float
+        As drawn: a joint is where its faces are.
+    close : (bodies,) float
+        Up to this gaps and overlaps are closed, at least `exact`.
+    """
+
+    exact: Array
+    close: Array
+
+    @property
+    def near(self) -> Array:
+        """Gaps that are said, and lengths that are too short for a joint."""
+        return np.maximum(NEARLY * self.exact, ROUGHLY * self.close)
+
+    def at(self, one: Index | int, other: Index | int) -> Slack:
+        """Return that of pairs of bodies."""
+        return Slack(*(np.minimum(each[one], each[other]) for each in self))
+
+
 class Touch(NamedTuple):
     """Two bodies that touch: along a stretch, or one with a corner.
 
@@ -52,6 +80,8 @@ class Touch(NamedTuple):
         Faces of `one` and of `other`, in the same direction [m].
     normal : (2,) float or None
         From `one` into `other`, for a corner.
+    gap : float
+        How far apart they are drawn, below 0 where they overlap [m]; 0 where it is exact.
     """
 
     one: int
@@ -59,11 +89,13 @@ class Touch(NamedTuple):
     ends: Array
     faces: Array
     normal: Array | None = None
+    gap: float = 0.0
 
     def turned(self) -> Touch:
         """Return the same as `other` sees it."""
         normal = None if self.normal is None else -self.normal
-        return Touch(self.other, self.one, self.ends[::-1], self.faces[::-1, ::-1], normal)
+        ends, faces = self.ends[::-1], self.faces[::-1, ::-1]
+        return Touch(self.other, self.one, ends, faces, normal, self.gap)
 
 
 def faces_of_polygons(polygons: Sequence[Array], bodies: Sequence[int]) -> Faces:
@@ -75,12 +107,12 @@ def faces_of_polygons(polygons: Sequence[Array], bodies: Sequence[int]) -> Faces
 
 
 def touches(
-    faces: Faces, pairs: Index, tolerance: float
+    faces: Faces, pairs: Index, slack: Slack
 ) -> tuple[list[Touch], list[tuple[int, int]]]:
     """Find what touches among pairs of faces that are near each other.
 
-    Faces that lie on each other within the tolerance, over more than `NEARLY` of it, make
-    a joint. A corner that lies on a face within the tolerance, and farther than that from
+    Faces that lie on each other within `slack.close`, over more than `slack.near`, make
+    a joint. A corner that lies on a face within `slack.close`, and farther than that from
     the face's ends, is a contact, unless the same two bodies have a joint there. Corner on
     corner is none.
 
@@ -89,8 +121,7 @@ def touches(
     faces : Faces
     pairs : (pairs, 2) int
         Faces of different bodies, each pair once.
-    tolerance : float
-        [m]
+    slack : Slack
 
     Returns
     -------
@@ -98,35 +129,44 @@ def touches(
     list of (int, int)
         Bodies that nearly touch.
     """
-    found, near = _face_on_face(faces, pairs, tolerance)
-    by_bodies: dict[tuple[int, int], list[Touch]] = defaultdict(list)
-    for touch in found:
-        by_bodies[_key(touch.one, touch.other)].append(touch)
-    missed = {_key(*faces.body[pair].tolist()) for pair in near}
-    both = np.concatenate([pairs, pairs[:, ::-1]])
-    for (corner, face), gap in _corner_on_face(faces, both, tolerance):
-        key = _key(int(faces.body[corner]), int(faces.body[face]))
-        at = faces.start[corner]
-        if gap > tolerance:
-            if key not in by_bodies:
-                missed.add(key)
-        elif not any(_lies_on(at, touch.ends, 2 * tolerance) for touch in by_bodies[key]):
-            touch = _corner_touch(faces, corner, face)
-            by_bodies[key].append(touch)
-            found.append(touch)
-    return found, sorted(missed)
+    found, near = _face_on_face(faces, pairs, slack)
+    many = len(slack.exact)
+    one, other = np.sort([[t.one, t.other] for t in found] or np.empty((0, 2), int), axis=1).T
+    keys = one * many + other
+    order = np.argsort(keys, kind="stable")
+    keys, ends = keys[order], np.array([t.ends for t in found]).reshape(-1, 2, 2)[order]
+    corner, face, gap = _corner_on_face(faces, np.concatenate([pairs, pairs[:, ::-1]]), slack)
+    bodies = np.sort(np.stack([faces.body[corner], faces.body[face]], axis=1), axis=1)
+    close, key = slack.at(*bodies.T).close, bodies @ np.array([many, 1])
+    first, last = np.searchsorted(keys, key, "left"), np.searchsorted(keys, key, "right")
+    touching = np.abs(gap) <= close
+    for later in range(int((last - first).max(initial=0))):
+        here = np.flatnonzero(touching & (first + later < last))
+        on = ends[first[here] + later]
+        touching[here[_off(faces.start[corner[here]], on) <= 2 * close[here]]] = False
+    missed = np.concatenate([
+        np.sort(faces.body[near], axis=1),
+        bodies[(np.abs(gap) > close) & (first == last)],
+    ])  # fmt: skip
+    exact = slack.at(*bodies.T).exact
+    at_corners: dict[tuple[int, int], list[Array]] = defaultdict(list)
+    for k in np.flatnonzero(touching).tolist():
+        at, others = faces.start[corner[k]], at_corners[int(bodies[k, 0]), int(bodies[k, 1])]
+        if all(float(np.hypot(*(at - each))) > 2 * close[k] for each in others):
+            others.append(at)
+            apart = float(gap[k]) if abs(gap[k]) > exact[k] else 0.0
+            found.append(_corner_touch(faces, int(corner[k]), int(face[k]), apart))
+    return found, [(int(a), int(b)) for a, b in np.unique(missed, axis=0).tolist()]
 
 
-def _key(one: int, other: int) -> tuple[int, int]:
-    return (one, other) if one < other else (other, one)
-
-
-def _face_on_face(faces: Faces, pairs: Index, tolerance: float) -> tuple[list[Touch], Index]:
+def _face_on_face(faces: Faces, pairs: Index, slack: Slack) -> tuple[list[Touch], Index]:
     """Find faces that lie on each other, and pairs that nearly do."""
     along = faces.along
     first, second = pairs.T
     opposite = (along[first] * along[second]).sum(axis=1) < 0
     first, second = first[opposite], second[opposite]
+    exact, close = slack.at(faces.body[first], faces.body[second])
+    near = Slack(exact, close).near
     tangent = along[first] - along[second]
     tangent /= np.hypot(*tangent.T)[:, None]
     normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
@@ -141,55 +181,68 @@ def _face_on_face(faces: Faces, pairs: Index, tolerance: float) -> tuple[list[To
     (b0, k0), (b1, k1) = of(faces.end[second]), of(faces.start[second])
     low, high = np.maximum(a0, b0), np.minimum(a1, b1)
 
-    def gap(at: Array) -> Array:
+    def heights(at: Array) -> tuple[Array, Array]:
         one = h0 + (h1 - h0) * (at - a0) / (a1 - a0)
-        return k0 + (k1 - k0) * (at - b0) / (b1 - b0) - one
+        return one, k0 + (k1 - k0) * (at - b0) / (b1 - b0)
 
-    apart = np.maximum(np.abs(gap(low)), np.abs(gap(high)))
+    (one_low, other_low), (one_high, other_high) = heights(low), heights(high)
+    gaps = np.stack([other_low - one_low, other_high - one_high])
+    apart = np.abs(gaps).max(axis=0)
     length = high - low
-    joint = (length > NEARLY * tolerance) & (apart <= tolerance)
-    wide = (length > NEARLY * tolerance) & (apart > tolerance) & (apart <= NEARLY * tolerance)
-    short = (length > tolerance) & (length <= NEARLY * tolerance) & (apart <= tolerance)
+    joint = (length > near) & (apart <= close)
     # Faces that cross at an angle are no gap: only nearly parallel ones are.
-    wide &= np.abs(gap(high) - gap(low)) <= 1e-3 * length
-    # The ends are corners of one or the other, taken exactly.
+    wide = (length > near) & (apart > close) & (apart <= near)
+    wide &= np.abs(gaps[1] - gaps[0]) <= 1e-3 * length
+    short = (length > close) & (length <= near) & (apart <= close)
+    # The ends are corners of one or the other, taken exactly; midway where a gap is closed.
     begin = np.where((a0 >= b0)[:, None], faces.start[first], faces.end[second])
     finish = np.where((a1 <= b1)[:, None], faces.end[first], faces.start[second])
-    found = [
-        Touch(
-            int(faces.body[first[k]]),
-            int(faces.body[second[k]]),
-            np.stack([begin[k], finish[k]]),
-            np.array(
-                [
-                    [faces.start[first[k]], faces.end[first[k]]],
-                    [faces.end[second[k]], faces.start[second[k]]],
-                ]
-            ),
+    closed = (apart > exact)[:, None]
+
+    def midway(at: Array, one: Array, other: Array) -> Array:
+        return origin + at[:, None] * tangent + ((one + other) / 2)[:, None] * normal
+
+    begin = np.where(closed, midway(low, one_low, other_low), begin)
+    finish = np.where(closed, midway(high, one_high, other_high), finish)
+    widest = np.take_along_axis(gaps, np.abs(gaps).argmax(axis=0)[None], axis=0)[0]
+    chosen = np.flatnonzero(joint)
+    one, other = first[chosen], second[chosen]
+    found = list(
+        map(
+            Touch,
+            faces.body[one].tolist(),
+            faces.body[other].tolist(),
+            np.stack([begin[chosen], finish[chosen]], axis=1),
+            np.stack(
+                [faces.start[one], faces.end[one], faces.end[other], faces.start[other]], axis=1
+            ).reshape(-1, 2, 2, 2),
+            [None] * len(chosen),
+            np.where(closed[chosen, 0], widest[chosen], 0.0).tolist(),
         )
-        for k in np.flatnonzero(joint)
-    ]
-    near = np.flatnonzero(wide | short)
-    return found, np.stack([first[near], second[near]], axis=1)
+    )
+    nearly = np.flatnonzero(wide | short)
+    return found, np.stack([first[nearly], second[nearly]], axis=1)
 
 
-def _corner_on_face(
-    faces: Faces, pairs: Index, tolerance: float
-) -> list[tuple[tuple[int, int], float]]:
-    """Find starts of the first faces that lie on, or nearly on, the second, not at its ends."""
+def _corner_on_face(faces: Faces, pairs: Index, slack: Slack) -> tuple[Index, Index, Array]:
+    """Find starts of the first faces that lie on, or nearly on, the second, not at its ends.
+
+    Returns both faces, and how far the corner is off: below 0 where it lies within the body.
+    """
     along = faces.along
     corner, face = pairs.T
     arm = faces.start[corner] - faces.start[face]
     tangent = along[face]
     at = (arm * tangent).sum(axis=1)
-    gap = np.abs(arm[:, 0] * tangent[:, 1] - arm[:, 1] * tangent[:, 0])
+    gap = arm[:, 0] * tangent[:, 1] - arm[:, 1] * tangent[:, 0]
     length = np.hypot(*(faces.end[face] - faces.start[face]).T)
-    inside = (at > tolerance) & (at < length - tolerance)
-    chosen = np.flatnonzero(inside & (gap <= NEARLY * tolerance))
-    return [((int(corner[k]), int(face[k])), float(gap[k])) for k in chosen]
+    here = slack.at(faces.body[corner], faces.body[face])
+    inside = (at > here.close) & (at < length - here.close)
+    chosen = np.flatnonzero(inside & (np.abs(gap) <= here.near))
+    return corner[chosen], face[chosen], gap[chosen]
 
 
-def _corner_touch(faces: Faces, corner: int, face: int) -> Touch:
+def _corner_touch(faces: Faces, corner: int, face: int, gap: float) -> Touch:
     at, start, end = faces.start[corner], faces.start[face], faces.end[face]
     tangent = (end - start) / np.hypot(*(end - start))
     return Touch(
@@ -198,18 +251,19 @@ def _corner_touch(faces: Faces, corner: int, face: int) -> Touch:
         np.stack([at, at]),
         np.array([[start, end], [at, at]]),
         np.array([tangent[1], -tangent[0]]),
+        gap,
     )
 
 
-def _lies_on(point: Array, ends: Array, tolerance: float) -> bool:
-    """Tell whether a point lies on a stretch."""
-    way, arm = ends[1] - ends[0], point - ends[0]
-    square = float(way @ way)
-    share = min(1.0, max(0.0, float(way @ arm) / square)) if square > 0 else 0.0
-    return float(np.hypot(*(arm - share * way))) <= tolerance
+def _off(points: Array, ends: Array) -> Array:
+    """Distances of points from stretches, shape (points,)."""
+    way, arm = ends[:, 1] - ends[:, 0], points - ends[:, 0]
+    square = (way * way).sum(axis=1)
+    share = np.clip((way * arm).sum(axis=1) / np.where(square > 0, square, 1.0), 0, 1)
+    return np.hypot(*(arm - share[:, None] * way).T)
 
 
-def merged(found: Sequence[Touch], tolerance: float) -> list[Touch]:
+def merged(found: Sequence[Touch], slack: Slack) -> list[Touch]:
     """Join stretches between two bodies that continue each other straight on.
 
     So that a face put together from several polygons is one face.
@@ -222,7 +276,8 @@ def merged(found: Sequence[Touch], tolerance: float) -> list[Touch]:
             by_bodies[stretch.one, stretch.other].append(stretch)
         else:
             kept.append(touch)
-    for stretches in by_bodies.values():
+    for bodies, stretches in by_bodies.items():
+        tolerance = float(slack.at(*bodies).close)
         while stretches:
             whole = stretches.pop()
             while (other := _continues(whole, stretches, tolerance)) is not None:
@@ -256,4 +311,5 @@ def _as_one(one: Touch, other: Touch) -> Touch:
         return np.stack([points[at.argmin()], points[at.argmax()]])
 
     faces = [span(np.stack([one.faces[side], other.faces[side]])) for side in (0, 1)]
-    return Touch(one.one, one.other, span(np.stack([one.ends, other.ends])), np.stack(faces))
+    ends, gap = span(np.stack([one.ends, other.ends])), max(one.gap, other.gap, key=abs)
+    return Touch(one.one, one.other, ends, np.stack(faces), None, gap)

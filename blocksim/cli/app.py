@@ -27,6 +27,10 @@ COMMANDS = {
         "asking.bracket",
         "Find where it starts to fall as one parameter changes: how thin an arch can be.",
     ),
+    "verify": (
+        "proving.verify",
+        "Check a proof that blocks stand or fall, in rational arithmetic.",
+    ),
     "simulate": ("commands.simulate", "Let it go and record its motion."),
     "render": ("commands.render", "Draw what is built to scale, or film its motion."),
     "convert": (

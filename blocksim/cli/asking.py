@@ -20,6 +20,7 @@ from blocksim.cli.options import (
     MethodOption,
     MustRest,
     Over,
+    ProofFile,
     Reduce,
     Scene,
     Set,
@@ -28,6 +29,7 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import answer_with, progress
+from blocksim.cli.proving import write_proof
 from blocksim.cli.question import joint_of
 from blocksim.cli.subject import is_structure, problem_asked
 from blocksim.common.checks import require
@@ -45,6 +47,7 @@ def check(
     joint: AtJoint = None,
     reduce: Reduce = None,
     must_rest: MustRest = False,
+    proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
@@ -63,6 +66,7 @@ def check(
         if at is not None and told is not None:
             report(1.0, "thrust")
             told = carried_of(problem, at)
+    write_proof(answer, proof)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
+from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate as let_go
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
@@ -27,6 +28,7 @@ from blocksim.cli.filming import (
     require_height,
 )
 from blocksim.cli.options import (
+    OWN,
     Given,
     Loading,
     Scene,
@@ -40,7 +42,7 @@ from blocksim.cli.question import question
 from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import is_number, require
 from blocksim.common.files import require_place
-from blocksim.engines import ENGINES
+from blocksim.engines import NAMES
 from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import plain_arch
 from blocksim.report.recordings import recording_lines
@@ -55,7 +57,9 @@ def simulate(
     loading: Loading,
     out: Annotated[Path | None, Option(help="Recording to write, .npz; required.")] = None,
     scene: Scene = None,
-    method: Annotated[str, Option(help=f"auto, or an engine: {', '.join(ENGINES)}.")] = "auto",
+    method: Annotated[
+        str, Option(help=f"auto, or an engine: {', '.join(NAMES)}{OWN}.")
+    ] = "auto",
     over: Annotated[
         str | None, Option(help="spread: move the supports until it has fallen.")
     ] = None,
@@ -98,7 +102,8 @@ def _spread(
 ) -> Recording:
     """Move the supports of a structure until it has fallen, and record it."""
     require(over == "spread", "--over", over, "spread, or left out: nothing else moves slowly")
-    require(method in {"auto", "direct"}, "--method", method, "direct: others move no supports")
+    able = method == "auto" or choose(method, moving=True).moves_supports
+    require(able, "--method", method, "direct: others move no supports")
     require(seconds is None, "--seconds", seconds, "left out: it ends when all has fallen")
     require(settings is None, "--set", settings, "left out where supports move")
     require(problem.shaking is None, "--shake", over, "left out where supports move")

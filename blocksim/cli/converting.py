@@ -12,7 +12,7 @@ from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.words import counted
-from blocksim.kinds.files import is_drawing, named_file, structure_of, with_friction
+from blocksim.kinds.files import is_drawing, named_file, structure_of, with_friction, within
 
 
 def convert(
@@ -29,6 +29,9 @@ def convert(
         float | None,
         Option(help="Metres that a unit of the drawing is; 0.001 for mm."),
     ] = None,
+    tolerance: Annotated[
+        float | None, Option(help="Gaps and overlaps up to this are closed, in m.")
+    ] = None,
     fixed: Annotated[
         str | None, Option(help="Blocks that stay where they are: ids, with commas.")
     ] = None,
@@ -42,6 +45,8 @@ def convert(
         require_given(mu=mu)
     with named_options(), named_file(source, unit) as data:
         said = data if mu is None else with_friction(data, mu)
+        if tolerance is not None:
+            said = within(said, tolerance)
         require(isinstance(said, dict), "structure", type(said).__name__, "a table of keys")
         table = _held(cast("dict[str, Any]", said), fixed)
         problem = structure_of(table)

@@ -8,17 +8,17 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from blocksim.ask.methods import SPATIAL
+from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.arguments import Option
-from blocksim.cli.options import Given, Loading, named_options, option_of
+from blocksim.cli.options import OWN, Given, Loading, named_options, option_of
 from blocksim.cli.output import progress, say
 from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
-from blocksim.engines import ENGINES
+from blocksim.engines import NAMES
 from blocksim.evidence.motion import MOVED
 from blocksim.evidence.observation import conclude, hold
 from blocksim.evidence.recording import Recording
@@ -28,7 +28,7 @@ from blocksim.kinds.recorded import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.problems import tilt_and_lean
 
-FALL = 12.0
+FALL = 20.0
 """Time recorded of a scenario at most: it ends when the rubble lies still [sqrt(r/g)]."""
 HEIGHT = 720
 HEIGHTS = (180, 2160)
@@ -62,7 +62,8 @@ Height = Annotated[
 EngineOption = Annotated[
     str | None,
     Option(
-        name="--method", help=f"Simulates a scenario: auto (if left out), {', '.join(ENGINES)}."
+        name="--method",
+        help=f"Simulates a scenario: auto (if left out), {', '.join(NAMES)}{OWN}.",
     ),
 ]
 
@@ -140,9 +141,11 @@ def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:
     radius = "" if made.metric else " (if r = 1 m)"
     length = made.count / made.rate
     pace = f"{made.slow:g} times slower" if made.slow != 1 else "in real time"
+    rest = f"{length - made.seconds * made.slow:.1g} s"
+    ends = f"{rest} of stills; blocks still move as it ends, at {made.speed:.2g} m/s"
     say(
         f"wrote {out}: a film of {length:.1f} s: {made.seconds:.3g} s of motion{radius}, "
-        f"{pace}, and {length - made.seconds * made.slow:.1g} s at rest{why}"
+        f"{pace}, and {ends if made.speed else f'{rest} at rest'}{why}"
     )
     for recording, moves in zip(shown, made.moves, strict=True):
         if not moves:
@@ -194,7 +197,7 @@ def picture_of_leaning(out: Path, kind: str, problem: Problem, height: int | Non
     from blocksim.view.film import Film
 
     with named_options(), progress() as report:
-        held = hold(problem, SPATIAL, progress=report)
+        held = hold(problem, choose("auto", problem=problem).name, progress=report)
         seen = conclude(held, moving=True, progress=report)
     run = seen.motion.recording if seen.motion else held.release(STILL).recording
     falls = seen.verdict is Verdict.COLLAPSES

@@ -6,6 +6,7 @@ import math
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Annotated, ClassVar
 
 from blocksim.arch.dimensions import LINES, friction_of, require_friction_angle
@@ -27,7 +28,8 @@ Scene = Annotated[
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
-MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}.")]
+OWN = ", or an engine of your own: its name, or module:ENGINE"
+MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}{OWN}.")]
 Over = Annotated[
     str | None,
     Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
@@ -63,6 +65,13 @@ MustRest = Annotated[
         "a second with 8 joints, ten with 28.",
     ),
 ]
+ProofFile = Annotated[
+    Path | None,
+    Option(
+        name="--proof",
+        help="Write a proof of the verdict by limit, JSON, which blocksim verify checks.",
+    ),
+]
 AtJoint = Annotated[
     str | None,
     Option(
@@ -76,7 +85,7 @@ Json = Annotated[bool, Option(name="--json", help="Print one JSON object, nothin
 
 THICKNESS = "thickness"
 """The parameter of `bracket` that is left out: of arches."""
-OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters"}
+OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance"}
 """Options that say how anything is built, not only an arch."""
 LARGEST_FRICTION = 10.0
 """Coefficient above which, up to 90, one is taken for an angle."""
@@ -155,6 +164,13 @@ class Given:
             metavar="NAME=VALUE",
             help="Parameter of a kind of structure (blocksim kinds NAME lists them); "
             "repeatable.",
+        ),
+    ] = None
+    tolerance: Annotated[
+        float | None,
+        Option(
+            help="Gaps and overlaps of a drawing up to this are closed, in m; what rounding of "
+            "its coordinates explains if left out."
         ),
     ] = None
 

@@ -58,6 +58,8 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
     density = None if heavy is None else 1000 * heavy
     try:
         if scene in KINDS:
+            allowed = "left out: a kind of structure has no gaps"
+            require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
             require_given(mu=given.friction)
             # Friction is put on with the loads.
             table = changed({"kind": scene, "friction": 0.0}, changes)
@@ -66,7 +68,9 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
             if is_drawing(scene):
                 require_given(mu=given.friction)
             friction = None if given.friction is None else 0.0
-            built = load_structure(scene, changes, density, friction=friction)
+            built = load_structure(
+                scene, changes, density, friction=friction, tolerance=given.tolerance
+            )
     except InputError as error:
         name = error.field.partition("[")[0]
         if name not in changes:

@@ -17,16 +17,15 @@ from blocksim.cli.tables import (
     validation_table,
 )
 from blocksim.cli.terminal import show
-from blocksim.common.checks import require
 from blocksim.common.files import make_folder
-from blocksim.engines import ENGINES
+from blocksim.engines import NAMES, engine_named
 from blocksim.studies.chart import cases, measure
 from blocksim.studies.structures import (
     structures,
     unasked_structures,
     validate_structures,
 )
-from blocksim.studies.validate import USUAL, scenarios, unasked
+from blocksim.studies.validate import scenarios, unasked
 from blocksim.studies.validate import validate as run_validation
 
 
@@ -40,8 +39,8 @@ def validate(
     methods: Annotated[
         str | None,
         Option(
-            help=f"Engines, with commas: {', '.join(ENGINES)}; "
-            f"{' and '.join(USUAL)} if left out."
+            help=f"Engines, with commas: {', '.join(NAMES)}, or your own as module:ENGINE; "
+            "those usual if left out."
         ),
     ] = None,
     workers: Annotated[int, Option(low=1, high=64, help="Processes.")] = 2,
@@ -55,7 +54,7 @@ def validate(
 
     engines = None if methods is None else [each.strip() for each in methods.split(",")]
     for each in engines or ():
-        require(each in ENGINES, "--methods", each, f"one or more of {', '.join(ENGINES)}")
+        engine_named(each, "--methods")
     make_folder(out)
     chosen = scenarios(quick=quick)
     left_out = unasked(chosen, engines)

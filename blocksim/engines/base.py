@@ -54,6 +54,8 @@ class Settings:
         Worst residual of the contacts at which an answer still counts.
     penetration : float
         Deepest overlap at which an answer still counts [size].
+    accuracy : float
+        Share by which motion may be off, where an engine follows one.
     repeats : int
         Most repetitions, with finer sweeps, of a moving run that contacts started.
     farthest : float
@@ -71,6 +73,7 @@ class Settings:
     noise: float = 1e-7
     residual: float = math.inf
     penetration: float = math.inf
+    accuracy: float = 1e-3
     repeats: int = 3
     farthest: float = 1e4
 
@@ -185,6 +188,8 @@ class Method:
         Smallest relative width of a bracket it can answer for; its error is less.
     is_spatial : bool
         Whether it sees motion out of the plane.
+    moves_supports : bool
+        Whether it can follow supports that move.
     adjustable : tuple of str
         Settings that a user may give instead of what its rule says.
     chart : mapping of str to tuple of float
@@ -199,6 +204,7 @@ class Method:
     sees: str
     finest: float
     is_spatial: bool = False
+    moves_supports: bool = False
     adjustable: tuple[str, ...] = ()
     chart: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
     colour: str = "#000000"
@@ -247,6 +253,14 @@ class Engine(Method):
     usual_sweeps : int
         Sweeps in a step that users of the library take; one where a step is solved to its
         end.
+    validates : tuple of str
+        Parts of `validate` it is asked in where no engine is named: "arches", "structures".
+    validated_to : float
+        Relative width of the brackets that `validate` asks it for, of arches.
+    aside : float
+        Share of a known value by which `validate` goes to either side of it, of structures.
+    most_blocks : int
+        Blocks up to which `validate` asks it: it takes minutes for more.
     """
 
     library: str
@@ -264,10 +278,14 @@ class Engine(Method):
     merges: bool = False
     contacts: int = 2
     usual_sweeps: int = 1
+    validates: tuple[str, ...] = ()
+    validated_to: float = 0.004
+    aside: float = 0.01
+    most_blocks: int = 40
 
     @property
     def is_static(self) -> bool:
-        """It does not."""
+        """Whether it answers without motion: no engine does."""
         return False
 
     @property

@@ -307,6 +307,12 @@ class Space:
         """Let a body rest where it is."""
         self._client.resetBaseVelocity(body, NOTHING, NOTHING)
 
+    def hasten(self, body: int, velocity: Array) -> None:
+        """Let a body go on with a velocity, (6,), in the columns of `poses`."""
+        x, y, turn, z, *lean = velocity.tolist()
+        shift, spin = self.frame.vector(x, y, z), self.frame.vector(lean[0], lean[1], turn)
+        self._client.resetBaseVelocity(body, shift, spin)
+
     def poses(self, bodies: Sequence[int]) -> Array:
         """Return places and rotations, shape (bodies, 6)."""
         read = [self._client.getBasePositionAndOrientation(body) for body in bodies]

@@ -55,11 +55,10 @@ class OnMovingSupports(Blocks):
         self._free = self._free.copy()
         self._free[self._count :] = 0.0
 
-    def _go(self, step: float) -> None:
+    def _drive(self, step: float) -> None:
         # A step may be taken back: nothing is changed in place.
         self._velocities = self._velocities.copy()
         self._velocities[self._count :] = self._speed * self._ways()
-        super()._go(step)
         self.value += step * self._speed * self._size
 
     def _ways(self) -> Array:

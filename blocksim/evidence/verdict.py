@@ -43,7 +43,7 @@ SEEN = {"onset test", "moving run"}
 
 def reason_of(evidence: Sequence[Evidence]) -> str:
     """Return all evidence as one sentence."""
-    named = SEEN if SEEN <= {each.test for each in evidence} else set[str]()
+    named = SEEN if {each.test for each in evidence} >= SEEN else set[str]()
     return "; ".join(
         f"{each.test}: {each.found}" if each.test in named else each.found for each in evidence
     )

@@ -6,7 +6,7 @@ from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from blocksim.common.later import Later
+from blocksim.common.later import Installed, Later
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Maker
@@ -34,5 +34,8 @@ PLACES = {
     "rubble": "rubble.Rubble",
 }
 """File and class of each, by its name."""
-KINDS = Later({name: partial(_kind, place) for name, place in PLACES.items()})
-"""All there are."""
+KINDS: Later[type[Maker]] = Later(
+    {name: partial(_kind, place) for name, place in PLACES.items()},
+    beyond=Installed("blocksim.kinds"),
+)
+"""All there are: packages offer theirs under the entry point group `blocksim.kinds`."""

@@ -23,7 +23,7 @@ from blocksim.blocks import structure
 from blocksim.blocks.entries import AROUND, Around, around_of
 from blocksim.blocks.maker import Maker, kind_of
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import require
+from blocksim.common.checks import LENGTH, require
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.files import AnyPath, json_of, read_file, shipped_files, toml_of
 from blocksim.kinds import KINDS
@@ -54,6 +54,7 @@ def load_structure(
     density: float | None = None,
     *,
     friction: float | None = None,
+    tolerance: float | None = None,
 ) -> Problem:
     """Read a structure file, a drawing or an assembly of compas.
 
@@ -68,6 +69,8 @@ def load_structure(
         Weight per volume instead of what it says [N/m^3].
     friction : float, optional
         Friction coefficient where the file has none; a drawing never has one. inf allowed.
+    tolerance : float, optional
+        Gaps and overlaps up to this are closed [m], instead of what the file says.
 
     Raises
     ------
@@ -76,6 +79,7 @@ def load_structure(
     """
     with named_file(path) as said:
         data = said if friction is None else with_friction(said, friction)
+        data = data if tolerance is None else within(data, tolerance)
         table = changed(data, changes) if changes else data
         return structure_of(table if density is None else weighed(table, density))
 
@@ -86,6 +90,17 @@ def with_friction(data: object, friction: float) -> object:
         return data
     table = cast("dict[str, Any]", data)
     return {"friction": "inf" if friction == math.inf else friction, **table}
+
+
+def within(data: object, tolerance: float) -> object:
+    """Return what a file says, with gaps and overlaps closed up to a distance [m]."""
+    require(0 <= tolerance <= LENGTH.high, "tolerance", tolerance, f"0 to {LENGTH.high:g} m")
+    if not isinstance(data, dict):
+        return data
+    table = cast("dict[str, Any]", data)
+    allowed = "left out: it is for blocks, and this is a kind"
+    require("kind" not in table, "tolerance", tolerance, allowed)
+    return {**table, "tolerance": tolerance}
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Motions in which joints open by more than rounding can close: of blocks, or bodies of them."""
+"""Motions of blocks in which joints open by more than rounding can close."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
+from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
 from blocksim.limit.cones import Cones
 from blocksim.limit.linear import FINEST, LinearProgramme
@@ -29,12 +31,14 @@ REFINED, FINER = 3, 1e-5
 """How often a programme is refined, and by how much each time."""
 RANK = 1e-9
 """Pivot below which equations count as dependent, over the largest."""
-HELD = 1e-6
-"""Share of a programme's price from which on a joint is one that cannot open."""
-ROUNDS = 8
-"""Most rounds in which joints are found that cannot open."""
+FAR = 1e5
+"""Largest motion in which a joint is said to be able to open by 1."""
+SURELY = 100.0
+"""Rate that counts as one, over what the solver leaves open."""
 LARGEST = 400
 """Most equations that are solved in rationals."""
+Flags = NDArray[np.bool_]
+Places = NDArray[np.int64]
 Motion = tuple[list[int], Array, list[list[Fraction]]]
 
 
@@ -59,14 +63,19 @@ def motion_that_opens(problem: Problem, cones: Cones, rates: Array | None) -> It
         x, y [m] and rotation of each.
     """
     count = len(problem.assembly.blocks)
-    ways = [] if rates is None else [_alike(problem, cones, rates)]
-    for owner in (*ways, np.arange(count)):
-        found = _Bodies(problem, cones, owner).motion()
+    # Bodies may be held where their blocks are not: they are asked about last.
+    for owner in (np.arange(count), None if rates is None else _alike(problem, cones, rates)):
+        if owner is None:
+            return
+        try:
+            found = _Bodies(problem, cones, owner).motion()
+        except Unsolved:
+            return
         if found is not None:
             yield found
 
 
-def _alike(problem: Problem, cones: Cones, rates: Array) -> Array:
+def _alike(problem: Problem, cones: Cones, rates: Array) -> Places:
     """Return the body of each block, of those that rates do not part."""
     joints, sides = problem.assembly.joint_arrays, problem.assembly.sides
     moved = np.vstack([rates, np.zeros(PLANAR)])[sides]
@@ -85,7 +94,7 @@ def _alike(problem: Problem, cones: Cones, rates: Array) -> Array:
     graph = sparse.coo_array((np.ones(len(one)), (one, other)), shape=(count + 1, count + 1))
     label = csgraph.connected_components(graph, directed=False)[1]
     free = label[:-1] != label[-1]
-    owner = np.full(count, SUPPORT)
+    owner = np.full(count, SUPPORT, dtype=np.int64)
     owner[free] = np.unique(label[:-1][free], return_inverse=True)[1]
     return owner
 
@@ -93,7 +102,7 @@ def _alike(problem: Problem, cones: Cones, rates: Array) -> Array:
 class _Bodies:
     """Bodies of blocks, and what their motions do at joints; in scales of their own."""
 
-    def __init__(self, problem: Problem, cones: Cones, owner: Array) -> None:
+    def __init__(self, problem: Problem, cones: Cones, owner: Places) -> None:
         assembly = problem.assembly
         self._problem, self._cones, self._owner = problem, cones, owner
         self._count = int(owner.max(initial=-1)) + 1
@@ -125,31 +134,32 @@ class _Bodies:
         carried = carried @ sparse.diags_array(self.scale.ravel())
         # Rates at the edges of cones, and the work of loads.
         blocks = sparse.diags_array(1 / cones.ease.ravel()) @ carried
-        self._edges = (cones.balance.T @ blocks).tocsr()
-        self._pull = problem.pull().ravel() @ carried
+        edges: Any = cones.balance.T @ blocks
+        self._edges: Any = edges.tocsr()
+        work: Any = problem.pull().ravel() @ carried
+        self._pull: Array = work
 
     def motion(self) -> Motion | None:
         """Return the motion that opens joints by as much as the loads do work."""
-        held = self._cones.bounded == 0
+        if not self._count:
+            return None
         moved = np.diff(self._edges.indptr) > 0
-        for _ in range(ROUNDS if self._count else 0):
-            opens = np.append(~held[moved], True).astype(np.float64)
-            rows = sparse.vstack([self._edges[moved], sparse.csr_array(self._pull[None])])
-            found = _widest(rows, opens)
-            if found is None:
+        rows = sparse.vstack(
+            [self._edges[moved], sparse.csr_array(self._pull[None, :])]
+        ).tocsr()
+        opens = np.append(self._cones.bounded[moved] > 0, True)
+        motion = _widest(rows, opens)
+        if motion is None:
+            # Some joints cannot open, whatever moves.
+            able = _opening(rows, opens)
+            if not able[-1] or (able == opens).all():
                 return None
-            motion, prices = found
-            if not prices.size:
-                return self._exactly(motion, np.flatnonzero(held & moved))
-            price = np.zeros(len(held))
-            price[moved] = np.abs(prices[:-1])
-            more = (price > HELD) & ~held
-            if abs(prices[-1]) > HELD or not more.any():
-                return None
-            held = held | more
-        return None
+            opens, motion = able, _widest(rows, able)
+        if motion is None:
+            return None
+        return self._exactly(motion, np.flatnonzero(moved)[~opens[:-1]].astype(np.int64))
 
-    def _exactly(self, values: Array, held: Array) -> Motion | None:
+    def _exactly(self, values: Array, held: Places) -> Motion | None:
         """Return a motion in rationals, at which parts of joints that are held do not move."""
         scale = self.scale * [self._size, self._size, 1.0]
         motion = [Fraction(each) for each in (values * scale.ravel()).tolist()]
@@ -159,9 +169,11 @@ class _Bodies:
             if rank > LARGEST:
                 return None
             lines = [self._line(part) for part in held[rows].tolist()]
-            own = set(columns.tolist())
-            rest = [-sum(c * motion[at] for at, c in line.items() if at not in own)
-                    for line in lines]  # fmt: skip
+            own: list[int] = columns.tolist()
+            rest: list[Fraction] = []
+            for line in lines:
+                known = (c * motion[at] for at, c in line.items() if at not in own)
+                rest.append(-sum(known, Fraction(0)))
             solved = _solved(
                 [[line.get(at, Fraction(0)) for at in own] for line in lines], rest
             )
@@ -178,9 +190,9 @@ class _Bodies:
         found = self._problem.assembly.joints[joint]
         point = [Fraction(each) for each in (found.outer if end else found.inner).tolist()]
         if found.across is None:
-            x, y = (Fraction(q) - Fraction(p)
-                    for p, q in zip(found.inner.tolist(), found.outer.tolist(), strict=True))  # fmt: skip
-            x, y = y, -x
+            ends = found.inner.tolist() + found.outer.tolist()
+            x1, y1, x2, y2 = (Fraction(each) for each in ends)
+            x, y = y2 - y1, x1 - x2
         else:
             x, y = (Fraction(each) for each in found.across.tolist())
         x, y = normal * x - tangent * y, normal * y + tangent * x
@@ -197,41 +209,62 @@ class _Bodies:
         return line
 
 
-def _widest(rows: sparse.csr_array, opens: Array) -> tuple[Array, Array] | None:
+def _widest(rows: Any, opens: Flags) -> Array | None:
     """Find the motion whose least rate is the largest, of those of the rows that open.
 
-    Returns
-    -------
-    motion : (unknowns,) float
-    prices : (rows,) float
-        Empty where the rate is above `OPEN`.
+    None where that is not above 0. The others must be 0.
     """
     size = rows.shape[1]
-    matrix = sparse.hstack([rows, sparse.csr_array(-opens[:, None])], format="csc")
-    high = np.where(opens > 0, math.inf, 0.0)
+    column = sparse.csr_array(-opens.astype(np.float64)[:, None])
+    matrix = sparse.hstack([rows, column], format="csc")
     cost = np.append(np.zeros(size), -1.0)
+    high = np.where(opens, math.inf, 0.0)
+    equal: Array = rows[~opens].toarray()
     motion, step = np.zeros(size), 1.0
-    prices = np.zeros(0)
     for _ in range(REFINED):
         # What is left of the rows, and of the largest motion, in ever finer units.
-        least = -(rows @ motion) / step
-        bounds = (np.append((-1 - motion) / step, -math.inf),
-                  np.append((1 - motion) / step, 1 / step))  # fmt: skip
-        found = LinearProgramme().solve(
-            cost, matrix, (least, np.where(opens > 0, math.inf, least)), bounds
+        least = np.where(opens, -(rows @ motion) / step, 0.0)
+        bounds = (
+            np.append((-1 - motion) / step, -math.inf),
+            np.append((1 - motion) / step, 1 / step),
         )
+        found = LinearProgramme().solve(cost, matrix, (least, high), bounds)
         if not found.exists:
             return None
         motion = motion + step * found.values[:-1]
-        least_rate = step * float(found.values[-1])
-        prices = found.prices
-        if least_rate > 100 * step * FINEST:
-            return motion, np.zeros(0)
+        if len(equal):
+            solve: Any = linalg.lstsq
+            motion = motion - solve(equal, equal @ motion, cond=RANK)[0]
+        if found.values[-1] > SURELY * FINEST:
+            return motion
         step *= FINER
-    return motion, prices
+    return None
 
 
-def _independent(matrix: Array) -> tuple[int, Array, Array]:
+def _opening(rows: Any, opens: Flags) -> Flags:
+    """Tell which rows can be above 0: all of them at once, as motions can be added."""
+    count, size = rows.shape
+    able, low_rows = np.flatnonzero(opens), np.zeros(len(opens))
+    pick = sparse.csr_array(
+        (-np.ones(len(able)), (able, np.arange(len(able)))), shape=(count, len(able))
+    )
+    cost = np.append(np.zeros(size), -np.ones(len(able)))
+    ends = np.append(np.full(size, FAR), np.ones(len(able)))
+    low = np.append(np.full(size, -FAR), np.zeros(len(able)))
+    matrix: Any = sparse.hstack([rows, pick], format="csc")
+    found = LinearProgramme().solve(
+        cost,
+        matrix,
+        (low_rows, np.where(opens, math.inf, 0.0)),
+        (low, ends),
+    )
+    can = np.zeros(count, dtype=bool)
+    if found.exists:
+        can[able] = found.values[size:] > 1 / 2
+    return can
+
+
+def _independent(matrix: Array) -> tuple[int, Places, Places]:
     """Return the rank of a matrix, and rows and columns that have it."""
     qr: Any = linalg.qr
     _, upper, rows = qr(matrix.T, pivoting=True, mode="economic")

@@ -46,15 +46,23 @@ class Cones:
         Instead of the problem's own.
     width : float
         Share of each joint's width that may be used, about its middle.
+    weights : (blocks,) float, optional
+        What each block carries, instead of an estimate [mean weights].
     """
 
     def __init__(
-        self, problem: Problem, *, friction: Array | None = None, width: float = 1.0
+        self,
+        problem: Problem,
+        *,
+        friction: Array | None = None,
+        width: float = 1.0,
+        weights: Array | None = None,
     ) -> None:
         assembly, joints = problem.assembly, problem.assembly.joint_arrays
         self._joints = len(assembly.joints)
         self.shape = (len(assembly.blocks), PLANAR)
-        weights = carried_weights(problem)
+        weights = carried_weights(problem) if weights is None else weights
+        self.weights = weights
         reach = assembly.reach / assembly.size
         self.ease = 1 / np.column_stack([weights, weights, weights * reach])
         # What nothing can turn (half a keystone on its plane) bears any moment.
@@ -77,6 +85,7 @@ class Cones:
         free = self.count - len(boundless)
         self.bounded = np.where(np.arange(self.count) < free, 1.0, 0.0)
         self._joint = self._end // 2
+        self._sides = assembly.sides
         self._normal *= self.unit[self._joint]
         self._tangent *= self.unit[self._joint]
         direction = (
@@ -162,6 +171,18 @@ class Cones:
         worst = np.abs(-self.loads(pull) - self.balance @ better).max()
         return better if worst < np.abs(left).max() else parts
 
+    def left(self, parts: Array, pull: Array) -> float:
+        """Return the largest force or moment that parts leave, over what its block carries."""
+        return float(np.abs(self.loads(pull) + self.balance @ parts).max())
+
+    def seen_weights(self, parts: Array) -> Array:
+        """Return what blocks carry, by forces that were found, (blocks,) float."""
+        found = np.append(self.weights, 0.0)
+        force = np.abs(parts) * self.unit[self._joint]
+        for sides in self._sides:
+            np.maximum.at(found, sides[self._joint], force)
+        return found[:-1]
+
     def work(self, ways: Array) -> Array:
         """Return what each part does along given ways of the ends, (joints, 2, 2)."""
         normal, tangent = ways.reshape(-1, 2)[self._end].T
@@ -196,9 +217,10 @@ def carried_weights(problem: Problem) -> Array:
     pull = problem.pull()
     found = assembly.masses[:, 0] + np.hypot(pull[:, 0], pull[:, 1])
     found += np.abs(pull[:, 2]) * assembly.size / assembly.reach
-    neighbours: list[set[int]] = [set() for _ in found]
+    neighbours: list[set[int]] = [set[int]() for _ in range(len(found))]
     first = set[int]()
-    for one, other in assembly.sides.T.tolist():
+    pairs: list[list[int]] = assembly.sides.T.tolist()
+    for one, other in pairs:
         if SUPPORT in (one, other):
             first.add(max(one, other))
         else:
@@ -206,7 +228,7 @@ def carried_weights(problem: Problem) -> Array:
             neighbours[other].add(one)
     rank, layers = dict.fromkeys(first, 0), [sorted(first)]
     while layers[-1]:
-        beyond = {near for block in layers[-1] for near in neighbours[block]} - rank.keys()
+        beyond = {near for block in layers[-1] for near in neighbours[block]}.difference(rank)
         rank |= dict.fromkeys(beyond, len(layers))
         layers.append(sorted(beyond))
     for layer in layers[:0:-1]:

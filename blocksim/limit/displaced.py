@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Block, Joint
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Load, Problem
-from blocksim.limit.programme import equilibrium, settling
+from blocksim.limit.programme import equilibrium
 
 Closed = NDArray[np.bool_]
 Lost = Literal["slides", "parts"]
@@ -26,6 +26,10 @@ SHUT = 1e-11
 """Overlap of a contact that is round-off [size]."""
 OFF = 1e-9
 """How far closed contacts may be apart; the blocks cannot follow where it is more [size]."""
+ENOUGH = 1e-9
+"""Lack of force at which blocks still rest [mean weights]."""
+RANK = 1e-9
+"""Stiffness below which nothing holds a motion, as a share of the greatest."""
 ROUNDS = 50
 """Most corrections of places; a few are the rule."""
 HALVINGS = 10
@@ -243,12 +247,15 @@ class Displaced:
             lost = "parts"
         return replace(frame, closed=stays), lost
 
-    def follows(self, frame: Frame) -> tuple[Frame, Lost | None]:
-        """Open the contacts that open as the supports move on."""
-        rates = settling(self.problem(frame), self.speeds(frame.value))
-        if rates is None:
-            return frame, None
-        return self.opened(frame, rates, 1.0)
+    def energy(self, frame: Frame) -> float:
+        """Return the potential energy [mean weight times size], 0 where they were built."""
+        return -float((self._problem.pull() * (frame.poses - self.start.poses)).sum())
+
+    def free(self, frame: Frame) -> Array:
+        """Return motions on supports at rest in which all closed contacts stay closed."""
+        _, sizes, ways = np.linalg.svd(self._apart(frame)[1])
+        held = int((sizes > RANK * sizes.max(initial=0.0)).sum())
+        return ways[held:].reshape(-1, self._count, PLANAR)
 
     def carried(self, frame: Frame, value: float, poses: Array | None = None) -> Frame:
         """Carry the blocks to another position of the supports, contacts closed as they are.

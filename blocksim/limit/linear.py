@@ -25,6 +25,8 @@ MANY = 1000
 """Unknowns from which on the interior point is faster than the simplex at first."""
 DUAL, PRIMAL = 1, 4
 """HiGHS's numbers of its simplex methods."""
+ENDLESS = 100
+"""Steps of the simplex over rows and unknowns, from which on it goes round in circles."""
 LARGEST = 1e7
 """Size of unknowns up to which a programme is solved that HiGHS does not take without bound."""
 Ends = tuple[Array, Array]
@@ -122,6 +124,8 @@ class LinearProgramme:
 
     def _solve(self, cost: Array, matrix: Matrix, rows: Ends, bounds: Ends) -> Optimum | None:
         columns = sparse.csc_array(matrix)
+        most = ENDLESS * (sum(columns.shape) + 10)
+        self._highs.setOptionValue("simplex_iteration_limit", most)
         again = columns.shape == self._shape and self._basis is not None
         self._highs.passModel(_model(cost, columns, rows, bounds))
         if again:

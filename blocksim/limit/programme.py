@@ -7,8 +7,8 @@ blocks begin to move where none exist, in which joints that slide dilate (associ
 Coulomb's law, which does not dilate, may allow blocks to move that could rest.
 
 Lengths are scaled by the assembly's size, and equations and forces by what each block and
-joint carries (`Cones`) before they are solved: with a drawing in millimetres, or beside a pier a
-thousand times as large, the solver would call wrong answers optimal.
+joint carries (`Cones`) before they are solved: with a drawing in millimetres, or beside a pier
+a thousand times as large, the solver would call wrong answers optimal.
 """
 
 from __future__ import annotations
@@ -39,6 +39,8 @@ TENSION = 1e3
 """Most that every edge may lack, over the same."""
 FINE = 1e-14
 """Lack of force that is left so near, over what blocks carry."""
+RESCALED = 3
+"""How often what blocks carry is taken from forces that were found."""
 NEAR = 1e-6
 """Margin up to which a proof decides whether blocks stand, not the solver."""
 
@@ -55,31 +57,36 @@ class Equilibrium:
         (at most `SPARE`), over what its joint carries (`Cones.unit`). Below 0 there is no
         equilibrium: contacts would have to pull by that much. -inf where not even that would
         hold the blocks, nan where the solver does not tell.
-    sought : (joints, 2, 2) float or None
-        The forces with that margin, whether they exist or not; None where the margin is -inf.
+    parts : (parts,) float or None
+        Forces with that margin, in parts of `Cones`; None where nothing would hold the blocks.
     rates : (blocks, 3) float or None
         Rates x, y and rotation of the mechanism that is nearest.
+    cones : Cones, optional
+        Those of the problem.
     """
 
     problem: Problem
     margin: float
-    sought: Array | None
+    parts: Array | None
     rates: Array | None
+    cones: Cones | None = None
 
     @cached_property
     def proof(self) -> Proof | None:
         """The proof that blocks stand or fall; None where there is none either way."""
-        if self.sought is not None and self.margin > -NEAR:
-            found = proof_of_rest(self.problem, self.sought)
-            if found is not None:
-                return found
+        if self.parts is not None and self.margin > -NEAR:
+            for fine in (ROUND_OFF, FINE):
+                parts = self._cones.polished(self.parts, self.problem.pull(), fine)
+                found = proof_of_rest(self.problem, self._cones.forces(parts))
+                if found is not None:
+                    return found
         if self.margin >= NEAR:
             return None
         return proof_of_fall(self.problem, self._cones, self.rates)
 
     @cached_property
     def _cones(self) -> Cones:
-        return Cones(self.problem)
+        return self.cones or Cones(self.problem)
 
     @property
     def decided(self) -> bool:
@@ -88,7 +95,7 @@ class Equilibrium:
 
     @cached_property
     def exists(self) -> bool:
-        """Whether the blocks can rest; where that is not decided, whether next to nothing lacks."""
+        """Whether blocks can rest; where that is open, whether hardly any force lacks."""
         if abs(self.margin) > NEAR:
             return self.margin > 0
         return (
@@ -97,14 +104,17 @@ class Equilibrium:
             else self.proof.claim == "stands"
         )
 
-    @property
+    @cached_property
     def forces(self) -> Array | None:
-        """Forces at the inner and the outer end of each joint, along its normal and its tangent.
+        """Forces at the inner and the outer end of each joint, along normal and tangent.
 
         (joints, 2, 2) float, as they act on the block after it [mean weights]. None where there
         is no equilibrium.
         """
-        return self.sought if self.exists else None
+        if not self.exists or self.parts is None:
+            return None
+        parts = self._cones.polished(self.parts, self.problem.pull())
+        return self._cones.forces(parts)
 
     @property
     def mechanism(self) -> Array | None:
@@ -149,23 +159,32 @@ def equilibrium(problem: Problem) -> Equilibrium:
     -------
     Equilibrium
     """
-    cones = Cones(problem)
+    cones, pull = Cones(problem), problem.pull()
     try:
-        found = most_common(cones, problem.pull())
+        found = most_common(cones, pull)
+        for _ in range(RESCALED):
+            if not found.exists or cones.left(_parts(cones, found), pull) < ROUND_OFF:
+                break
+            # Some carry far more than was thought: small blocks under, or between, large ones.
+            cones = Cones(problem, weights=cones.seen_weights(found.values[:-1]))
+            found = most_common(cones, pull)
     except Unsolved:
-        return Equilibrium(problem=problem, margin=math.nan, sought=None, rates=None)
+        return Equilibrium(problem=problem, margin=math.nan, parts=None, rates=None)
     if not found.exists:
-        return Equilibrium(problem=problem, margin=-math.inf, sought=None, rates=None)
+        return Equilibrium(problem=problem, margin=-math.inf, parts=None, rates=None)
     margin = float(found.values[-1])
-    parts = found.values[:-1] + margin * cones.bounded
-    if margin > -NEAR:
-        parts = cones.polished(parts, problem.pull(), FINE if margin < NEAR else ROUND_OFF)
     return Equilibrium(
         problem=problem,
         margin=margin,
-        sought=cones.forces(parts),
+        parts=_parts(cones, found),
         rates=_scaled(cones.rates(found.prices)),
+        cones=cones,
     )
+
+
+def _parts(cones: Cones, found: Optimum) -> Array:
+    """Return all of the parts: what they have in common is theirs, too."""
+    return found.values[:-1] + found.values[-1] * cones.bounded
 
 
 def collapse(problem: Problem) -> Collapse:

@@ -20,12 +20,13 @@ import numpy as np
 from scipy.optimize import brentq
 
 from blocksim.blocks.problem import Problem
-from blocksim.limit.displaced import Displaced, Frame, Lost
+from blocksim.limit.branches import follows
+from blocksim.limit.displaced import ENOUGH, Displaced, Frame, Lost
 from blocksim.limit.programme import falling
 
 Ends = Literal["collapse", "slides", "parts", "range"]
-ENOUGH = 1e-9
-"""Lack of force at which blocks still rest [mean weights]."""
+FALLS = {"snaps", "collapse", "falls-slides", "falls-parts"}
+"""Events in which blocks move on supports at rest."""
 PUSH = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
 """How far beyond an event it is looked at, the first that tells [size]."""
 WAY = 5e-3
@@ -81,6 +82,14 @@ class Path:
         """How far the supports moved [m]."""
         return self.frames[-1].value
 
+    @property
+    def first_fall(self) -> float | None:
+        """How far the supports moved when blocks first fell, caught again or not [m]."""
+        if not self.events and self.ends == "collapse":
+            return self.value
+        falls = (each.value for each in self.events if each.what in FALLS)
+        return next(falls, None)
+
 
 def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
     """Move the supports slowly, and follow the blocks.
@@ -103,7 +112,7 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
     frames, events = [frame], list[Event]()
     if blocks.margin(frame) < -ENOUGH:
         return Path(frames=(frame,), events=(), ends="collapse")
-    frame, lost = blocks.follows(frame)
+    frame, lost = follows(blocks, frame)
     events.append(Event(what="hinges", before=frames[0], after=frame))
     grid = np.linspace(0, highest, steps + 1)[1:].tolist()
     while lost is None and grid:
@@ -124,7 +133,7 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
                 events.append(Event(what=what, before=before, after=after))
                 return Path(frames=tuple(frames), events=tuple(events), ends="collapse")
             at = caught
-        frame, lost = blocks.follows(at)
+        frame, lost = follows(blocks, at)
         events.append(Event(what=lost or what, before=before, after=frame))
         frames += [before, frame]
     return Path(frames=tuple(frames), events=tuple(events), ends=lost or "range")

@@ -12,7 +12,12 @@ power of any motion is positive: w . a is a . M a and what friction takes away. 
 rest where the largest is 0. It also bounds the accelerations: as a . M a <= w . a, the norm of
 the motion, the root of a . M a, is at most that of the fall without contacts.
 
-Contact forces have no such bound, as blocks may be wedged; those above `LARGEST` are left out.
+Contact forces have no such bound, as blocks may be wedged. But with a motion all its multiples
+are solutions, too, under that multiple of the loads: so forces add up to no more than the loads
+do, and the loads are a share of what they are, the smaller the larger the forces.
+
+Blocks that touch none of the others, but for supports, are a group that moves by itself. Each
+is asked by itself, in its own units.
 """
 
 from __future__ import annotations
@@ -25,20 +30,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.blocks.groups import groups_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.common.later import Library
 from blocksim.limit.linear import choose
+from blocksim.limit.programme import equilibrium
 
 if TYPE_CHECKING:
     from scipy import sparse
 else:
     sparse = Library("scipy.sparse")
 
-LARGEST = 3.0
-"""Largest contact force looked at, over the sum of all loads."""
 LEAST_POWER = 1e-7
-"""Power of the loads up to which nothing moves, over that of the fall without contacts."""
+"""Power of the loads up to which nothing moves, over that of the fall without contacts; times
+the largest contact force over the sum of all loads, where that is above 1."""
+LIGHTEST = 1e-3
+"""Power of the fall of a block, over that of the mean one, below which it is not told that all
+must rest."""
 SECONDS = 60.0
 WRONG = 1e-6
 """Residual of a motion, over its largest rate, above which it is none."""
@@ -87,23 +96,52 @@ def may_start(problem: Problem, *, seconds: float = SECONDS) -> Start:
         If friction is unbounded: what the law says is a limit then, and no choice.
     """
     require(bool(np.isfinite(problem.friction).all()), "mu", math.inf, "finite to ask this")
-    law = _Law(problem)
+    accelerations = np.zeros(problem.assembly.masses.shape)
+    forces = equilibrium(problem).forces
+    if forces is None:
+        forces = np.zeros((len(problem.assembly.joints), 2, 2))
+    found: list[Start] = []
+    for group in groups_of(problem):
+        start = _of_group(_Law(group.problem), seconds)
+        found.append(start)
+        if start.accelerations is not None and start.forces is not None:
+            unit = group.problem.unit_force / problem.unit_force
+            accelerations[group.blocks] = start.accelerations
+            forces[group.joints] = unit * start.forces
+    power = max((each.power for each in found), default=0.0)
+    if any(each.moves for each in found):
+        return Start(moves=True, accelerations=accelerations, forces=forces, power=power)
+    return Start(moves=False if all(each.moves is False for each in found) else None)
+
+
+def _of_group(law: _Law, seconds: float) -> Start:
+    """Tell whether blocks of a group may start to move."""
+    if not law.fall:
+        return Start(moves=False)
+    least = LEAST_POWER * max(law.lightest, LIGHTEST)
     found = choose(
         law.cost,
         law.matrix,
         law.rows,
         law.bounds,
         whole=law.whole,
-        gap=LEAST_POWER / 2 * law.fall,
+        gap=least / 2 * law.fall,
         seconds=seconds,
     )
     power = float(-law.cost @ found.values) / law.fall if found.values.size else 0.0
-    if power > LEAST_POWER:
-        accelerations, forces, residual = law.motion(found.values)
+    if power > least:
+        share, accelerations, forces, residual = law.motion(found.values)
         if residual <= WRONG:
-            return Start(moves=True, accelerations=accelerations, forces=forces, power=power)
+            return Start(
+                moves=True,
+                accelerations=accelerations,
+                forces=forces,
+                power=power / share,
+            )
         return Start(moves=None)
-    surely = found.values.size > 0 and -found.least / law.fall <= LEAST_POWER
+    surely = found.values.size > 0 and -found.least / law.fall <= least
+    # Of blocks so much lighter than others the solver's tolerance would hide a motion.
+    surely = surely and law.lightest >= LIGHTEST
     return Start(moves=False if surely else None)
 
 
@@ -132,21 +170,27 @@ class _Law:
     """Coulomb's law for blocks at rest as a mixed-integer linear programme.
 
     Its unknowns are accelerations times the root of mass, pressures at both ends and friction
-    of each joint, and choices: which ends may press, and which joints may slip up or down.
+    of each joint, choices: which ends may press, and which joints may slip up or down; and the
+    share of the loads that acts.
     """
 
     def __init__(self, problem: Problem) -> None:
-        masses, pull = problem.assembly.masses.ravel(), problem.pull().ravel()
-        self._root, self._shape = np.sqrt(masses), problem.assembly.masses.shape
-        free = pull / self._root
+        # Forces are in units of the sum of all loads.
+        unit = float(np.abs(problem.pull()[:, :2]).sum()) or 1.0
+        self._unit, self._shape = unit, problem.assembly.masses.shape
+        self._root = np.sqrt(problem.assembly.masses.ravel() / unit)
+        free = problem.pull().ravel() / unit / self._root
         self.fall = float(free @ free)
+        of_blocks = (free**2).reshape(self._shape).sum(axis=1)
+        mean = self.fall / len(of_blocks) or 1.0
+        self.lightest = float(of_blocks[of_blocks > 0].min(initial=mean)) / mean
         self._rates = rates_of(problem)
         self._mu, joints = problem.friction, len(problem.assembly.joints)
-        self._blocks, self._joints = len(free), joints
-        self._first = np.cumsum([0, len(free), 2 * joints, joints, 2 * joints, joints, joints])
+        self._joints, largest = joints, 1.0
+        kinds = [0, len(free), 2 * joints, joints, 2 * joints, joints, joints, 1]
+        self._first = np.cumsum(kinds)
         rates = self._rates / self._root
         fastest = np.sqrt((rates**2).sum(axis=2) * self.fall)
-        largest = LARGEST * float(np.abs(problem.pull()[:, :2]).sum())
         self._parts: list[tuple[sparse.csr_array, Array, Array]] = []
         self._newton(rates, free)
         self._ends(rates[:, :2].reshape(2 * joints, -1), fastest[:, :2].ravel(), largest)
@@ -161,16 +205,21 @@ class _Law:
         ones, choices = np.ones(len(free)), np.ones(4 * joints)
         pressed = np.full(2 * joints, largest)
         self.bounds = (
-            np.concatenate([-size * ones, 0 * pressed, -rubs, 0 * choices]),
-            np.concatenate([size * ones, pressed, rubs, choices]),
+            np.concatenate([-size * ones, 0 * pressed, -rubs, 0 * choices, [0.0]]),
+            np.concatenate([size * ones, pressed, rubs, choices, [1.0]]),
         )
-        self.whole: NDArray[np.bool_] = np.arange(self._first[-1]) >= self._first[3]
+        unknown: NDArray[np.int64] = np.arange(int(self._first[-1]))
+        self.whole: NDArray[np.bool_] = (unknown >= self._first[3]) & (unknown < self._first[6])
         self.cost = np.zeros(self._first[-1])
         self.cost[: len(free)] = -free
 
-    def motion(self, values: Array) -> tuple[Array, Array, float]:
-        """Return accelerations, forces, and by how much they are no solution."""
-        x, pressure, friction, _ = np.split(values, self._first[1:4])
+    def motion(self, values: Array) -> tuple[float, Array, Array, float]:
+        """Return the share of the loads, and under all of them accelerations and forces.
+
+        At last by how much these are no solution.
+        """
+        share = float(values[-1])
+        x, pressure, friction, _ = np.split(values / share, self._first[1:4])
         pressure = np.maximum(pressure.reshape(-1, 2), 0.0)
         rates = self._rates @ (x / self._root)
         opening, slip = rates[:, :2], rates[:, 2]
@@ -184,9 +233,10 @@ class _Law:
         ]
         residual = max(float(each.max(initial=0.0)) for each in wrong)
         total = pressure.sum(axis=1, keepdims=True)
-        share = np.divide(pressure, total, out=np.full_like(pressure, 0.5), where=total > 0)
-        forces = np.stack([pressure, share * friction[:, None]], axis=2)
-        return (x / self._root).reshape(self._shape), forces, residual / np.abs(rates).max()
+        parts = np.divide(pressure, total, out=np.full_like(pressure, 0.5), where=total > 0)
+        forces = self._unit * np.stack([pressure, parts * friction[:, None]], axis=2)
+        moving = (x / self._root).reshape(self._shape)
+        return share, moving, forces, residual / np.abs(rates).max()
 
     def _add(
         self, parts: list[tuple[int, Array | sparse.csr_array]], low: Array, high: Array
@@ -202,7 +252,9 @@ class _Law:
         normal = rates[:, :2].reshape(2 * self._joints, -1)
         every = np.ones(len(free))
         forces = [sparse.csr_array(-each.T) for each in (normal, rates[:, 2])]
-        self._add([(0, every), (1, forces[0]), (2, forces[1])], free, free)
+        loads = sparse.csr_array(-free[:, None])
+        none = np.zeros(len(free))
+        self._add([(0, every), (1, forces[0]), (2, forces[1]), (6, loads)], none, none)
 
     def _ends(self, rates: Array, fastest: Array, largest: float) -> None:
         """Each end presses or opens."""

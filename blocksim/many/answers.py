@@ -17,9 +17,9 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.methods import STATIC
 from blocksim.common.errors import MissingPart
-from blocksim.engines import get_engine
+from blocksim.engines import NAMES, get_engine
 from blocksim.kinds.circular import CircularArch, arch_problem
-from blocksim.many.case import AUTO_ENGINE, Case, Pace, Row
+from blocksim.many.case import Case, Pace, Row
 from blocksim.many.statics import by_statics
 from blocksim.many.structurecase import StructureCase, reason_of
 
@@ -95,7 +95,7 @@ def version_of(method: str) -> str:
     """
     if method in STATIC:
         return blocksim.__version__
-    name = AUTO_ENGINE if method == "auto" else method
+    name = NAMES[0] if method == "auto" else method
     return f"{blocksim.__version__} {name} {get_engine(name).version}"
 
 

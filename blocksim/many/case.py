@@ -8,12 +8,11 @@ from hashlib import blake2b
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from blocksim.arch.circular import Weight
+from blocksim.engines import NAMES
 
 if TYPE_CHECKING:
     from blocksim.many.structurecase import StructureCase
 
-AUTO_ENGINE = "direct"
-"""What `auto` simulates with."""
 Row = dict[str, object]
 Pace = tuple[object, ...]
 Given = tuple[tuple[str, float], ...]
@@ -65,8 +64,8 @@ class Case(NamedTuple):
 
     @property
     def engine(self) -> str:
-        """Method that answers where simulation is worth it; static ones never do."""
-        return AUTO_ENGINE if self.method == "auto" else self.method
+        """Method that answers where simulation is worth it: of `auto` the cheapest engine."""
+        return NAMES[0] if self.method == "auto" else self.method
 
     @property
     def is_bracket(self) -> bool:

@@ -18,9 +18,10 @@ from blocksim.ask.search import ETA_MAX
 from blocksim.common.checks import ETA, FRICTION, Range, is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
+from blocksim.engines import NAMES
 from blocksim.evidence.simulation import SETTINGS, require_setting, setting_of
 from blocksim.many.axis import DRAWN_AT_ONCE, Axis, AxisField, Number, require_axis
-from blocksim.many.case import AUTO_ENGINE, Case
+from blocksim.many.case import Case
 
 LARGEST_DESIGN = 20_000_000
 """Cases of one sweep: their identities are held in memory, about 0.1 kB each."""
@@ -171,7 +172,7 @@ class Design:
         """Names of the settings that change an answer of a method here."""
         if not any(self._width(method)):
             return ()
-        return METHODS[AUTO_ENGINE if method == "auto" else method].adjustable
+        return METHODS[NAMES[0] if method == "auto" else method].adjustable
 
     def _axes(self) -> list[Axis]:
         arch = self.half_angle_deg, self.mu, self.voussoirs, self.eta, self.ratio
@@ -327,7 +328,9 @@ def require_asked(design: Asked, choices: Sequence[str], *, bracketed: bool) -> 
         Whether the question is where something changes.
     """
     for word in design.method:
-        require(word in choices, "method", word, f"one of {', '.join(choices)}")
+        # A file may name engines that are installed, but no module to be imported.
+        own = word in METHODS and word not in METHODS.shipped
+        require(word in choices or own, "method", word, f"one of {', '.join(choices)}")
     require(is_number(design.tol, 0, 0.5), "tol", design.tol, "above 0 and at most 0.5")
     for name in sorted(set(design.method) - {"auto"}) if bracketed else ():
         finest = METHODS[name].finest

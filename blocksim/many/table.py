@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from importlib.util import find_spec
 from itertools import chain, islice
 from typing import Any, BinaryIO, cast
 
 from blocksim.blocks.maker import Parameter, parameters_of
-from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, write_whole
+from blocksim.common.later import require_library
 from blocksim.common.sheets import write_sheet
 from blocksim.evidence.simulation import SETTINGS
 from blocksim.kinds import KINDS
@@ -84,8 +83,7 @@ NUMBERS = ("mu", "load_factor", "limit")
 
 def require_parquet() -> None:
     """Raise `MissingPart` unless tables can be written here."""
-    if find_spec("pyarrow") is None:
-        raise MissingPart("Parquet", "pip install 'blocksim[parquet]'")
+    require_library("pyarrow", "Parquet", "parquet")
 
 
 def write_parquet(folder: AnyPath, path: AnyPath) -> None:

@@ -1,7 +1,8 @@
 """What drawings of all formats have in common: outlines on layers, a unit, what is left out.
 
 Closed outlines of straight sides are blocks on the layer `blocks`, and blocks that stay where
-they are on the layer `supports`. Anything else is counted and named, not guessed.
+they are on the layer `supports`. Words there are no blocks; anything else there is refused by
+name, so that no verdict leaves it out. What is on other layers is counted and named.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.outlines import signed_area, step_of
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError
@@ -47,7 +48,12 @@ class Shape:
     corners : list of (x, y), optional
         In units of the drawing, y upwards; None if it is no closed outline of straight sides.
     wrong : str, optional
-        Why a closed outline cannot be read: said where it is on a layer that is read.
+        Why it cannot be read: said where it is on a layer that is read.
+    words : bool
+        Whether it is text or a dimension, which bears nothing.
+    step : float, optional
+        To which its corners were rounded, in units of the drawing; by default by their
+        decimals.
     """
 
     what: str
@@ -55,6 +61,8 @@ class Shape:
     name: str = ""
     corners: Corners | None = None
     wrong: str | None = None
+    words: bool = False
+    step: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,13 +112,16 @@ def structure_from(shapes: Iterable[Shape], path: Path, unit: Unit) -> dict[str,
         In one line: no outline on a layer that is read, or one that cannot be read.
     """
     blocks: list[dict[str, Any]] = []
+    steps = list[float]()
     left = Counter[str]()
     for count, shape in enumerate(shapes):
         require(count < MOST_SHAPES, "drawing", "more shapes", f"at most {MOST_SHAPES}")
         layer = plain(shape.layer)
         fixed = LAYERS.get(layer.lower())
-        if fixed is not None and (shape.corners or shape.wrong):
+        if fixed is not None and not shape.words:
             blocks.append(_block(shape, layer, unit) | ({"fixed": True} if fixed else {}))
+            values = np.array(shape.corners).ravel()
+            steps.append(step_of(values) if shape.step is None else shape.step)
             require(len(blocks) <= MOST_BLOCKS, "blocks", "more", f"at most {MOST_BLOCKS}")
         else:
             left[f"{shape.what} on layer {layer}" if layer else shape.what] += 1
@@ -125,6 +136,7 @@ def structure_from(shapes: Iterable[Shape], path: Path, unit: Unit) -> dict[str,
         "title": plain(path.stem)[:200],
         "source": plain(path.name)[:500],
         "notes": [unit.said, *([f"left out of the drawing: {rest}"] if rest else [])],
+        "rounding": min(steps) * unit.metres,
         "blocks": blocks,
     }
 
@@ -138,9 +150,10 @@ def _block(shape: Shape, layer: str, unit: Unit) -> dict[str, Any]:
     corners = shape.corners or []
     if corners[:1] == corners[-1:]:
         corners = corners[:-1]
-    field = f"{shape.what} {plain(shape.name)} on layer {layer}"
+    field = " ".join(f"{shape.what} {plain(shape.name)}".split()) + f" on layer {layer}"
     if shape.wrong is not None:
-        raise InputError(field, shape.wrong, "an outline of straight sides, in the plane")
+        allowed = "a closed outline of straight sides, in the plane, or on another layer"
+        raise InputError(field, shape.wrong, allowed)
     require(len(corners) >= 3, field, f"{len(corners)} corners", "at least three corners")
     far = max(abs(each) * unit.metres for corner in corners for each in corner)
     require(far <= COORDINATE.high, field, far, f"within {COORDINATE.high:g} m")

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, cast
 
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, require_file
+from blocksim.common.later import require_library
 from blocksim.reading.drawing import (
     LARGEST_DRAWING,
     NO_UNIT,
@@ -25,13 +27,18 @@ INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}
 POLYLINES = ("LWPOLYLINE", "POLYLINE")
 SMOOTH = 2 | 4
 """Flags of a POLYLINE through which, or beside which, a curve is drawn."""
+WORDS = {"TEXT", "MTEXT", "ATTDEF", "ATTRIB", "DIMENSION", "LEADER", "MLEADER", "MULTILEADER",
+         "TOLERANCE", "POINT"}  # fmt: skip
+"""Entities that say something and bear nothing."""
+DEEPEST, MOST_INSERTED = 16, 200_000
+"""Block references inside each other, and entities that they stand for in all."""
 QUIET = logging.NullHandler()
 FLAT = 1e-9
 """How far from the plane a polyline may be, in units of its largest coordinate."""
 
 
 def read_dxf(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
-    """Read the closed polylines of the model space.
+    """Read the closed polylines of the model space, and of the blocks inserted there.
 
     Parameters
     ----------
@@ -48,17 +55,22 @@ def read_dxf(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
     ------
     InputError
         In one line, if the file is too large, no DXF, or has no outlines to read.
+    MissingPart
+        If ezdxf is not installed.
     """
     require_file(path, "drawing", "an existing .dxf file", LARGEST_DRAWING)
-    # ezdxf takes a second to import, which nothing else need wait for.
+    require_library("ezdxf", "DXF", "dxf")
+    # It takes a second to import, which nothing else need wait for.
     import ezdxf
 
     # What it logs of flaws it mends would be printed where nobody set up logging.
     logging.getLogger("ezdxf").addHandler(QUIET)
     try:
         document: Any = cast(Any, ezdxf).readfile(os.fspath(path))
-        shapes = [_shape(entity) for entity in _entities(document)]
+        shapes = [_shape(*each) for each in _entities(document.modelspace())]
         code = int(document.header.get("$INSUNITS", 0))
+    except InputError:
+        raise
     except Exception as error:  # a damaged file makes ezdxf raise almost anything
         said = " ".join(str(error).split()) or type(error).__name__
         raise InputError("file", said, "a valid DXF file") from None
@@ -75,21 +87,45 @@ def _unit(code: int) -> Unit:
     return Unit(metres=UNITS[name], said=f"unit {name}, by the drawing's $INSUNITS")
 
 
-def _entities(document: Any) -> Iterator[Any]:
-    # Block references are not followed: they may contain each other, and themselves.
-    yield from document.modelspace()
+def _entities(space: Iterable[Any]) -> Iterator[tuple[Any, str, str]]:
+    """Entities with their layers and names, those of block references where they are seen."""
+    inserted = 0
+    within = [iter([(each, str(each.dxf.layer), str(each.dxf.handle)) for each in space])]
+    while within:
+        entity, layer, name = next(within[-1], (None, "", ""))
+        if entity is None:
+            within.pop()
+        elif entity.dxftype() != "INSERT":
+            yield entity, layer, name
+        else:
+            at = f"INSERT {name.partition('.')[0]} on layer {layer}"
+            deep = len(within) <= DEEPEST
+            require(deep, at, f"more than {DEEPEST} deep", "block references without a loop")
+            known = entity.block() is not None
+            require(known, at, entity.dxf.name, "the name of a block in the drawing")
+            parts: list[tuple[Any, str, str]] = []
+            for one in entity.multi_insert() if entity.mcount > 1 else (entity,):
+                for part in one.virtual_entities():
+                    inserted += 1
+                    few = inserted <= MOST_INSERTED
+                    require(few, at, "more entities", f"at most {MOST_INSERTED} by references")
+                    own = str(part.dxf.layer)
+                    # What is drawn on layer 0 of a block lies on that of its reference.
+                    parts.append((part, layer if own == "0" else own, f"{name}.{len(parts)}"))
+            within.append(iter(parts))
 
 
-def _shape(entity: Any) -> Shape:
-    kind, layer = entity.dxftype(), str(entity.dxf.layer)
-    name = str(entity.dxf.handle)
+def _shape(entity: Any, layer: str, name: str) -> Shape:
+    kind = entity.dxftype()
+    if kind in WORDS:
+        return Shape(what=kind, layer=layer, words=True)
     if kind not in POLYLINES or not (kind == "LWPOLYLINE" or _is_line(entity)):
-        return Shape(what="INSERT (explode it)" if kind == "INSERT" else kind, layer=layer)
+        return Shape(what=kind, layer=layer, name=name, wrong="is no closed polyline")
     points = [(p.x, p.y, p.z) for p in _points(entity)]
     # Closed by its flag, or by its first point given again.
     closed = bool(entity.is_closed) or (len(points) > 3 and points[0] == points[-1])
     if not closed:
-        return Shape(what=f"open {kind}", layer=layer)
+        return Shape(what=f"open {kind}", layer=layer, name=name, wrong="is not closed")
     wrong = "has arcs" if entity.has_arc else None
     if kind == "POLYLINE" and entity.dxf.flags & SMOOTH:
         wrong = "is a smooth curve"

@@ -12,6 +12,10 @@ from pathlib import Path
 from typing import Any
 from xml.parsers import expat
 
+import numpy as np
+
+from blocksim.blocks.outlines import step_of
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, read_file
 from blocksim.reading.drawing import (
@@ -35,7 +39,9 @@ HIDDEN = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata",
           "desc", "style", "script", "foreignObject", "linearGradient", "radialGradient",
           "filter"}  # fmt: skip
 """Elements of which nothing is drawn where they stand; what is in them is passed over."""
-OTHERS = {"line", "polyline", "circle", "ellipse", "text", "image", "use"}
+WORDS = {"text", "tspan", "textPath", "tref", "view", "animate", "set"}
+"""Elements that say something and bear nothing."""
+WRONG = {"use": "is a clone: unlink it (Inkscape: Edit, Clone, Unlink Clone)"}
 SVG = "http://www.w3.org/2000/svg"
 LABEL = "http://www.inkscape.org/namespaces/inkscape label"
 
@@ -79,9 +85,10 @@ def read_svg(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
     parser.StartElementHandler = reader.start
     parser.EndElementHandler = reader.end
     parser.EntityDeclHandler = _refuse_entity
+    parser.AttlistDeclHandler = _refuse_attributes
     try:
         parser.Parse(text, True)
-    except (expat.ExpatError, ValueError) as error:
+    except (expat.ExpatError, ValueError, LookupError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError("file", str(error), "a valid SVG file") from None
@@ -94,6 +101,11 @@ def read_svg(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
 
 def _refuse_entity(name: str, *_: object) -> None:
     raise InputError("entity", name, "left out: a drawing needs none")
+
+
+def _refuse_attributes(element: str, name: str, *_: object) -> None:
+    # Each element would be given all of them: a small file would cost minutes.
+    raise InputError(f"ATTLIST {element}", name, "left out: a drawing needs none")
 
 
 class _Reader:
@@ -123,9 +135,12 @@ class _Reader:
         inner = kind in HIDDEN or kind == "svg" or space not in {"", SVG}
         if self._hidden or inner:
             if kind == "svg" and not self._hidden:
-                self.shapes.append(Shape(what="nested svg", layer=layer))
+                wrong = "has a view of its own"
+                self.shapes.append(Shape(what="nested svg", layer=layer, wrong=wrong))
             self._hidden += 1
             return
+        styled = "transform" in given.get("style", "")
+        require(not styled, f"{kind} style", "a transform", "left out: use the attribute")
         matrix = _times(outer, _matrix(given.get("transform", "")))
         self._inside.append((matrix, layer))
         if kind not in CONTAINERS:
@@ -139,18 +154,20 @@ class _Reader:
             self._inside.pop()
 
     def _shape(self, kind: str, given: dict[str, str], matrix: Matrix, layer: str) -> Shape:
-        if layer.lower() not in LAYERS:
+        if layer.lower() not in LAYERS or kind in WORDS:
             # Frames and the like may be anything: "100%" wide, and curved.
-            return Shape(what=kind, layer=layer)
+            return Shape(what=kind, layer=layer, words=kind in WORDS)
         name = given.get("id", "")
         if not name or name in self._names:
             name = f"{kind} {len(self.shapes) + 1}"
         self._names.add(name)
         corners, wrong, what = _outline(kind, given)
+        step = None
         if corners is not None:
             a, b, c, d, e, f = matrix
+            step = step_of(np.array(corners).ravel()) * math.hypot(a, b, c, d) / math.sqrt(2)
             corners = [(a * x + c * y + e, b * x + d * y + f) for x, y in corners]
-        return Shape(what=what, layer=layer, name=name, corners=corners, wrong=wrong)
+        return Shape(what=what, layer=layer, name=name, corners=corners, wrong=wrong, step=step)
 
 
 def _layer_of(given: dict[str, str], above: str) -> str:
@@ -169,7 +186,7 @@ def _outline(kind: str, given: dict[str, str]) -> tuple[Corners | None, str | No
     if kind == "polyline":
         corners = _pairs(given.get("points", ""), "points")
         closed = len(corners) > 3 and corners[0] == corners[-1]
-        return (corners, None, kind) if closed else (None, None, "open polyline")
+        return (corners, None, kind) if closed else (None, "is not closed", "open polyline")
     if kind == "rect":
         x, y, wide, high = (
             _number(given.get(key, "0"), key) for key in ("x", "y", "width", "height")
@@ -180,8 +197,7 @@ def _outline(kind: str, given: dict[str, str]) -> tuple[Corners | None, str | No
         return [(x, y), (right, y), (right, low), (x, low)], wrong, kind
     if kind == "path":
         return _path(given.get("d", ""))
-    wrong = "is no outline of straight sides" if kind in {"circle", "ellipse"} else None
-    return None, wrong, kind if kind in OTHERS else "other elements"
+    return None, WRONG.get(kind, "is no outline of straight sides"), kind
 
 
 def _path(text: str) -> tuple[Corners | None, str | None, str]:
@@ -198,9 +214,7 @@ def _path(text: str) -> tuple[Corners | None, str | None, str]:
             raise InputError("path", text[at : at + 20], "commands and numbers")
         lower = command.lower()
         if lower in "csqta":
-            # Whether it is closed is said by its last command.
-            shut = text[-1] in "zZ"
-            return None, "has curves" if shut else None, "path with curves"
+            return None, "has curves", "path with curves"
         if lower == "z":
             closed = True
             at = _past_space(text, at)
@@ -226,7 +240,7 @@ def _path(text: str) -> tuple[Corners | None, str | None, str]:
         at = _past_space(text, at)
     closed = closed or (parts == 1 and len(corners) > 3 and corners[0] == corners[-1])
     if not closed:
-        return None, None, "open path"
+        return None, "is not closed", "open path"
     if parts > 1:
         return None, f"is {parts} lines", "path of several lines"
     return corners, None, "path"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from blocksim.arch.dimensions import friction_angle
-from blocksim.ask.check import SOUGHT
+from blocksim.ask.check import SOUGHT, proof_words
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState
 from blocksim.report.answers import state_words
@@ -58,7 +58,9 @@ def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
     lines += unit_lines(problem) if carried else []
     if of is None and carried is None and len(problem.assembly.joints) > SOUGHT:
         lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
-    if rest := rest_words(answer.rest, asked=answer.asked_rest):
+    if answer.method == "limit":
+        lines.append(f"  proof   {proof_words(answer)}")
+    if rest := rest_words(answer.rest, answer.motion, asked=answer.asked_rest):
         lines.append(f"  rest    {rest}")
     if of is not None:
         lines += _modes(of, _whose(answer, of))

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from statistics import fmean
 
 from blocksim.arch.circular import GRAVITY
 from blocksim.arch.modes import Mode
+from blocksim.ask.methods import STATIC
 from blocksim.blocks.joints import JointState
+from blocksim.common.dates import made_at
+from blocksim.engines import engine_named
 from blocksim.evidence.verdict import Verdict
 from blocksim.report.answerwords import ratio
 from blocksim.report.environment import environment
@@ -19,8 +21,8 @@ from blocksim.report.motion import ArchDrawing, drawing
 from blocksim.report.structurepart import shown_structures
 from blocksim.report.structurewords import summary_of_structures
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
-from blocksim.studies.questions import ASIDES, NEAR, SLOWLY, StructureRow
-from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS
+from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
+from blocksim.studies.validate import ASIDE, ERROR_BOUND
 from blocksim.view import style
 
 STATES = {
@@ -109,9 +111,11 @@ def report_page(
         map=drawn_map,
         map_colours=dark,
         machine=machine,
-        made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        made=made_at(),
         seconds=sum(row.wall_s for row in rows),
-        tol=" and ".join(f"{_percent(TOLS[engine])} ({engine})" for engine in engines),
+        tol=" and ".join(
+            f"{_percent(engine_named(engine).validated_to)} ({engine})" for engine in engines
+        ),
         aside=_percent(ASIDE),
         bound=_percent(ERROR_BOUND),
         states=STATES,
@@ -154,8 +158,10 @@ def summary(rows: Sequence[Validation]) -> str:
 
 def _asides(rows: Sequence[StructureRow]) -> str:
     """Say how far inside and beyond each engine was asked."""
-    engines = dict.fromkeys(row.method for row in rows if row.method in ASIDES)
-    return ", ".join(f"{_percent(ASIDES[engine])} by {engine}" for engine in engines)
+    engines = dict.fromkeys(row.method for row in rows if row.method not in STATIC)
+    return ", ".join(
+        f"{_percent(engine_named(engine).aside)} by {engine}" for engine in engines
+    )
 
 
 def _cases(rows: Sequence[Validation]) -> list[Shown]:

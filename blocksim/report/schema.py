@@ -81,6 +81,7 @@ class JointRecord(TypedDict):
     a: str
     b: str
     ends: list[list[float]]
+    gap: float
     angle_deg: float | None
     state: str
     hinge: list[float] | None
@@ -152,12 +153,14 @@ class CheckRecord(CarriedRecord):
     version: str
     method: str
     verdict: Literal["stands", "collapses", "undecided"]
+    proved: bool
     evidence: list[EvidenceRecord]
     reason: str
     problem: ProblemRecord
     load_factor: Number | None
     factor_of_safety: Number | None
     rest: Literal["must", "can", "cannot"] | None
+    rest_goes_on: bool | None
     joints: list[JointRecord]
     mechanism: list[MovementRecord] | None
     shaken: ShakenRecord | None

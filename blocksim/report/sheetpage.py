@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 
 from blocksim.arch import limit
 from blocksim.arch.modes import Mode
 from blocksim.ask.check import Check, check
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
+from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem, plain_arch
@@ -117,7 +117,8 @@ def structure_page(
             },
             notes=problem.notes,
             version=__version__,
-            made=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+            made=made_at(),
+            took="" if is_dated() else f", in {answer.wall_s:.2g} s",
             command=command,
             settings=settings,
             joint_colours=style.JOINTS,

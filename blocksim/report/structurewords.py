@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from blocksim.engines import engine_named
 from blocksim.evidence.verdict import Verdict
-from blocksim.studies.questions import ASIDES, StructureRow
+from blocksim.studies.questions import StructureRow
 
 QUESTIONS = {
     "stands": "does it stand?",
@@ -62,5 +63,5 @@ def error_of(row: StructureRow) -> str:
     if row.error is not None:
         return "none" if abs(row.error) < EXACT else f"{row.error:+.1e}"
     if row.low is not None and row.high is not None:
-        return f"±{ASIDES[row.method] * 100:g}\N{NO-BREAK SPACE}%"
+        return f"±{engine_named(row.method).aside * 100:g}\N{NO-BREAK SPACE}%"
     return "-"

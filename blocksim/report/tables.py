@@ -13,13 +13,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import blocksim
+from blocksim.ask.methods import METHODS
 from blocksim.common.files import AnyPath, json_text, make_folder, write_whole
 from blocksim.common.sheets import sheet_of
+from blocksim.engines import ENGINES, NAMES, engine_named
 from blocksim.report.inlinemap import PAGE
 from blocksim.report.page import report_page
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
-from blocksim.studies.questions import ASIDES, NEAR, SLOWLY, StructureRow
-from blocksim.studies.validate import ASIDE, ERROR_BOUND, TOLS, installed
+from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
+from blocksim.studies.validate import ASIDE, ERROR_BOUND, installed
 from blocksim.view.drawing import save_figure
 from blocksim.view.mapfigure import MapPoint, map_figure
 
@@ -95,7 +97,12 @@ def write_results(
     make_folder(folder)
     records = [as_record(row) for row in rows]
     built = [structure_record(row) for row in structures]
-    settings = {"tol": TOLS, "error_bound": ERROR_BOUND, "aside": ASIDE}
+    asked = [row.engine for row in rows] + [row.method for row in structures]
+    engines = [ENGINES[name] for name in NAMES]
+    engines += [engine_named(name) for name in dict.fromkeys(asked) if name not in METHODS]
+    tols = {engine.name: engine.validated_to for engine in engines}
+    asides = {engine.name: engine.aside for engine in engines}
+    settings = {"tol": tols, "error_bound": ERROR_BOUND, "aside": ASIDE}
     document = {
         "machine": machine(),
         "settings": settings,
@@ -103,7 +110,7 @@ def write_results(
         "disagreements": disagreements(rows),
         "not_asked": [asdict(each) for each in unasked],
         "structures": {
-            "settings": {"aside": ASIDES, "near": NEAR, "slowly": SLOWLY},
+            "settings": {"aside": asides, "near": NEAR, "slowly": SLOWLY},
             "rows": built,
             "not_asked": [asdict(each) for each in structures_unasked],
         },

@@ -17,10 +17,10 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.entries import ExpectEntry
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
+from blocksim.engines import engine_named
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.known import Known
 
-ASIDES = {"direct": 0.001, "pymunk": 0.01, "pybullet": 0.01, "mujoco": 0.01}
 """How far inside and beyond the value expected each engine is asked, relative."""
 SHAKEN = 0.01
 """The same on ground that shakes, for any engine."""
@@ -175,7 +175,7 @@ def _valued(row: StructureRow, known: Known, expected: ExpectEntry) -> Structure
         return _exactly(row, family, value)
     if family.spreading is not None:
         return _slowly(row, family, value)
-    return _aside(row, family, value, ASIDES[row.method] if still else SHAKEN)
+    return _aside(row, family, value, engine_named(row.method).aside if still else SHAKEN)
 
 
 QUESTIONS: dict[str, Question] = {"verdict": _judged, "over": _valued}

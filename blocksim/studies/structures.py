@@ -6,21 +6,18 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import as_completed
 from functools import partial
 
-from blocksim.ask.methods import METHODS, choose, missing
+from blocksim.ask.methods import choose, missing
 from blocksim.blocks.entries import ExpectEntry
-from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
+from blocksim.engines import engine_named
 from blocksim.kinds.files import shipped_structures
 from blocksim.kinds.known import Known, load_known
 from blocksim.studies.agreement import Unasked
-from blocksim.studies.questions import ASIDES, StructureRow, answer
+from blocksim.studies.questions import StructureRow, answer
+from blocksim.studies.validate import usual
 
-USUAL = ("direct", "pymunk")
-"""Engines that are asked where none is named."""
-MOST = {"direct": 1000, "pymunk": 40, "pybullet": 40, "mujoco": 40}
-"""Blocks up to which each engine is asked: the others take minutes for more."""
 SPREAD = "spread"
 
 
@@ -35,7 +32,7 @@ def unasked_structures(
 ) -> list[Unasked]:
     """Tell what `validate_structures` does not ask, and why; arguments as there."""
     found: list[Unasked] = []
-    for engine in USUAL if engines is None else engines:
+    for engine in usual("structures") if engines is None else engines:
         reasons: dict[str, list[str]] = {}
         for known in chosen:
             for expected in known.expect:
@@ -62,8 +59,8 @@ def validate_structures(
     ----------
     chosen : sequence of Known
     engines : iterable of str, optional
-        `USUAL`, as far as they are installed, if left out. `unasked_structures` tells what
-        each is not asked.
+        Those usual for structures, as far as they are installed, if left out.
+        `unasked_structures` tells what each is not asked.
     workers : int
         Processes; 1 runs in this one.
     progress : Progress, optional
@@ -78,9 +75,9 @@ def validate_structures(
     InputError
         If there is no such engine.
     """
-    names = tuple(dict.fromkeys(USUAL if engines is None else engines))
+    names = tuple(dict.fromkeys(usual("structures") if engines is None else engines))
     for name in names:
-        require(name in ASIDES, "methods", name, f"one or more of {', '.join(ASIDES)}")
+        engine_named(name, "methods")
     ask = partial(answers, engines=names)
     if workers == 1:
         rows: list[list[StructureRow]] = []
@@ -108,16 +105,22 @@ def answers(known: Known, engines: Sequence[str]) -> list[StructureRow]:
 
 def _refused(known: Known, expected: ExpectEntry, method: str) -> str:
     """Say why a method is not asked; nothing where it is."""
-    if method == "limit" and known.problem.shaking is None:
-        return ""
-    remedy = missing(METHODS[method])
+    if method == "limit":
+        return "" if known.problem.shaking is None else _beyond(known, method)
+    engine = engine_named(method)
+    remedy = missing(engine)
     if remedy:
         return f"not here: {remedy}"
-    if expected.over == SPREAD and method != "direct":
+    if expected.over == SPREAD and not engine.moves_supports:
         return "it moves no supports"
     blocks = len(known.problem.assembly.blocks)
-    if blocks > MOST.get(method, blocks):
-        return f"more than {MOST[method]} blocks"
+    if blocks > engine.most_blocks:
+        return f"more than {engine.most_blocks} blocks"
+    return _beyond(known, method)
+
+
+def _beyond(known: Known, method: str) -> str:
+    """Say why a method cannot answer what is asked; nothing where it can."""
     try:
         choose(method, problem=known.problem)
     except InputError as error:

@@ -15,21 +15,16 @@ from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.arch.scenario import Scenario, load_scenario, shipped
 from blocksim.ask.bracket import bracket
-from blocksim.ask.methods import METHODS, SPATIAL, missing
+from blocksim.ask.methods import missing
 from blocksim.ask.search import ETA_MAX
-from blocksim.common.checks import require
 from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
-from blocksim.engines import get_engine
+from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.studies.agreement import Unasked, Validation, agree
 
-TOLS = {"direct": 1e-6, "pymunk": 0.001, "pybullet": 0.004, "mujoco": 0.004}
-"""Relative width of each engine's brackets."""
-USUAL = ("pymunk", "pybullet")
-"""Engines that are validated where none is named."""
 ERROR_BOUND = 0.002
 """A bracket whose centre is farther than this from `limit` is a miss."""
 ASIDE = 0.01
@@ -42,22 +37,28 @@ def scenarios(*, quick: bool) -> list[Scenario]:
     return [scenario for scenario in every if scenario.quick or not quick]
 
 
+def usual(part: str) -> tuple[str, ...]:
+    """Return the engines that are asked in a part of `validate` where none is named."""
+    return tuple(name for name in NAMES if part in ENGINES[name].validates)
+
+
 def installed() -> tuple[str, ...]:
-    """Return the usual engines that can run here."""
-    return tuple(name for name in USUAL if missing(METHODS[name]) is None)
+    """Return the usual engines for arches that can run here."""
+    return tuple(name for name in usual("arches") if missing(ENGINES[name]) is None)
 
 
 def unasked(chosen: Sequence[Scenario], engines: Iterable[str] | None = None) -> list[Unasked]:
     """Tell what `validate` does not ask, and why; arguments as there."""
     found: list[Unasked] = []
-    for name in USUAL if engines is None else engines:
-        remedy = missing(METHODS[name])
+    for name in usual("arches") if engines is None else engines:
+        remedy = missing(engine_named(name))
         leaning = tuple(each.name for each in chosen if each.lean)
         if engines is None and remedy:
             every = tuple(each.name for each in chosen)
             found.append(Unasked(engine=name, scenarios=every, why=f"not here: {remedy}"))
-        elif leaning and not METHODS[name].is_spatial:
-            why = f"gravity leans out of the plane: {SPATIAL} sees that"
+        elif leaning and not engine_named(name).is_spatial:
+            able = " or ".join(each for each in NAMES if ENGINES[each].is_spatial)
+            why = f"gravity leans out of the plane: {able} sees that"
             found.append(Unasked(engine=name, scenarios=leaning, why=why))
     return found
 
@@ -95,13 +96,13 @@ def validate(
     """
     names = installed() if engines is None else tuple(dict.fromkeys(engines))
     for name in names:
-        require(name in TOLS, "methods", name, f"one or more of {', '.join(TOLS)}")
+        engine_named(name, "methods")
         get_engine(name)
     jobs = [
         (scenario, engine)
         for scenario in chosen
         for engine in names
-        if METHODS[engine].is_spatial or not scenario.lean
+        if engine_named(engine).is_spatial or not scenario.lean
     ]
     if workers == 1:
         rows: list[Validation] = []
@@ -116,8 +117,16 @@ def validate(
         return [future.result() for future in futures]
 
 
-def validate_one(scenario: Scenario, engine: str) -> Validation:
-    """Ask one scenario's question of one engine and compare."""
+def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> Validation:
+    """Ask one scenario's question of one engine and compare.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    engine : str
+    tol : float, optional
+        Relative width of the bracket; by default what the engine says (`validated_to`).
+    """
     if scenario.expected_verdict is not None and scenario.eta is not None:
         return _judged(scenario, scenario.arch(scenario.eta), engine)
     started = time.perf_counter()
@@ -125,7 +134,7 @@ def validate_one(scenario: Scenario, engine: str) -> Validation:
         made(scenario),
         over="thickness",
         method=engine,
-        tol=TOLS[engine],
+        tol=tol or engine_named(engine).validated_to,
         confirm=False,
         reduce=False,
     )

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 
 from blocksim.studies.chart import Cost, Point, front
 from blocksim.view.drawing import literal
-from blocksim.view.style import FONT, METHODS, QUIET, UNNAMED
+from blocksim.view.style import FONT, QUIET, style_of_method
 
 
 class _Quantity(NamedTuple):
@@ -151,7 +151,7 @@ def _draw_panel(axes: Axes, row: _Row, name: str, peers: Sequence[Point]) -> Non
         line = [p for p in own if (p.method, p.knob) == (method, knob)]
         found = [p for p in line if math.isfinite(p.error)]
         missing = [p for p in line if p not in found]
-        style = METHODS.get(method, UNNAMED)
+        style = style_of_method(method)
         axes.plot(
             [row.x.of(p) for p in found],
             [row.y.of(p) for p in found],
@@ -188,7 +188,7 @@ def _range(row: _Row) -> tuple[float, float]:
 
 def _legend(points: Sequence[Point]) -> list[Line2D]:
     """Tell methods, knobs and marks apart."""
-    styles = {literal(p.method): METHODS.get(p.method, UNNAMED) for p in points}
+    styles = {literal(p.method): style_of_method(p.method) for p in points}
     handles = [
         Line2D([], [], color=style.colour, marker=style.marker, ms=4.5, lw=1.2, label=method)
         for method, style in styles.items()

@@ -24,19 +24,15 @@ from blocksim.view.drawing import (
     round_length,
     words_of,
 )
-from blocksim.view.filmwords import against, fitting, verdict_words
+from blocksim.view.filmwords import against, digits_of, fitting, slowness, verdict_words
 from blocksim.view.planar import PlanarView
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import INK, QUIET, THRUST
 
 ViewName = Literal["2d", "3d"]
-LENGTH = 6.0
-"""How long the motion takes in a film whose slowness is not given, about [s]."""
 BEFORE, AFTER = 0.8, 1.2
 """How long the first and the last frame stand [s]."""
-SLOW = (1, 2, 3, 4, 5, 6, 8)
-"""Slow motion is one of these times a power of ten."""
 TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT = 74.0, 44.0
@@ -98,6 +94,8 @@ class Film:
         a radius of 1, which stands for none given. Then they are in r and sqrt(r/g).
     moves : list of bool
         Whether each recording is seen to move.
+    speed : float
+        Of the fastest corner as it ends [m/s]; 0 where all lie still.
     """
 
     def __init__(
@@ -117,6 +115,7 @@ class Film:
         self.rate = rate
         self._words = [verdict_words(recording, verdict) for recording in recordings]
         self._enlarge = enlarge
+        self._is_mode = verdict is not None
         self._flat = view == "2d"
         self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
         # An arch of which no radius was given is shown in units of it.
@@ -124,9 +123,10 @@ class Film:
             stage.assembly.size != 1 or not stage.is_arch for stage in self._stages
         )
         self.moves = [stage.moves for stage in self._stages]
+        self.speed = max(stage.speed for stage in self._stages)
         self.seconds = self._duration()
-        self.on_ground = any(stage.end < stage.recording.times[-1] for stage in self._stages)
-        self.slow = _slowness(self.seconds) if slow is None else slow
+        self.on_ground = any(stage.sinks < np.inf for stage in self._stages)
+        self.slow = slowness(self.seconds) if slow is None else slow
         self._size = self.height / TALL
         self._panels = self._arrange()
         kinds: dict[ViewName, type[PlanarView | SpatialView]] = {
@@ -149,7 +149,7 @@ class Film:
     def ends_before(self, at: float) -> str:
         """Say when it ends, as the clock shows it, if that is before a time; else ""."""
         shown = self.seconds / self._tick
-        later = at > max(shown, round(shown, _digits(shown)))
+        later = at > max(shown, round(shown, digits_of(shown)))
         return self._clock(self.seconds).removeprefix("t = ") if later else ""
 
     def frame(self, number: int) -> NDArray[np.uint8]:
@@ -282,6 +282,7 @@ class Film:
             facts[1:1] = [count, friction_words(problem.mu)]
         else:
             head = f"{count}   {friction_words(problem.mu)}"
+        facts[1:1] = ["still moving as it ends"] if stage.speed and not self._is_mode else []
         run = stage.recording
         below = printable(f"{', '.join(facts)}   {run.engine} {run.engine_version}")
         x, top, wide = panel.x + 24 * size, self.height, panel.width - 48 * size
@@ -298,7 +299,7 @@ class Film:
         return 1.0 if self.metric else math.sqrt(1 / GRAVITY)
 
     def _clock(self, seconds: float) -> str:
-        digits = _digits(self.seconds / self._tick)
+        digits = digits_of(self.seconds / self._tick)
         unit = "s" if self.metric else "√(r/g)"
         return f"t = {seconds / self._tick:.{digits}f} {unit}"
 
@@ -342,15 +343,3 @@ def _enlarged(recording: Recording, times: float) -> Recording:
 def _unit(recording: Recording) -> float:
     """Seconds in one sqrt(r/g)."""
     return math.sqrt(recording.assembly.size / GRAVITY)
-
-
-def _slowness(seconds: float) -> float:
-    """Slow motion that makes a film about `LENGTH` long, never fast."""
-    wanted = max(1.0, LENGTH / max(seconds, 1e-9))
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return min((step * power for step in (*SLOW, 10)), key=lambda slow: abs(slow - wanted))
-
-
-def _digits(seconds: float) -> int:
-    """Decimals of the clock: thousandths of what is shown."""
-    return max(1, min(6, math.ceil(2 - math.log10(max(seconds, 1e-9)))))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from blocksim.arch import limit
 from blocksim.evidence.motion import MOVED, UNMOVED
 from blocksim.evidence.recording import Recording
@@ -10,6 +12,11 @@ from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import plain_arch
 from blocksim.view.canvas import width_of
 from blocksim.view.drawing import loading_words
+
+LENGTH = 6.0
+"""How long the motion takes in a film whose slowness is not given, about [s]."""
+SLOW = (1, 2, 3, 4, 5, 6, 8)
+"""Slow motion is one of these times a power of ten."""
 
 
 def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
@@ -57,3 +64,15 @@ def _share(ratio: float) -> str:
     off = abs(ratio - 1) * 100
     shown = f"{off:.2g}" if off < 10 else f"{off:.0f}"
     return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness as built"
+
+
+def slowness(seconds: float) -> float:
+    """Slow motion that makes a film about `LENGTH` long, never fast."""
+    wanted = max(1.0, LENGTH / max(seconds, 1e-9))
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return min((step * power for step in (*SLOW, 10)), key=lambda slow: abs(slow - wanted))
+
+
+def digits_of(seconds: float) -> int:
+    """Decimals of the clock: thousandths of what is shown."""
+    return max(1, min(6, math.ceil(2 - math.log10(max(seconds, 1e-9)))))

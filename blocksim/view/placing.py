@@ -111,3 +111,21 @@ def _turned(turns: Array, points: Array) -> Array:
     axis = turns[..., 1:]
     across = 2 * np.cross(axis, points)
     return points + turns[..., :1] * across + np.cross(axis, across)
+
+
+def depth_of(points: Array, outline: Array) -> Array:
+    """How far points are inside convex outlines, below 0 outside.
+
+    Parameters
+    ----------
+    points : (..., 2) float
+    outline : (..., sides, 2) float
+        Counter-clockwise; its leading axes go with those of the points.
+    """
+    along = np.roll(outline, -1, axis=-2) - outline
+    length = np.linalg.norm(along, axis=-1)
+    inward = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    height = ((points[..., None, :] - outline) * inward).sum(axis=-1)
+    # A corner given twice makes a side without length, which bounds nothing.
+    bounds = length > 0
+    return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)

@@ -15,6 +15,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.outlines import signed_area
 from blocksim.common.errors import InputError
+from blocksim.common.later import require_library
 from blocksim.common.words import printable
 from blocksim.view.dimensions import Length, dimensions_of
 from blocksim.view.drawing import HINGES, outer_sides
@@ -54,8 +55,11 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     ------
     InputError
         If a body has more than one outline.
+    MissingPart
+        If ezdxf is not installed.
     """
-    # ezdxf takes a second to import, which nothing else need wait for.
+    require_library("ezdxf", "DXF", "dxf")
+    # It takes a second to import, which nothing else need wait for.
     import ezdxf
 
     document: Any = cast(Any, ezdxf).new("R2010", setup=True)

@@ -2,8 +2,8 @@
 
 Lengths are in units of the assembly's size, which is an arch's radius r, times in units of
 sqrt(size/g). Blocks are shown on their supports where these are known, else on the piers of
-`blocksim.engines.ground`, and above its floor. A film ends with the recording, or when a block
-sinks into the floor, a support, or a pier it does not rest on, as in old recordings.
+`blocksim.engines.ground`, and above its floor. A film ends with the recording, when the last
+block has left the picture, or when one sinks into what it does not rest on (old recordings).
 """
 
 from __future__ import annotations
@@ -13,14 +13,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Joint
+from blocksim.blocks.assembly import SUPPORT, Array, Joint, displacement
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
+from blocksim.evidence.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import plain_arch
 from blocksim.view.archfigure import lines_of, picture_of_arch
 from blocksim.view.drawing import Part, clipped, outer_parts
-from blocksim.view.placing import Placing
+from blocksim.view.placing import Placing, depth_of
 
 FEWEST = 4
 """Sides of a footing, and of a block at least."""
@@ -137,7 +138,16 @@ class Stage:
 
     @cached_property
     def end(self) -> float:
-        """Time at which a block has reached ground or footing, or the recording ends."""
+        """Time at which a block sinks, the last has left the picture, or the recording ends."""
+        # A block that slides on and on leaves a picture in which nothing is to be seen.
+        along = self.recording.poses[..., 0]
+        near = (along > self._low[0] - self._aside) & (along < self._high[0] + self._aside)
+        last = np.flatnonzero(near.any(axis=1))[-1]
+        return min(self.sinks, float(self.recording.times[last]))
+
+    @cached_property
+    def sinks(self) -> float:
+        """Time at which a block sinks into ground or footing, or inf."""
         times = self.recording.times
         depths: list[float] = []
         for frame in range(len(times) if self.moves else 0):
@@ -147,7 +157,7 @@ class Stage:
             if depths[-1] > touch:
                 between = times[frame - 1 : frame + 1]
                 return float(np.interp(touch, depths[-2:], between))
-        return float(times[-1])
+        return np.inf
 
     def _sunk(self, corners: Array) -> float:
         """Deepest that a block is in the ground, or meets a footing of another block."""
@@ -158,8 +168,23 @@ class Stage:
             if not len(others):
                 continue
             for points, around in ((others, footing), (footing, others[:, None])):
-                deepest = max(deepest, float(_depth(points, around).max()))
+                deepest = max(deepest, float(depth_of(points, around).max()))
         return deepest
+
+    @cached_property
+    def speed(self) -> float:
+        """Speed of the fastest corner as it ends [m/s]; 0 where all has lain still a while."""
+        times, poses = self.recording.times, self.recording.poses
+        last = int(np.searchsorted(times, self.end, "right")) - 1
+        if last == 0:
+            return 0.0
+        first = min(int(np.searchsorted(times, float(times[last]) - AT_REST * FRAME)), last - 1)
+        since = displacement(poses[first : last + 1] - poses[last], self.assembly)
+        is_long = first > 0 or bool(self._displaced[: last + 1].max() <= UNMOVED)
+        if is_long and float(since.max()) < UNSEEN:
+            return 0.0
+        step = float(times[last] - times[last - 1]) * self.recording.problem.seconds
+        return float(since[-2]) * self.assembly.size / step
 
     @property
     def moves(self) -> bool:
@@ -187,14 +212,17 @@ class Stage:
         }
         return tuple(state for state in JointState if state in seen - {JointState.CLOSED})
 
+    @property
+    def _aside(self) -> float:
+        return ALONG if self.assembly.supports else FARTHEST
+
     @cached_property
     def swept(self) -> Array:
         """Every corner at every frame that is shown, and of the footings, (k, 3).
 
         Blocks are followed up to `FARTHEST` or `ALONG` beyond where they were at rest.
         """
-        footings = np.concatenate(self.footings)
-        footings = np.append(footings, [[self.middle, self.ground]], axis=0)
+        footings = np.concatenate([*self.footings, [[self.middle, self.ground]]])
         half = self.depth / 2
         solid = [np.pad(footings, ((0, 0), (0, 1)), constant_values=z) for z in (-half, half)]
         rest = np.concatenate([self._placing.corners(0, 0, 0.0).reshape(-1, 3), *solid])
@@ -202,11 +230,10 @@ class Stage:
             -1, 3
         )
         low, high = rest.min(axis=0), rest.max(axis=0)
-        aside = ALONG if self.assembly.supports else FARTHEST
         bounded = np.clip(
             moved,
-            [self._low[0] - aside, low[1], low[2] - FARTHEST],
-            [self._high[0] + aside, *(high[1:] + FARTHEST)],
+            [self._low[0] - self._aside, low[1], low[2] - FARTHEST],
+            [self._high[0] + self._aside, *(high[1:] + FARTHEST)],
         )
         return np.concatenate([rest, bounded])
 
@@ -321,21 +348,3 @@ class Stage:
             loose = ~held[:blocks] | (lowest < self.ground + SUNK)
             rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
         return parted, np.minimum(rubble[before], rubble[after])
-
-
-def _depth(points: Array, outline: Array) -> Array:
-    """How far points are inside convex outlines, below 0 outside.
-
-    Parameters
-    ----------
-    points : (..., 2) float
-    outline : (..., sides, 2) float
-        Counter-clockwise; its leading axes go with those of the points.
-    """
-    along = np.roll(outline, -1, axis=-2) - outline
-    length = np.linalg.norm(along, axis=-1)
-    inward = np.stack([-along[..., 1], along[..., 0]], axis=-1)
-    height = ((points[..., None, :] - outline) * inward).sum(axis=-1)
-    # A corner given twice makes a side without length, which bounds nothing.
-    bounds = length > 0
-    return np.where(bounds, height / np.where(bounds, length, 1.0), np.inf).min(axis=-1)

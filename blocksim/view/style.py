@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from blocksim.arch.modes import Mode
-from blocksim.ask import methods as ways
+from blocksim.ask.methods import METHODS
 from blocksim.blocks.joints import JointState
 from blocksim.evidence.verdict import Verdict
 
@@ -37,13 +37,17 @@ MODES = {
     Mode.RS: Style("#AA4499", "#efd8ec", "D"),
     Mode.R: Style("#332288", "#d8d3ea", "P"),
 }
-METHODS = {
-    name: Style(method.colour, method.tint, method.marker)
-    for name, method in ways.METHODS.items()
-    if name != "theory"
-}
-"""Of methods, where they are compared; each method's file says them."""
 UNNAMED = Style("#000000", "#ffffff", "*")
+
+
+def style_of_method(name: str) -> Style:
+    """Return the style of a method, where they are compared; each method's file says it."""
+    if name not in METHODS:
+        return UNNAMED
+    method = METHODS[name]
+    return Style(method.colour, method.tint, method.marker)
+
+
 MISS = "#c00000"
 
 VERDICTS = {

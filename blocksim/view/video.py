@@ -6,16 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
 from typing import BinaryIO, Protocol
 
-import av
 import numpy as np
-from av.video.reformatter import Colorspace
 from numpy.typing import NDArray
 from PIL import Image
 
 from blocksim.common.checks import require
+from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.progress import Progress, silent
 from blocksim.evidence.recording import Recording
@@ -146,6 +146,11 @@ def _require_bounded(film: Frames, kind: str) -> None:
 
 
 def _mp4(film: Frames, file: BinaryIO, progress: Progress) -> None:
+    if find_spec("av") is None:
+        raise MissingPart("mp4", "pip install av, or film as .gif")
+    import av
+    from av.video.reformatter import Colorspace
+
     with av.open(file, "w", format="mp4") as container:
         options = {"crf": QUALITY, "preset": "veryfast"}
         stream = container.add_stream("libx264", rate=film.rate, options=options)

@@ -46,18 +46,16 @@ def order(errors):
 def test_a_block_slides_down_a_slope(mu):
     slope, time = math.radians(35), 0.5
     fall = math.sin(slope) - mu * math.cos(slope)
-    errors = []
     for step in STEPS:
         assembly, along = standing_block(1.0, 0.2, slope)
         world = world_of(assembly, mu, step)
         start = world.poses()
         world.advance(round(time / step))
         moved = world.poses() - start
-        errors.append(abs(moved[0, :2] @ along - fall * time**2 / 2))
-        # The velocity is exact, and nothing else moves.
+        # Way and velocity are exact, and nothing else moves.
+        assert moved[0, :2] @ along == pytest.approx(fall * time**2 / 2, abs=1e-8)
         assert world.velocities[0, :2] @ along == pytest.approx(fall * time, abs=1e-8)
         assert abs(moved[0, 2]) < 1e-9
-    assert order(errors) == pytest.approx(1.0, abs=0.02)
 
 
 def test_a_block_stays_on_a_slope_it_can_hold():
@@ -71,7 +69,6 @@ def test_a_block_stays_on_a_slope_it_can_hold():
 def test_a_sliding_block_stops_where_friction_has_used_its_energy():
     mu, speed = 0.4, 0.3
     way = speed**2 / (2 * mu)
-    errors = []
     for step in STEPS:
         assembly, along = standing_block(1.0, 0.2)
         world = world_of(assembly, mu, step)
@@ -79,8 +76,9 @@ def test_a_sliding_block_stops_where_friction_has_used_its_energy():
         world.push(np.array([[speed, 0.0, 0.0]]))
         world.advance(round(1.0 / step))
         assert np.abs(world.velocities).max() < 1e-12
-        errors.append(abs((world.poses() - start)[0, :2] @ along - way))
-    assert order(errors) == pytest.approx(1.0, abs=0.3)
+        # It stops within a step, at most this far off.
+        error = abs((world.poses() - start)[0, :2] @ along - way)
+        assert error < mu * step**2 / 8 + 1e-8
 
 
 def test_a_block_rocks_about_its_corner():
@@ -102,7 +100,8 @@ def test_a_block_rocks_about_its_corner():
         errors.append(abs(-world.poses()[0, 2] - exact))
         assert world.quality().penetration < 10 * step**2
     assert exact > 0.1
-    assert order(errors) == pytest.approx(1.0, abs=0.1)
+    assert errors[0] < 1e-4
+    assert order(errors) == pytest.approx(2.0, abs=0.1)
 
 
 def test_a_rocking_block_loses_energy_at_the_impact_only_as_housner_says():
@@ -170,4 +169,5 @@ def test_two_bars_collapse_as_their_feet_slide_apart():
         errors.append(abs(turned[0] - exact))
         assert world.quality().penetration < 10 * step**2
     assert exact < -0.04
-    assert order(errors) == pytest.approx(1.0, abs=0.1)
+    # Less than 2e-5 of the turn at any step; gaps of 1e-7 count as none.
+    assert max(errors) < 1e-6

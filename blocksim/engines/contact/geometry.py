@@ -30,6 +30,8 @@ DEEPEST = 0.05
 WIDEST = 0.98
 """Cosine of the angle between two faces from which they no longer form a joint: other faces
 of the blocks may then touch first."""
+BEFORE = 0.03
+"""Turn by which a corner is given up before another edge comes down: no step goes farther."""
 INWARDS = np.array([1.0, -1.0])
 """Along a joint, from its inner and from its outer end."""
 
@@ -72,9 +74,10 @@ class Geometry:
         self._moves = np.where(sides == SUPPORT, 0.0, [[-1.0], [1.0]]).T
         self._corners = np.flatnonzero(joints.is_corner)
         self._carried_by_after = joints.carrier[self._corners, None] == 1
-        self._turns = np.array(
-            [turns_of(assembly, int(index)) for index in self._corners]
-        ).reshape(-1, 2)
+        turns = np.array([turns_of(assembly, int(index)) for index in self._corners]).reshape(
+            -1, 2
+        )
+        self._turns: Array = turns - np.minimum(turns / 2, BEFORE)
 
     def touch(self, poses: Array) -> tuple[Touch, NDArray[np.bool_]]:
         """Find the contacts, and which joints still are joints.

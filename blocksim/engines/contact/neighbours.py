@@ -53,7 +53,8 @@ class Neighbours:
         self._arms[:, 2] = assembly.reach / assembly.size
         self._assembly, self._count = assembly, len(assembly.blocks)
         self._holds = np.ones(len(assembly.joints), dtype=np.bool_)
-        self._loose = False
+        self._loose = self._listed = False
+        self._firm = self._joints.touch(self._start)[1]
         none = np.zeros(0, dtype=np.int64)
         self._meet = none, none
         # Pairs of polygons that may meet, once blocks have moved.
@@ -81,6 +82,8 @@ class Neighbours:
             moved = poses * self._arms - self._start
             way = float(np.abs(moved).max())
             self._loose = way > TIGHT and way > self.free
+            # A joint may end before: where a corner has turned onto its face.
+            self._loose |= bool((self._firm & ~holds).any())
             if not self._loose:
                 return touch
         margin = NEAR + 2 * fastest()
@@ -101,6 +104,18 @@ class Neighbours:
         return Touch(
             gap=np.concatenate([touch.gap[self._holds], met.gap[close]]),
             rows=np.concatenate([touch.rows[self._holds], met.rows[close]]),
+        )
+
+    def again(self, poses: Array) -> Touch:
+        """Find the contacts of the pairs found last at other poses, as `touch`."""
+        touch, _ = self._joints.touch(poses)
+        if not self._listed:
+            return touch
+        met = self._polygons.touch(poses[self.owner], *self._meet)
+        held = self._holds
+        return Touch(
+            gap=np.concatenate([touch.gap[held], met.gap]),
+            rows=np.concatenate([touch.rows[held], met.rows]),
         )
 
     def _strangers(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -172,6 +187,7 @@ class Neighbours:
 
     def _list(self) -> None:
         """List joints that hold, then pairs of polygons that meet."""
+        self._listed = True
         held, (before, after) = self._holds, self._meet
         owner = np.append(self.owner, SUPPORT)
         count = len(self.owner)

@@ -1,0 +1,242 @@
+"""Random problems at the edges of what is asked: every verdict is held to its proof.
+
+Random problems (`random_problems`) and piles of boxes up to a million times unlike each other
+are changed: their coordinates are rounded to 3 to 12 decimals, weights spread over nine
+decades, joints get a friction of their own from 0 to without bound, and dead loads that do not
+turn act off centre. Each verdict by limit analysis has to have a proof that `blocksim.verify`
+accepts, which shares no code with what found it.
+
+`python -m analysis.random_proofs OUT` writes `random_proofs.csv`, a row a problem.
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import math
+import time
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.random import Generator
+
+from analysis.command import run
+from analysis.random_problems import Case, drawn
+from blocksim import Arch
+from blocksim.ask.check import check
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
+from blocksim.blocks.problem import Load, Problem
+from blocksim.common.errors import InputError
+from blocksim.limit.proof import proof_record
+from blocksim.verify import verify
+
+SEED = 35
+MOST = 16
+"""Blocks of a problem, at most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """What was said of a problem, and whether its proof holds."""
+
+    index: int
+    kind: str
+    blocks: int
+    verdict: str
+    proved: bool
+    verified: bool
+    margin: float
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """What a run came to."""
+
+    asked: int
+    proved: int
+    refused: int
+    """Proofs that `verify` does not accept."""
+    open: int
+    stands: int
+
+
+def edge(index: int) -> tuple[str, Problem]:
+    """Draw a problem at the edges of what is asked."""
+    for attempt in itertools.count():
+        random = np.random.default_rng((SEED, index, attempt))
+        try:
+            kind, problem = _begun(index, random)
+            return kind, _changed(problem, random)
+        except InputError:
+            continue  # rounded away
+    raise AssertionError
+
+
+def _begun(index: int, random: Generator) -> tuple[str, Problem]:
+    group = index % 4
+    if group == 0:
+        return "pile", pile(random)
+    if group == 1 and random.random() < 0.3:
+        arch = Arch(
+            half_angle=math.radians(random.uniform(15, 160)),
+            eta=float(10 ** random.uniform(-2, 0)),
+            voussoirs=3,
+        )
+        return "three voussoirs", arch.problem(_friction(random) or 0.5)
+    asked = drawn(Case(int(random.integers(10**6)), MOST))
+    return asked.question.kind, asked.problem
+
+
+def pile(random: Generator) -> Problem:
+    """Boxes of 1 m to a thousandth of a millimetre, on the ground or on each other."""
+    blocks, joints, tops = list[Block](), list[Joint](), [(SUPPORT, -1e3, 1e3, 0.0)]
+    for index in range(int(random.integers(2, 12))):
+        width, slender = 10 ** random.uniform(-6, 0), random.uniform(0.2, 4)
+        below, left, right, low = tops[random.integers(len(tops))]
+        # Each bears one at most: what stands beside another on it might meet it.
+        if below != SUPPORT:
+            tops.remove((below, left, right, low))
+            x = random.choice([left, right]) + random.uniform(-0.7, 0.7) * width
+            x = min(max(x, left - width / 3), right + width / 3)
+        else:
+            x = 3.0 * index
+        start, end = max(left, x - width / 2), min(right, x + width / 2)
+        if end - start < width / 100:
+            continue
+        height = width * slender
+        corners = np.array(
+            [[x - width / 2, low], [x + width / 2, low],
+             [x + width / 2, low + height], [x - width / 2, low + height]]
+        )  # fmt: skip
+        mass = width * height
+        blocks.append(
+            Block(
+                vertices=corners,
+                centre=np.array([x, low + height / 2]),
+                mass=mass,
+                inertia=mass * (width**2 + height**2) / 12,
+                depth=1.0,
+            )
+        )
+        joints.append(
+            Joint(
+                before=below,
+                after=len(blocks) - 1,
+                inner=np.array([end, low]),
+                outer=np.array([start, low]),
+            )
+        )
+        tops.append((len(blocks) - 1, x - width / 2, x + width / 2, low + height))
+    assembly = Assembly(blocks=tuple(blocks), joints=tuple(joints), size=1.0)
+    problem = Problem(assembly=assembly, mu=float(random.uniform(0, 1)))
+    return problem.tilted(float(random.choice([0.0, random.uniform(-0.6, 0.6)])))
+
+
+def _friction(random: Generator) -> float:
+    kind = random.random()
+    if kind < 0.1:
+        return 0.0
+    return math.inf if kind < 0.25 else float(10 ** random.uniform(-2, 1))
+
+
+def _changed(problem: Problem, random: Generator) -> Problem:
+    """Round it, and change weights, friction and loads, each in one case of three."""
+    assembly = problem.assembly
+    blocks, joints = list(assembly.blocks), list(assembly.joints)
+    if random.random() < 1 / 3:
+        decimals = int(random.integers(3, 13))
+        if min(np.ptp(each.vertices, axis=0).min() for each in blocks) > 20 * 10.0**-decimals:
+            blocks = [_rounded(each, decimals) for each in blocks]
+            joints = [
+                replace(
+                    each,
+                    inner=np.round(each.inner, decimals),
+                    outer=np.round(each.outer, decimals),
+                )
+                for each in joints
+            ]
+            joints = [each for each in joints if each.is_corner or each.length > 0]
+    if random.random() < 1 / 3:
+        heavy = 10 ** random.uniform(-9, 0, len(blocks))
+        blocks = [
+            replace(each, mass=each.mass * times, inertia=each.inertia * times)
+            for each, times in zip(blocks, heavy.tolist(), strict=True)
+        ]
+    if random.random() < 1 / 3:
+        joints = [replace(each, friction=_friction(random)) for each in joints]
+    dead = list(problem.dead)
+    if random.random() < 1 / 3:
+        on = int(random.integers(len(blocks)))
+        share = float(10 ** random.uniform(-3, 1)) * blocks[on].mass * 9.81
+        angle = random.uniform(-math.pi, math.pi)
+        corners: Array = blocks[on].vertices
+        point = random.dirichlet(np.ones(len(corners))) @ corners
+        force = share * np.array([math.cos(angle), math.sin(angle)])
+        dead.append(Load(force=force, blocks=(on,), point=point))
+    made = replace(assembly, blocks=tuple(blocks), joints=tuple(joints))
+    return replace(problem, assembly=made, dead=tuple(dead), origin={})
+
+
+def _rounded(block: Block, decimals: int) -> Block:
+    return replace(
+        block,
+        vertices=np.round(block.vertices, decimals),
+        centre=np.round(block.centre, decimals),
+        parts=tuple(np.round(part, decimals) for part in block.parts),
+    )
+
+
+def asked(index: int) -> Row:
+    """Ask about a problem, and check the proof."""
+    kind, problem = edge(index)
+    started = time.process_time()
+    found = check(problem, method="limit")
+    proof = found.proof
+    seconds = time.process_time() - started
+    holds = False
+    if proof is not None:
+        try:
+            verify(json.loads(json.dumps(proof_record(proof))))
+            holds = proof.claim == found.verdict.value
+        except ValueError:
+            pass
+    return Row(
+        index=index,
+        kind=kind,
+        blocks=len(problem.assembly.blocks),
+        verdict=found.verdict.value,
+        proved=proof is not None,
+        verified=holds,
+        margin=math.nan if found.static is None else found.static.margin,
+        seconds=round(seconds, 4),
+    )
+
+
+def main(out: Path, *, quick: bool = False) -> Result:
+    """Ask 10,000 problems, or 40."""
+    rows = [asked(index) for index in range(40 if quick else 10_000)]
+    with (out / "random_proofs.csv").open("w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(Row.__dataclass_fields__)
+        table.writerows([list(vars(row).values()) for row in rows])
+    return counted(rows)
+
+
+def counted(rows: list[Row]) -> Result:
+    """Count what was said."""
+    told = Counter(row.verdict for row in rows)
+    return Result(
+        asked=len(rows),
+        proved=sum(row.verified for row in rows),
+        refused=sum(row.proved and not row.verified for row in rows),
+        open=sum(not row.proved for row in rows),
+        stands=told["stands"],
+    )
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,42 @@
+"""What gaps and overlaps of a drawing, closed at joints, may do to an answer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from blocksim.blocks.assembly import Assembly, Joint
+from blocksim.blocks.rows import column
+
+LEAST = 0.1
+"""Share of its length that a joint keeps where blocks are shrunk."""
+
+
+def closed_gaps(assembly: Assembly) -> dict[int, float]:
+    """Gaps that were closed, below 0 where blocks overlap [m], by the index of the joint."""
+    gaps = np.array(column(assembly.joints, "gap"), dtype=float)
+    return {int(index): float(gaps[index]) for index in np.flatnonzero(gaps)}
+
+
+def resized(assembly: Assembly, sign: int) -> Assembly:
+    """Return blocks grown (1) or shrunk (-1): joints longer or shorter by the gaps they close.
+
+    Weights stay as they are. A corner on a face has no length that could change.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    sign : 1 or -1
+    """
+    joints = tuple(_resized(joint, sign) for joint in assembly.joints)
+    return replace(assembly, joints=joints)
+
+
+def _resized(joint: Joint, sign: int) -> Joint:
+    if joint.gap == 0 or joint.is_corner:
+        return joint
+    by = max(sign * abs(joint.gap), -(1 - LEAST) / 2 * joint.length) * joint.tangent
+    inner, outer = joint.inner - by, joint.outer + by
+    # Its faces end where it does: they are grown with it.
+    return replace(joint, inner=inner, outer=outer, faces=None)

@@ -1,0 +1,137 @@
+"""Polygons as regions of the plane: cut into convex parts, near each other, overlapping.
+
+The one file that imports shapely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.outlines import is_convex, joined
+from blocksim.blocks.touching import Faces, Slack
+from blocksim.common.checks import require
+
+MOST_NEAR = 100
+"""Pairs of faces near each other, for each face: blocks have a handful."""
+FIRST_LOOK, LONGEST_LOOK = 4, 16_384
+"""Polygons whose neighbours are looked up at once: few at first, for an error is found soon."""
+
+
+def is_simple(outline: Array) -> bool:
+    """Tell whether a polygon does not cross itself."""
+    return bool(shapely.Polygon(outline).is_valid)
+
+
+def convex_parts(outline: Array, tolerance: float) -> list[Array]:
+    """Cut a counter-clockwise polygon that does not cross itself into convex ones."""
+    if is_convex(outline, 0.0) or is_convex(outline, tolerance):
+        return [outline]
+    triangles = shapely.constrained_delaunay_triangles(shapely.Polygon(outline))
+    pieces = [_corners(piece) for piece in shapely.get_parts(triangles)]
+    return list(joined(pieces, 0.0))
+
+
+def overlap_each_other(parts: Sequence[Array], tolerance: float) -> bool:
+    """Tell whether polygons that move as one overlap each other."""
+    regions = [shapely.Polygon(part) for part in parts]
+    twice = sum(region.area for region in regions) - shapely.union_all(regions).area
+    around = sum(region.length for region in regions)
+    return twice > tolerance * around
+
+
+def hull(parts: Sequence[Array]) -> Array:
+    """Return the convex hull of polygons, counter-clockwise."""
+    return _corners(shapely.MultiPoint(np.concatenate(parts)).convex_hull)
+
+
+def _corners(region: Any) -> Array:
+    """Return the corners of shapely's polygon, counter-clockwise."""
+    turned: Any = shapely.orient_polygons(region)
+    return shapely.get_coordinates(turned.exterior)[:-1]
+
+
+def overlaps(
+    parts: Sequence[Sequence[Array]], fixed: NDArray[np.bool_], slack: Slack, most: int
+) -> list[tuple[int, int, float]]:
+    """Find bodies that overlap by more than `slack.close`, in order; not more than asked for.
+
+    Parameters
+    ----------
+    parts : sequence of sequences of (k, 2) float
+        Convex ones of each body.
+    fixed : (bodies,) bool
+        Those may overlap each other.
+    slack : Slack
+    most : int
+        Stop there: the first is enough to refuse a drawing.
+
+    Returns
+    -------
+    list of (one, other, depth)
+        Twice the common area over its perimeter [m].
+    """
+    owner = np.repeat(np.arange(len(parts)), [len(each) for each in parts])
+    each_one = [part for each in parts for part in each]
+    which = np.repeat(np.arange(len(each_one)), [len(part) for part in each_one])
+    rings: Any = cast(Any, shapely).linearrings(np.concatenate(each_one), indices=which)
+    regions: Any = shapely.polygons(rings)
+    boxes: Any = cast(Any, shapely).bounds(regions)
+    tree, found = shapely.STRtree(regions), list[tuple[int, int, float]]()
+    begin, step = 0, FIRST_LOOK
+    while begin < len(regions) and len(found) < most:
+        one, other = tree.query(regions[begin : begin + step], predicate="intersects")
+        one = one + begin
+        real = (owner[one] < owner[other]) & ~(fixed[owner[one]] & fixed[owner[other]])
+        one, other = one[real], other[real]
+        close: Any = slack.at(owner[one], owner[other]).close
+        # No overlap is deeper than the box around it is narrow.
+        low, high = np.maximum(boxes[one], boxes[other]), np.minimum(boxes[one], boxes[other])
+        wide = (high[:, 2:] - low[:, :2]).min(axis=1) > close
+        one, other, close = (cast(Any, each)[wide] for each in (one, other, close))
+        common: Any = shapely.intersection(regions[one], regions[other])
+        area, around = cast(Any, shapely).area(common), cast(Any, shapely).length(common)
+        depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
+        deep = np.flatnonzero(depth > close)
+        found += [(int(owner[one[k]]), int(owner[other[k]]), float(depth[k])) for k in deep]
+        begin, step = begin + step, min(4 * step, LONGEST_LOOK)
+    return sorted(found)[:most]
+
+
+def near_faces(faces: Faces, fixed: NDArray[np.bool_], slack: Slack) -> NDArray[np.int64]:
+    """Find pairs of faces of different bodies, not both fixed, within `slack.near`.
+
+    Returns
+    -------
+    (pairs, 2) int
+        Each pair once.
+
+    Raises
+    ------
+    InputError
+        If more faces are near each other than blocks have.
+    """
+    lines: Any = shapely.linestrings(np.stack([faces.start, faces.end], axis=1))
+    tree, pairs = shapely.STRtree(lines), list[NDArray[np.int64]]()
+    reach = slack.near[faces.body]
+    reach = np.where(np.isfinite(reach), reach, reach[np.isfinite(reach)].max(initial=0.0))
+    # What is fixed looks for nothing: all it touches looks for it.
+    looking = np.flatnonzero(~fixed[faces.body])
+    count, allowed = 0, MOST_NEAR * (len(lines) + MOST_NEAR)
+    begin, step = 0, FIRST_LOOK
+    while begin < len(looking):
+        here = looking[begin : begin + step]
+        at, other = tree.query(lines[here], predicate="dwithin", distance=reach[here])
+        one = here[at]
+        a, b = faces.body[one], faces.body[other]
+        real = (a != b) & (fixed[b] | (one < other))
+        pairs.append(np.stack([one[real], other[real]], axis=1).astype(np.int64))
+        count += len(pairs[-1])
+        require(count <= allowed, "blocks", f"{count} pairs of faces", "apart from each other")
+        begin, step = begin + step, min(4 * step, LONGEST_LOOK)
+    return np.concatenate(pairs)

@@ -1,0 +1,350 @@
+"""Blocks in motion: smooth between impacts, impacts where they are.
+
+Between impacts a step is of second order (Moreau and Jean, theta = 1/2): forces are those of
+its middle, contact and friction hold for the velocities at its end, and blocks go on by the
+mean of the velocities at both ends. What is open is left alone. Where it has closed by the end
+of the step, the step ends where it closes, and an impact follows: velocities jump there, as
+contact and friction ask, and nothing moves meanwhile. What approaches so slowly that the moment
+makes no difference closes within a step of first order, but does not pass. What overlaps all
+the same is pushed apart, which changes no velocity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.engines.contact import ContactProblem, Neighbours, Solution, Touch
+from blocksim.engines.contact.coulomb import OPEN, STICKS
+from blocksim.engines.contact.events import first_closing
+
+RESIDUAL = 1e-7
+UNSOLVED = 1e-4
+"""Residual of a step that is not taken."""
+PRECISION = 1e-12
+"""Yield of contacts left in a moving step [g]."""
+HALVINGS = 3
+"""How often a step that is not solved is halved."""
+CLOSED = 1e-12
+"""Gap that counts as none: round-off of the corners' places."""
+BENT = 1e-7
+"""Most of a gap that counts as none at a contact that was closed. A step goes straight where
+blocks turn, which leaves gaps as large as the square of its way. Those of blocks that turn as
+one contradict each other: no contact forces close them all in the next step."""
+SHUT, PRESSED = 1e-6, 1e-4
+"""Gap up to which a contact that moves slowly is closed, and one that pressed [size]."""
+SLOWLY = 1e-3
+"""Velocity of blocks [sqrt(size g)]; they hit with more than the accuracy's share of theirs."""
+MATTERS = 1e-3
+"""Way of what hits in a step, over the accuracy, up to which the moment makes no difference."""
+SHARP = 1e-2
+"""Error of that moment, over the accuracy, as a share of the time in which gravity makes up for
+the velocity of the impact."""
+LOCATED = 1e-10
+"""Overlap at an impact that is none [size]."""
+ROUNDS, MOST_PARTS = 5, 4
+"""Most looks for one moment, and most impacts in a step, before it is one of first order."""
+LEAST = 1e-9
+"""Share of a step that is none."""
+SHORT = 0.1
+"""Share of the usual step below which a step tells nothing of accelerations."""
+REGAIN = 1.0
+"""Share of a small gap or overlap that is made up for in a step."""
+DEEP = 1e-5
+"""Overlap that is pushed apart at once [size]."""
+FAR = 1e3
+"""Velocity that a contact taken for open cannot lose in a step, over those there are."""
+
+
+class Stepping:
+    """Poses and velocities of blocks, carried on by steps.
+
+    Parameters
+    ----------
+    problem : Problem
+    accuracy : float
+        Share by which motion may be off.
+    """
+
+    def __init__(self, problem: Problem, accuracy: float) -> None:
+        self._asked, assembly = problem, problem.assembly
+        self._mass = assembly.masses
+        self._accuracy = accuracy
+        self._mu, self._friction = problem.mu, problem.friction
+        self._reach = assembly.reach / assembly.size
+        self._neighbours = Neighbours(assembly)
+        self._keys = self._neighbours.keys
+        self._joints = len(assembly.joints)
+        self._poses: Array = assembly.built[:-1]
+        self._problem = self._new_problem()
+        self._looked: Array = self._poses
+        self._velocities: Array = np.zeros_like(self._poses)
+        self._turning, self._time = problem.turns_pull, 0.0
+        self._free = self._still = problem.pull() / self._mass
+        self._solution: Solution | None = None
+        self._speeding = np.zeros_like(self._poses)
+        self._usual = self._residual = self._penetration = 0.0
+        self._way: float = 0.0
+
+    def _move(self, step: float) -> None:
+        """Go on for a time, from impact to impact."""
+        self._usual = left = step
+        parts = 0
+        while left > LEAST * step:
+            if self._residual > UNSOLVED:
+                # A step that cannot be solved was the last: the blocks stay.
+                return
+            left -= self._part(left, located=parts < MOST_PARTS)
+            parts += 1
+
+    def _part(self, step: float, *, located: bool) -> float:
+        """Take a step, or what of it comes before the first impact; return its length."""
+        before = vars(self).copy()
+        passing, halvings = self._smooth(step), HALVINGS
+        while halvings and self._residual > max(RESIDUAL, before["_residual"]):
+            vars(self).update(before)
+            step, halvings = step / 2, halvings - 1
+            passing = self._smooth(step)
+        if not passing.any():
+            if self._residual <= UNSOLVED:
+                self._push_apart()
+            return step
+        if located and self._fastest(passing) * step > MATTERS * self._accuracy:
+            taken = self._to_impact(before, step, passing)
+            if taken is not None:
+                return taken
+        vars(self).update(before)
+        if self._closing(step):
+            self._push_apart()
+        return step
+
+    def _to_impact(
+        self, before: dict[str, object], step: float, passing: Passing
+    ) -> float | None:
+        """Take a step up to the first impact; return its length, None if none is found."""
+        whole = step
+        for _ in range(ROUNDS):
+            speed = self._fastest(passing)
+            near = max(LOCATED, SHARP * self._accuracy * speed**2)
+            (gap, rate), (later, at_end) = (
+                (one[passing], two[passing]) for one, two in (self._begins, self._ends)
+            )
+            step = first_closing(gap + near / 2, rate, later + near / 2, at_end, step)
+            vars(self).update(before)
+            if step < LEAST * whole:
+                # What touches and approaches at the start hits there.
+                self._look(whole)
+                return 0.0 if self._impact(near) else None
+            passing = self._smooth(step) & (self._end.gap < -near)
+            if self._residual > RESIDUAL:
+                return None
+            if not passing.any():
+                return step if self._impact(near) else None
+        return None
+
+    def _fastest(self, passing: Passing) -> float:
+        """Return the largest velocity with which contacts pass."""
+        return -float(self._ends[1][passing].min())
+
+    def _smooth(self, step: float) -> Passing:
+        """Take a step in which what is open stays open; tell what would have closed."""
+        self._drive(step)
+        speeding = self._speeding
+        self._looked = self._poses + step / 2 * (self._velocities + step / 4 * speeding)
+        self._pull()
+        self._shake(step)
+        touch = self._touch(self._looked, step)
+        start = self._neighbours.again(self._poses)
+        rate = self._rates(start.rows, self._velocities)
+        shut = self._is_shut(start.gap, rate[:, :2])
+        rates = self._rates(touch.rows, self._velocities)
+        rates += self._rates(self._turn(start, touch, step), self._velocities + step * speeding)
+        gap = np.where(np.abs(start.gap) > self._closed(touch), start.gap, 0.0)
+        rates[:, :2] += REGAIN * np.maximum(gap, -DEEP) / max(step, self._usual)
+        rates[:, :2][~shut] += FAR * (1 + float(np.abs(rates).max(initial=0.0)))
+        solution = self._solve(touch, rates / step, PRECISION)
+        self._shut = shut
+        self._begins = start.gap, rate[:, :2]
+        if not solution.residual <= UNSOLVED:
+            return np.zeros_like(shut)
+        self._advance(step, step * solution.acceleration, 0.5)
+        if step > SHORT * self._usual:
+            self._speeding = solution.acceleration
+        self._end = end = self._neighbours.again(self._poses)
+        self._ends = end.gap, self._rates(end.rows, self._velocities)[:, :2]
+        passes = end.gap < np.minimum(0.0, start.gap) - CLOSED
+        return ~shut & passes & (self._ends[1] < 0)
+
+    def _look(self, step: float) -> None:
+        """See what is closed, and what approaches, where the blocks are."""
+        self._touch(self._poses, step)
+        self._end = self._neighbours.again(self._poses)
+        rate = self._rates(self._end.rows, self._velocities)[:, :2]
+        self._ends = self._end.gap, rate
+        self._shut = self._is_shut(*self._ends)
+
+    def _is_shut(self, gap: Array, rate: Array) -> Passing:
+        """Tell which contacts are closed, and not about to hit or to leave."""
+        fastest = np.append(self._speeds(), 0.0)[self._pairs].max(axis=1, keepdims=True)
+        stays = np.abs(rate) <= self._accuracy * np.maximum(fastest, SLOWLY)
+        stays &= gap <= SHUT
+        if self._solution is not None:
+            stays |= (self._solution.contacts != OPEN) & (gap <= PRESSED)
+        return stays
+
+    def _speeds(self) -> Array:
+        """Return the largest velocity of each block's corners, at most, shape (blocks,)."""
+        speed: Array = np.hypot(*self._velocities[:, :2].T)
+        return speed + np.abs(self._velocities[:, 2]) * self._reach
+
+    def _turn(self, start: Touch, middle: Touch, step: float) -> Array:
+        """Return by how much rows change from the middle to the end of a step."""
+        turn = middle.rows - start.rows
+        # A contact that has gone to another corner has not turned.
+        most = 2 * step * float(np.abs(self._velocities).max(initial=0.0)) + SHUT
+        turn[np.abs(turn).max(axis=(1, 2)) > most] = 0.0
+        if len(self._smooth_joints):
+            turn[self._smooth_joints, 2:] = 0.0
+        return turn
+
+    def _impact(self, near: float) -> bool:
+        """Let velocities jump so that nothing closes further; tell whether they could."""
+        gap, rate = self._ends
+        shut = self._shut | ((gap <= near) & (rate < 0))
+        hits = shut & ~self._shut
+        if not hits.any():
+            return True
+        speed = -float(rate[hits].min())
+        touch = self._end
+        if len(self._smooth_joints):
+            touch.rows[self._smooth_joints, 2:] = 0.0
+        rates = self._rates(touch.rows, self._velocities) / speed
+        rates[:, :2][~shut] += FAR * (1 + float(np.abs(rates).max()))
+        last = self._solution
+        assert last is not None  # noqa: S101
+        guess = replace(
+            last,
+            acceleration=np.zeros_like(self._poses),
+            forces=np.zeros_like(last.forces),
+            contacts=np.where(hits, STICKS, last.contacts).astype(np.int8),
+        )
+        found = self._problem.solve(
+            touch.rows, rates, np.zeros_like(self._poses), guess, PRECISION
+        )
+        if not found.residual <= RESIDUAL:
+            return False
+        self._residual = max(self._residual, found.residual)
+        self._velocities = self._velocities + speed * found.acceleration
+        self._solution = replace(last, contacts=found.contacts)
+        return True
+
+    def _closing(self, step: float) -> bool:
+        """Take a step of first order, if it is solved: what is open closes, not passes."""
+        self._drive(step)
+        self._looked = self._poses + step / 2 * self._velocities
+        self._pull()
+        self._shake(step)
+        touch = self._touch(self._looked, step)
+        rates = self._rates(touch.rows, self._velocities)
+        gap = touch.gap - step / 2 * rates[:, :2]
+        rates[:, :2] += np.where(gap > self._closed(touch), gap, 0.0) / step
+        solution = self._solve(touch, rates / step, PRECISION)
+        if not solution.residual <= UNSOLVED:
+            return False
+        self._advance(step, step * solution.acceleration, 1.0)
+        self._end = self._neighbours.again(self._poses)
+        return True
+
+    def _advance(self, step: float, gained: Array, share: float) -> None:
+        """Go on with velocities that gain, and with a share of that on the way."""
+        way = step * (self._velocities + share * gained)
+        self._poses = self._poses + way
+        self._velocities = self._velocities + gained
+        self._way = max(self._way, float(np.abs(way).max()))
+
+    def _push_apart(self) -> None:
+        """Move blocks that overlap apart, as little as contact and friction allow."""
+        gap = self._end.gap
+        deep = -float(gap.min(initial=0.0))
+        if deep > DEEP and self._solution is not None:
+            rates = np.zeros((len(gap), 4))
+            rates[:, :2] = gap / deep
+            nothing = np.zeros_like(self._poses)
+            guess = replace(self._solution, acceleration=nothing)
+            found = self._problem.solve(self._end.rows, rates, nothing, guess, PRECISION)
+            if found.residual <= UNSOLVED:
+                self._poses = self._poses + deep * found.acceleration
+                deep = -float(self._neighbours.again(self._poses).gap.min())
+        self._penetration = max(self._penetration, deep)
+
+    def _closed(self, touch: Touch) -> Array:
+        """Return gaps that count as none, shape (joints, 2)."""
+        none = np.full(touch.gap.shape, CLOSED)
+        if self._solution is not None:
+            none[self._solution.contacts != OPEN] += min(self._way**2, BENT)
+        return none
+
+    def _drive(self, step: float) -> None:
+        """Set the velocities of what is moved; here nothing is."""
+
+    def _pull(self) -> None:
+        """Find the accelerations without contact, which change as blocks with loads turn."""
+        if self._turning:
+            self._free = self._asked.pull(self._looked) / self._mass
+
+    def _shake(self, step: float) -> None:
+        """Add what the ground's acceleration does in a step to the accelerations."""
+        if self._asked.shaking is not None:
+            start, self._time = self._time, self._time + step
+            across = self._asked.shaken(start, self._time) - self._asked.gravity
+            self._free = (self._free if self._turning else self._still).copy()
+            self._free[:, :2] += across[:2]
+
+    def _touch(self, poses: Array, step: float) -> Touch:
+        """Find the contacts; what is known of those that stay is kept."""
+
+        def reach() -> float:
+            fastest = max(1.0, float(np.abs(self._free[:, :2]).max()))
+            return step * (float(self._speeds().max()) + step * fastest)
+
+        touch = self._neighbours.touch(poses, reach)
+        keys = self._neighbours.keys
+        if keys is not self._keys and not np.array_equal(keys, self._keys):
+            if self._solution is not None:
+                self._solution = self._solution.carried(self._keys, keys)
+            self._keys = keys
+            self._problem = self._new_problem()
+        # Friction never sees a slip that is not in the rows.
+        if len(self._smooth_joints):
+            touch.rows[self._smooth_joints, 2:] = 0.0
+        return touch
+
+    def _new_problem(self) -> ContactProblem:
+        before, after = self._neighbours.before, self._neighbours.after
+        self._pairs = np.stack([before, after], axis=1)
+        held = self._keys < self._joints
+        friction = np.full(len(self._keys), self._mu)
+        friction[held] = self._friction[self._keys[held]]
+        self._smooth_joints = np.flatnonzero(friction == 0)
+        return ContactProblem(before, after, self._mass, friction, self._poses[:, :2])
+
+    def _rates(self, rows: Array, velocities: Array) -> Array:
+        """Return velocities along rows, shape (joints, 4)."""
+        of_joints = self._problem.bands.of_joints(velocities.ravel())
+        return np.matmul(rows, of_joints[:, :, None])[:, :, 0]
+
+    def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
+        self._rows = touch.rows
+        solution = self._problem.solve(touch.rows, rates, self._free, self._solution, precision)
+        self._solution = solution
+        # Unlike max, this keeps nan.
+        self._residual = float(np.maximum(self._residual, solution.residual))
+        return solution
+
+
+Passing = NDArray[np.bool_]
+"""Of contacts, shape (joints, 2)."""

@@ -1,0 +1,160 @@
+"""Forces that balance to round-off, made to balance exactly: what is left is handed on."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
+from blocksim.common.later import Library
+from blocksim.limit.exact import NOTHING, Exact, Vector
+
+if TYPE_CHECKING:
+    from scipy import linalg
+else:
+    linalg = Library("scipy.linalg")
+
+Column = Sequence[int] | Sequence[Fraction]
+"""Force x, y and moment."""
+
+
+def handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -> Vector | None:
+    """Hand on what is left on each block through the strongest joints to a support.
+
+    None where the joints on the way cannot take it.
+    """
+    parts, left = parts[:], [wrench[:] for wrench in left]
+    room = _room(exact, forces)
+    for block, joints in reversed(_ways(exact, room)):
+        if not any(left[block]):
+            continue
+        (x, y), far = exact.ends[joints[0]]
+        if (x, y) == far:
+            if not _by_parts(exact, parts, left, room, block, joints):
+                return None
+            continue
+        joint = joints[0]
+        u, v, moment = left[block]
+        before, after = exact.sides[joint]
+        other, sign = (before, -1) if after == block else (after, 1)
+        cx, cy = exact.centres[block]
+        # On the block after the joint: about the first end.
+        about = moment - (x - cx) * v + (y - cy) * u
+        p, q = exact.normals[joint]
+        square = sign * (p * p + q * q)
+        second = -about / square
+        first = (u * p + v * q) / square - second
+        half = (v * p - u * q) / (2 * square)
+        for at, more in enumerate((first, half, second, half), 4 * joint):
+            parts[at] += more
+        if other != SUPPORT:
+            (ox, oy), wrench = exact.centres[other], left[other]
+            wrench[0] += u
+            wrench[1] += v
+            wrench[2] += moment + (cx - ox) * v - (cy - oy) * u
+    return parts
+
+
+def _by_parts(
+    exact: Exact,
+    parts: Vector,
+    left: list[Vector],
+    room: Array,
+    block: int,
+    joints: list[int],
+) -> bool:
+    """Hand on what is left on a block by the three parts of its joints with most room."""
+    cx, cy = exact.centres[block]
+    places: list[tuple[int, int, int]] = []
+    columns: list[tuple[int, int, int]] = []
+    for joint in joints:
+        (p, q), (before, after) = exact.normals[joint], exact.sides[joint]
+        sign, other = (1, before) if after == block else (-1, after)
+        for end in {exact.ends[joint][0]: 0, exact.ends[joint][1]: 1}.values():
+            x, y = exact.ends[joint][end]
+            for k, (u, v) in enumerate(((sign * p, sign * q), (-sign * q, sign * p))):
+                places.append((4 * joint + 2 * end + k, other, joint))
+                columns.append((u, v, (x - cx) * v - (y - cy) * u))
+    able = np.array([room[joint] for _, _, joint in places])
+    rows = np.array([[float(each) for each in column] for column in columns]).T
+    rows = rows * able
+    rows /= np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1e-300)
+    if rows.shape[1] < PLANAR:
+        return False
+    qr: Any = linalg.qr
+    chosen: list[int] = qr(rows, pivoting=True, mode="economic")[2][:PLANAR].tolist()
+    a, b, c = (columns[each] for each in chosen)
+    whole = _triple(a, b, c)
+    if not whole:
+        return False
+    goal = [-each for each in left[block]]
+    found = _triple(goal, b, c), _triple(a, goal, c), _triple(a, b, goal)
+    left[block] = [NOTHING] * PLANAR
+    for each, above in zip(chosen, found, strict=True):
+        (at, other, _), (u, v, moment), more = (
+            places[each],
+            columns[each],
+            Fraction(above) / whole,
+        )
+        parts[at] += more
+        if other != SUPPORT:
+            (ox, oy), wrench = exact.centres[other], left[other]
+            wrench[0] -= more * u
+            wrench[1] -= more * v
+            wrench[2] -= more * (moment + (cx - ox) * v - (cy - oy) * u)
+    return True
+
+
+def _triple(a: Column, b: Column, c: Column) -> Fraction | int:
+    """Return the determinant of three columns."""
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - b[0] * (a[1] * c[2] - a[2] * c[1])
+        + c[0] * (a[1] * b[2] - a[2] * b[1])
+    )
+
+
+def _room(exact: Exact, forces: Array) -> Array:
+    """Return by how much forces may change at each joint before they leave their cones."""
+    mu = exact.problem.friction[:, None]
+    finite = np.where(np.isinf(mu), 0.0, mu)
+    pressure, friction = forces[..., 0], np.abs(forces[..., 1])
+    room = np.where(np.isinf(mu), pressure, np.minimum(finite * pressure - friction, pressure))
+    return np.maximum(room.min(axis=1), 0.0)
+
+
+def _ways(exact: Exact, room: Array) -> list[tuple[int, list[int]]]:
+    """Return each block after those on its widest way to a support, and its joints with them.
+
+    The widest joint is the first; corners come last.
+    """
+    at: dict[int, list[int]] = {}
+    for joint, sides in enumerate(exact.sides):
+        for side in sides:
+            at.setdefault(side, []).append(joint)
+    seen, ways = {SUPPORT}, list[tuple[int, list[int]]]()
+    heap = list[tuple[bool, float, int, int]]()
+
+    def reach(block: int) -> None:
+        for joint in at.get(block, ()):
+            one, other = exact.sides[joint]
+            far = other if one == block else one
+            if far not in seen:
+                corner = exact.ends[joint][0] == exact.ends[joint][1]
+                heapq.heappush(heap, (corner, -float(room[joint]), joint, far))
+
+    reach(SUPPORT)
+    while heap:
+        _, _, joint, block = heapq.heappop(heap)
+        if block not in seen:
+            seen.add(block)
+            others = [
+                each for each in at[block] if each != joint and seen >= {*exact.sides[each]}
+            ]
+            ways.append((block, [joint, *others]))
+            reach(block)
+    return ways

@@ -1,0 +1,178 @@
+"""Joints of drawings as people have them: rounded, with gaps and overlaps, or far too many."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from running import inside
+
+from blocksim import Assembly, InputError, Verdict, ask, structure_of
+from blocksim.blocks import regions
+
+Corners = list[tuple[float, float]]
+
+
+def bricks(courses: int, count: int, long: float = 0.25, high: float = 0.125) -> list[Corners]:
+    """Return a bed, and a wall in running bond on it."""
+    wide = count * long
+    polygons = [[(-wide, -high), (2 * wide, -high), (2 * wide, 0.0), (-wide, 0.0)]]
+    for course in range(courses):
+        for k in range(count - course % 2):
+            x, y = (k + course % 2 / 2) * long, course * high
+            polygons.append([(x, y), (x + long, y), (x + long, y + high), (x, y + high)])
+    return polygons
+
+
+def drawn(
+    polygons: Sequence[Corners], degrees: float, decimals: int, mu: float = 0.6, **more: object
+) -> dict[str, Any]:
+    """Return a structure file of polygons turned by an angle, its coordinates rounded."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    blocks = [
+        {
+            "id": at,
+            "vertices": [
+                [round(x * c - y * s, decimals), round(x * s + y * c, decimals)]
+                for x, y in polygon
+            ],
+            "fixed": at == 0,
+        }
+        for at, polygon in enumerate(polygons)
+    ]
+    return {"friction": mu, "blocks": blocks, **more}
+
+
+def asked(table: dict[str, Any], tmp_path: Path, *options: str) -> dict[str, Any]:
+    """Ask a file by command."""
+    path = tmp_path / "wall.json"
+    path.write_text(json.dumps(table))
+    done = inside("check", str(path), "--method", "limit", "--json", *options)
+    assert done.returncode in {0, 1}, done.stderr
+    return json.loads(done.stdout)
+
+
+# A wall slides where its bed is steeper than friction: tan 20 deg is 0.364, tan 33 deg 0.649.
+ANGLES = [1, 10, 20, 45]
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+@pytest.mark.parametrize("decimals", [3, 4, 5])
+def test_a_wall_of_few_decimals_is_answered(tmp_path: Path, degrees: int, decimals: int):
+    said = asked(drawn(bricks(4, 4), degrees, decimals), tmp_path)
+    assert said["problem"]["joints"] == 32
+    assert said["verdict"] == ("stands" if degrees < 30 else "collapses")
+    assert f"rounded to {10.0**-decimals:g} m" in said["reason"]
+    assert "the same with blocks grown and shrunk" in said["reason"]
+    gaps = [abs(joint["gap"]) for joint in said["joints"]]
+    assert 0 < max(gaps) < 1.5 * 10.0**-decimals
+
+
+def _answers(degrees: int, decimals: int) -> tuple[Verdict, int]:
+    problem = structure_of(drawn(bricks(4, 4), degrees, decimals))
+    return ask.check(problem, method="limit").verdict, len(problem.assembly.joints)
+
+
+@pytest.mark.long
+def test_walls_at_every_rotation_have_one_verdict_whatever_their_decimals():
+    """460 files."""
+    for degrees in range(46):
+        found = {_answers(degrees, decimals) for decimals in range(3, 13)}
+        assert found == {_answers(degrees, 15)}, degrees
+        assert {joints for _, joints in found} == {32}
+
+
+@settings(max_examples=15, deadline=None)
+@given(degrees=st.integers(0, 45), decimals=st.integers(3, 12))
+def test_rounding_changes_no_verdict(degrees: int, decimals: int):
+    assert _answers(degrees, decimals) == _answers(degrees, 15)
+
+
+@pytest.mark.parametrize("degrees", range(0, 40, 4))
+def test_walls_of_two_metres_surveyed_to_ten_micrometres(degrees: float):
+    wall = structure_of(drawn(bricks(8, 8), degrees + 0.37, 5))
+    exact = structure_of(drawn(bricks(8, 8), degrees + 0.37, 15))
+    sides = [[(j.before, j.after) for j in each.assembly.joints] for each in (wall, exact)]
+    assert sides[0] == sides[1]
+
+
+def spread(polygons: Sequence[Corners], by: float) -> list[Corners]:
+    """Move each brick up and to the right by as much as its number says: gaps, no overlaps."""
+    return [
+        [
+            (x + by * (polygon[0][0] / 0.25), y + by * (polygon[0][1] / 0.125 + 1))
+            for x, y in polygon
+        ]
+        if at
+        else polygon
+        for at, polygon in enumerate(polygons)
+    ]
+
+
+@pytest.mark.parametrize("gap", [0.003, -0.003])
+def test_gaps_and_overlaps_are_closed_as_asked_and_listed(tmp_path: Path, gap: float):
+    table = drawn(spread(bricks(3, 3), gap), 7.0, 15)
+    path = tmp_path / "wall.json"
+    path.write_text(json.dumps(table))
+    refused = inside("check", str(path))
+    assert refused.returncode == 2
+    assert "close the gap" in refused.stderr or "--tolerance" in refused.stderr
+    said = asked(table, tmp_path, "--tolerance", "0.005")
+    assert said["verdict"] == "stands"
+    assert said["problem"]["joints"] == 16
+    assert "within 0.005 m (as asked)" in said["reason"]
+    level = [joint["gap"] for joint in said["joints"]]
+    assert level == pytest.approx([gap] * len(level), rel=1e-6)
+    assert f"{1000 * gap:+.3g} mm" in said["reason"]
+    # Blocks may be told apart only as far as they are wide: a tolerance of a metre closes less.
+    assert "within 0.01" in asked(table, tmp_path, "--tolerance", "1")["reason"]
+
+
+def test_the_answer_names_what_closing_can_do(tmp_path: Path):
+    """A brick on the edge of a bed: its weight is 2 mm beyond the edge, or within it."""
+    bed = [(-1.0, -0.2), (0.1231, -0.2), (0.1231, 0.0), (-1.0, 0.0)]
+    brick = [(0.0, 0.003), (0.25, 0.003), (0.25, 0.128), (0.0, 0.128)]
+    said = asked(drawn([bed, brick], 0.0, 15), tmp_path, "--tolerance", "0.005")
+    assert said["verdict"] == "collapses"
+    assert "leaves it open: stands with blocks grown" in said["reason"]
+    assert "3 mm at most" in said["reason"]
+
+
+def test_tolerances_are_those_of_the_blocks_at_the_joint():
+    """A pebble's gap of a hundredth of it is a gap, however large the pier beside it."""
+    pier: Corners = [(2.0, 0.0), (12.0, 0.0), (12.0, 10.0), (2.0, 10.0)]
+    bed: Corners = [(-1.0, -1.0), (13.0, -1.0), (13.0, 0.0), (-1.0, 0.0)]
+    size, gap = 1e-3, 1 / 3e6
+    pebble: Corners = [(0.0, gap), (size, gap), (size, gap + size), (0.0, gap + size)]
+    with pytest.raises(InputError, match="block 2 = 'held by nothing'"):
+        Assembly.of_polygons([bed, pier, pebble], fixed=[0])
+    larger = [(x / size, y - gap) for x, y in pebble]
+    assert len(Assembly.of_polygons([bed, pier, larger], fixed=[0]).joints) == 2
+
+
+def _counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    pairs: list[int] = []
+    intersection: Any = regions.shapely.intersection
+
+    def counted(one: Any, other: Any) -> Any:
+        pairs.append(len(one))
+        return intersection(one, other)
+
+    monkeypatch.setattr(regions.shapely, "intersection", counted)
+    return pairs
+
+
+def test_the_first_overlap_is_enough(monkeypatch: pytest.MonkeyPatch):
+    """2,000 squares on one place overlap in two million pairs, of which few are looked at."""
+    pairs = _counted(monkeypatch)
+    square = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+    with pytest.raises(InputError, match="overlap of blocks 0 and 1"):
+        Assembly.of_polygons([square] * 2000, fixed=[0])
+    assert sum(pairs) <= 4 * 2000

@@ -1,0 +1,145 @@
+"""How right a motion by `direct` is, at its usual step and finer.
+
+Truth: blocks that rock from impact to impact (`rocking`), integrated to 1e-10.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from rocking import G, rocks
+
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.shaking import Shaking, table_of
+from blocksim.engines.direct import ENGINE, Blocks
+from blocksim.evidence.shaken import shake
+from blocksim.evidence.verdict import Verdict
+from blocksim.kinds.files import structure_of
+
+LONG = pytest.mark.long
+
+
+def block(width: float = 1.0, height: float = 4.0, mu: float = 2.0) -> Problem:
+    """A block on a floor."""
+    floor = {"id": 0, "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]], "fixed": True}
+    corners = [[0, 0], [width, 0], [width, height], [0, height]]
+    return structure_of({"friction": mu, "blocks": [floor, {"id": 1, "vertices": corners}]})
+
+
+def pushed(problem: Problem, width: float, height: float, spin: float, step: float) -> Blocks:
+    """A block that begins to turn about its lower left corner, with a velocity [rad/s]."""
+    world = Blocks(problem, replace(ENGINE.rule(problem.assembly), step=step))
+    world.hold(1)
+    turn = spin * problem.seconds
+    half = np.array([width, height]) / 2 / problem.assembly.size
+    world.push(np.array([[-turn * half[1], turn * half[0], turn]]))
+    return world
+
+
+def peaks(world: Blocks, count: int) -> list[float]:
+    """Largest rotations between impacts, of parabolas through the steps' ends."""
+    turns = [0.0, 0.0]
+    found: list[float] = []
+    while len(found) < count:
+        world.advance(1)
+        turns.append(abs(float(world.poses()[0, 2])))
+        one, two, three = turns[-3:]
+        if one < two >= three:
+            bend = one - 2 * two + three
+            found.append(two - (three - one) ** 2 / (8 * bend))
+    return found
+
+
+@pytest.mark.parametrize(("duration", "amplitude"), [(1.0, 0.3766), (0.8, 0.475), (0.8, 1.3)])
+def test_a_sine_that_overturns_is_said_to(duration: float, amplitude: float) -> None:
+    shaking = Shaking(shape="full-sine", amplitude=amplitude, duration=duration)
+
+    def ground(time: float) -> float:
+        inside = 0 <= time <= duration
+        return amplitude * math.sin(2 * math.pi * time / duration) if inside else 0.0
+
+    assert rocks(1.0, 4.0, ground, shaken=duration).overturns
+    seen = shake(replace(block(), shaking=shaking), "direct")
+    assert seen.verdict is not Verdict.STANDS
+
+
+def record(peak: float) -> tuple[np.ndarray, np.ndarray]:
+    """Ten seconds in 4,000 samples."""
+    random, times = np.random.default_rng(1), np.linspace(0.0, 10.0, 4000)
+    found = np.zeros_like(times)
+    for often in np.linspace(0.5, 8.0, 40):
+        size, phase = random.normal(), random.uniform(0, 6.28)
+        found += size * np.sin(2 * math.pi * often * times + phase)
+    found *= np.sin(math.pi * times / 10.0) ** 0.5
+    return times, found * peak / np.abs(found).max()
+
+
+@LONG
+@pytest.mark.parametrize("peak", [0.3, 0.35, 0.4])
+def test_a_record_rocks_a_block_as_far_as_housner_says(peak: float) -> None:
+    times, ground = record(peak)
+    wanted = rocks(
+        1.0,
+        4.0,
+        lambda now: float(np.interp(now, times, ground, 0.0, 0.0)),
+        shaken=10.0,
+        until=12.0,
+        longest=0.005,
+    )
+    problem = replace(block(), shaking=table_of(times, ground))
+    seen = shake(problem, "direct", until=12.0 / problem.seconds)
+    assert len(wanted.impacts) > 50
+    assert seen.rocking.rotation == pytest.approx(wanted.largest, rel=0.03)
+
+
+def test_a_rocking_block_keeps_what_an_impact_leaves() -> None:
+    """Free rocking from 0.15 rad: peaks after 1 and 3 impacts, to 0.1 %."""
+    alpha, radius = math.atan2(1.0, 4.0), math.hypot(1.0, 4.0) / 2
+    squared = 3 * G / (4 * radius)
+    spin = math.sqrt(2 * squared * (math.cos(alpha - 0.15) - math.cos(alpha)))
+    found = peaks(pushed(block(), 1.0, 4.0, spin, 0.025), 4)
+    assert found[0] == pytest.approx(0.15, rel=1e-4)
+    speed, kept = spin, 1 - 1.5 * math.sin(alpha) ** 2
+    for peak in found[1:]:
+        speed *= kept
+        wanted = alpha - math.acos(math.cos(alpha) + speed**2 / (2 * squared))
+        assert peak == pytest.approx(wanted, rel=1e-3)
+
+
+@LONG
+def test_a_hundred_impacts_keep_the_amplitude() -> None:
+    """A slender block, which keeps 0.994 of its velocity in each: within 0.1 %."""
+    width, height = 0.25, 4.0
+    alpha, radius = math.atan2(width, height), math.hypot(width, height) / 2
+    squared = 3 * G / (4 * radius)
+    spin = math.sqrt(2 * squared * (math.cos(alpha - 0.03) - math.cos(alpha)))
+    found = peaks(pushed(block(width), width, height, spin, 0.025), 101)
+    speed = spin * (1 - 1.5 * math.sin(alpha) ** 2) ** 100
+    wanted = alpha - math.acos(math.cos(alpha) + speed**2 / (2 * squared))
+    assert found[100] == pytest.approx(wanted, rel=1e-3)
+
+
+def test_a_finer_step_refines_what_moves_slowly() -> None:
+    """A block that topples from a thousandth beyond its balance: errors fall fourfold."""
+    width, height, angle = 1.0, 4.0, 0.001
+    problem = block()
+    # Gravity leans a little more than the diagonal.
+    problem = problem.tilted(math.atan2(width, height) + angle)
+    squared = 3 * G / (4 * math.hypot(width, height) / 2)
+    time = 2.0
+    turned: list[float] = []
+    for step in (0.02, 0.01, 0.005):
+        world = Blocks(problem, replace(ENGINE.rule(problem.assembly), step=step))
+        world.hold(1)
+        frames = round(time / step)
+        world.advance(frames)
+        turned.append(abs(float(world.poses()[0, 2])))
+    # angle'' = p^2 sin(angle - ...), which is a hyperbola's while it is small.
+    rate = math.sqrt(squared) * problem.seconds
+    wanted = angle * (math.cosh(rate * time) - 1)
+    errors = np.abs(np.array(turned) - wanted)
+    assert errors[0] < 1e-3 * wanted
+    assert (turned[0] - turned[1]) / (turned[1] - turned[2]) == pytest.approx(4.0, rel=0.3)

@@ -1,0 +1,269 @@
+"""No name of a stranger is obeyed by a terminal, a page, a drawing, a sheet or a viewer."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import unicodedata
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+from running import inside
+
+from blocksim import load_recording, load_structure, structure_of
+from blocksim.common.sheets import sheet_of
+from blocksim.common.words import printable
+from blocksim.report.chart import read_points, write_points
+from blocksim.studies.chart import Point
+from blocksim.view.chartfigure import chart_figures
+from blocksim.view.explorer import explorer_page
+from blocksim.view.explorer.results import Result
+
+NASTY = (
+    "wall\x1b[2J\x1b[HSTANDS", "\x1b]52;c;cm0gLXJmIC8=\x07", "a\nSTANDS  (limit, 0.01 s)\r\n",
+    "\x00\x08\x7f\x80\x9b2J", "\u202eSDNATS\u2066", "<script>alert(1)</script>", "]]><!-- -->",
+    "=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\uff1d1+1", "$\\frac{$", "$$", "%%d^J\\U+001B",
+    "0\nSECTION", "[red]:smile:[/]", "{{ 7 * 7 }}", "a\u2028b\u0085c", "'\"&;`", "\ud7ff\ufffe",
+)  # fmt: skip
+TEXT = st.sampled_from(NASTY) | st.text(
+    st.characters(exclude_categories=["Cs"])
+    | st.sampled_from("\x1b\x07\r\n\x9b=+-@$%^\\<&\"'"),
+    min_size=1,
+    max_size=40,
+)
+PLAIN = "a"
+# Fonts have no letters for most of it.
+pytestmark = pytest.mark.filterwarnings("ignore:Glyph")
+KEPT = {"suppress_health_check": list(HealthCheck), "deadline": None}
+
+
+def table(text: str) -> dict[str, Any]:
+    """A structure in which everything that has a name is called so."""
+
+    def box(x: float, y: float) -> list[list[float]]:
+        return [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]]
+
+    return {
+        "title": text, "source": text, "notes": [text], "friction": 0.6,
+        "blocks": [
+            {"id": f"{text}0", "fixed": True, "vertices": box(0, -1)},
+            {"id": f"{text}1", "vertices": box(0, 0)},
+            {"id": f"{text}2", "vertices": box(0, 1)},
+        ],
+    }  # fmt: skip
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "structure.json"
+    path.write_text(json.dumps(table(text)))
+    return path
+
+
+def obeys(text: str) -> list[str]:
+    """Characters that a terminal or a viewer would obey, without line ends."""
+    return [c for c in text if not c.isprintable() and unicodedata.category(c) != "Zs"]
+
+
+def require_plain(said: str) -> None:
+    assert said.endswith("\n")
+    assert not [line for line in said.split("\n") if obeys(line)]
+
+
+class Tags(HTMLParser):
+    """The elements of a page, and what is written in it."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: Any) -> None:  # noqa: ARG002 - as called
+        inner = {"path", "g", "use", "defs", "symbol", "rect", "clippath", "text", "tspan"}
+        if tag not in inner:  # of pictures: letters are paths
+            self.tags.append(tag)
+
+
+def require_page(page: str, usual: str) -> None:
+    assert not [line for line in page.split("\n") if obeys(line)]
+    assert Tags(page).tags == Tags(usual).tags
+
+
+def cells_of(sheet: str) -> Iterable[list[str]]:
+    return csv.reader(io.StringIO(sheet, newline=""))
+
+
+def require_sheet(sheet: str, rows: int) -> None:
+    found = list(cells_of(sheet))
+    assert len(found) == rows
+    assert not [line for line in sheet.split("\n") if obeys(line)]
+    for cell in (each for row in found for each in row):
+        # \N{FULLWIDTH EQUALS SIGN} and its like are taken for their kin.
+        if unicodedata.normalize("NFKC", cell).lstrip()[:1] in tuple("=+-@"):
+            float(cell)
+
+
+@given(text=st.text())
+def test_printable_text_is_one_line_as_long_as_it_was(text: str) -> None:
+    shown = printable(text)
+    assert len(shown) == len(text)
+    assert not obeys(shown)
+    assert printable(shown) == shown
+    kept = [a == b for a, b in zip(text, shown, strict=True) if a.isprintable()]
+    assert all(kept)
+
+
+@settings(max_examples=12, **KEPT)
+@given(text=TEXT)
+def test_lines(text: str, tmp_path: Path) -> None:
+    usual = inside("check", str(written(tmp_path, PLAIN)))
+    done = inside("check", str(written(tmp_path, text)))
+    assert (done.returncode, done.stderr) == (usual.returncode, "")
+    require_plain(done.stdout)
+    # It neither adds lines, nor changes the first, which has the verdict.
+    assert done.stdout.count("\n") == usual.stdout.count("\n")
+    first, known = (
+        re.sub(r"[\d.]+ s", "", each.stdout.split("\n")[0]) for each in (done, usual)
+    )
+    assert first == known
+
+
+@settings(max_examples=8, **KEPT)
+@given(text=TEXT)
+def test_json(text: str, tmp_path: Path) -> None:
+    done = inside("check", str(written(tmp_path, text)), "--json")
+    require_plain(done.stdout)
+    assert json.loads(done.stdout)["problem"]["title"] == text
+
+
+@settings(max_examples=1, **KEPT)
+@given(text=TEXT)
+@example(text="$\\frac{$")
+@example(text="%%d^J\\U+001B")
+def test_sheets_and_reports(text: str, tmp_path: Path) -> None:
+    def made(name: str, called: str) -> bytes:
+        kind = "report" if name.endswith("html") else "render"
+        done = inside(kind, str(written(tmp_path, called)), "--out", str(tmp_path / name))
+        assert (done.returncode, done.stderr) == (0, "")
+        require_plain(done.stdout)
+        return (tmp_path / name).read_bytes()
+
+    svg = made("a.svg", text).decode()
+    ET.fromstring(svg)  # noqa: S314 - our own
+    assert not obeys(svg.replace("\n", ""))
+    require_page(made("a.html", text).decode(), made("a.html", PLAIN).decode())
+    entities = []
+    for called in (text, PLAIN):
+        made("a.dxf", called)
+        space = ezdxf.readfile(tmp_path / "a.dxf").modelspace()
+        entities.append([each.dxftype() for each in space])
+        words = [each.dxf.text for each in space if each.dxftype() == "TEXT"]
+        assert not obeys("".join(words))
+        assert not [word for word in words if re.search(r"%%|\^[^ ]|\\", word)]
+    assert entities[0] == entities[1]
+
+
+@settings(max_examples=1, **KEPT)
+@given(text=TEXT)
+@example(text="$$ $x$ \x1b")
+def test_recordings(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    words = ("--method", "direct", "--seconds", "0.05", "--out", str(path))
+    done = inside("simulate", str(written(tmp_path, text)), *words)
+    assert (done.returncode, done.stderr) == (0, "")
+    require_plain(done.stdout)
+    for kind in ("gltf", "csv", "json", "png"):
+        out = tmp_path / f"a.{kind}"
+        done = inside("render", str(path), "--out", str(out), *(
+            ("--height", "200") if kind == "png" else ()
+        ))  # fmt: skip
+        assert (done.returncode, done.stderr) == (0, "")
+        require_plain(done.stdout)
+    model = json.loads((tmp_path / "a.gltf").read_text())
+    names = [each["name"] for each in model["nodes"]] + [model["extras"]["title"]]
+    assert not obeys("".join(names))
+    assert not obeys((tmp_path / "a.json").read_text().replace("\n", ""))
+    frames = load_recording(path).times.size
+    require_sheet((tmp_path / "a.csv").read_text(), 1 + 2 * frames)
+
+
+@settings(max_examples=3, **KEPT)
+@given(text=TEXT)
+def test_notebooks(text: str) -> None:
+    made = [structure_of(table(each)) for each in (text, PLAIN)]
+    page, usual = (each._repr_html_() for each in made)
+    require_page(page, usual)
+    assert not obeys(repr(made[0]))
+
+
+@given(cells=st.lists(TEXT | st.floats() | st.integers() | st.none(), min_size=1))
+def test_sheets_of_cells(cells: list[Any]) -> None:
+    found = list(cells_of(sheet_of(["a"] * len(cells), [cells, cells]).decode()))
+    require_sheet(sheet_of(["a"] * len(cells), [cells]).decode(), 2)
+    for cell, read in zip(cells, found[1], strict=True):
+        if isinstance(cell, float):
+            assert read == repr(cell)
+        elif isinstance(cell, str):
+            assert read.removeprefix("'") == printable(cell).removeprefix("'")
+    assert found[1] == found[2]
+
+
+@pytest.mark.parametrize("name", ["a\x1b[2Jb", "a\nwrote b", "\u202ea", "[red]", "=1"])
+def test_names_of_files(name: str, tmp_path: Path) -> None:
+    source = written(tmp_path, PLAIN)
+    name = f"{name}.json"
+    done = inside("convert", str(source), "--out", str(tmp_path / name))
+    assert (done.returncode, done.stderr) == (0, "")
+    require_plain(done.stdout)
+    first, note, *_ = done.stdout.split("\n")
+    assert first.startswith(f"wrote {tmp_path}")
+    assert first.endswith(".json: 2 blocks, 1 support, 2 joints")
+    assert note == f"  {PLAIN}"
+    assert load_structure(tmp_path / name).title == PLAIN
+
+
+@settings(max_examples=1, **KEPT)
+@given(text=TEXT)
+@example(text="$\\frac{$")
+def test_points_of_other_programs(text: str, tmp_path: Path) -> None:
+    times = {"processor_s": (1.0,), "wall_s": (1.0,)}
+    point = Point(
+        case=text, method=text, knob="tolerance", value=0.1, error=0.1, low=None, high=None,
+        undecided=0, work=1.0, **times,
+    )  # fmt: skip
+    path = tmp_path / "points.json"
+    write_points([point], path)
+    read = read_points(path)
+    assert not obeys(read[0].case + read[0].method)
+    for figure in chart_figures(read).values():
+        figure.savefig(io.BytesIO(), format="svg")
+
+
+def test_results_on_the_explorer() -> None:
+    def page(text: str) -> str:
+        result = Result(
+            scenario=text, engine=text, weight="centreline", alpha=90.0, mu=0.7, voussoirs=9,
+            eta=0.1, nothing_stands=False, mode=None, miss=text, found=text,
+        )  # fmt: skip
+        return explorer_page([result], text)
+
+    require_page(page("".join(NASTY)), page(PLAIN))
+
+
+def test_a_crash_says_nothing_that_a_terminal_obeys(monkeypatch: pytest.MonkeyPatch) -> None:
+    def crash(*_: Any) -> None:
+        raise RuntimeError("".join(NASTY))
+
+    monkeypatch.setattr("blocksim.cli.citing.references", crash)
+    done = inside("cite")
+    assert done.returncode == 70
+    require_plain(done.stderr)
+    assert "Traceback" in done.stderr
