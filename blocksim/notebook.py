@@ -9,7 +9,7 @@ from __future__ import annotations
 import html
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from io import BytesIO
@@ -27,10 +27,10 @@ from blocksim.common.files import json_text
 from blocksim.common.words import printable
 from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem, plain_arch
-from blocksim.report import answers, structures
+from blocksim.report.answers import bracket_record, check_record
+from blocksim.report.answerwords import bracket_lines, check_lines
+from blocksim.report.problems import arch_size_lines, described, size_lines, size_record
 from blocksim.report.recordings import recording_lines, recording_record
-from blocksim.report.sizes import size_lines, size_record
-from blocksim.report.structuresizes import problem_size_lines
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,11 +56,11 @@ def dict_of(shown: object) -> dict[str, Any]:
         Of an answer what `--json` prints; of a problem its structure file; of a recording
         what it shows, without its poses.
     """
-    found: dict[type, Callable[[Any], dict[str, object]]] = {
+    found: dict[type, Callable[[Any], Mapping[str, object]]] = {
         Arch: _arch_record,
         Problem: structure_record,
-        Check: lambda seen: _words_of(seen).check_record(seen),
-        Bracket: lambda found: _words_of(found).bracket_record(found),
+        Check: check_record,
+        Bracket: bracket_record,
         Recording: recording_record,
     }
     return json.loads(json_text(found[type(shown)](shown)))
@@ -69,18 +69,18 @@ def dict_of(shown: object) -> dict[str, Any]:
 def lines_of(shown: object) -> list[str]:
     """Return a thing in words, as the command line prints it: a head and labelled lines."""
     found: dict[type, Callable[[Any], list[str]]] = {
-        Arch: lambda arch: [_arch_words(arch), *size_lines(arch)],
+        Arch: lambda arch: [_arch_words(arch), *arch_size_lines(arch)],
         Problem: lambda problem: [
             problem.title or "Structure",
-            f"  what    {structures.described(replace(problem, title=''))}",
-            *problem_size_lines(problem),
+            f"  what    {described(replace(problem, title=''))}",
+            *size_lines(problem),
         ],
-        Check: lambda seen: _words_of(seen).check_lines(seen),
-        Bracket: lambda found: _words_of(found).bracket_lines(found),
+        Check: check_lines,
+        Bracket: bracket_lines,
         Recording: lambda run: [
             f"Recording by {run.engine}",
             *(f"  motion  {line.strip()}" for line in _recording_lines(run)),
-            f"  what    {structures.described(run.problem)}",
+            f"  what    {described(run.problem)}",
         ],
     }
     return found[type(shown)](shown)
@@ -133,11 +133,6 @@ def html_of(shown: object) -> str:
         for line in lines
     )
     return f"<div><strong>{head.strip()}</strong><table>{rows}</table>{svg_of(shown)}</div>"
-
-
-def _words_of(answer: Check | Bracket) -> Any:
-    """Return what words an answer: of an arch, or of anything else."""
-    return structures if answer.arch is None else answers
 
 
 def _recording_lines(recording: Recording) -> list[str]:

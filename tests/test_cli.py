@@ -31,10 +31,14 @@ def test_check_answers_with_its_exit_code(
     assert done.returncode == code
     assert done.stderr == ""
     assert answer["verdict"] == verdict
-    assert answer["mode"] == (None if code == 0 else "rrr")
+    assert answer["arch"]["mode"] == (None if code == 0 else "rrr")
     assert len(answer["joints"]) == 28
     promised = "method reason eta mu half_angle_deg voussoirs weight eta_limit eta_theory"
-    assert {*promised.split(), "simulated_s", "state_hash", "wall_s"} <= set(answer)
+    assert {*promised.split(), "simulated_s", "state_hash", "wall_s"} <= {
+        *answer,
+        *answer["problem"],
+        *answer["arch"],
+    }
 
 
 def test_check_exits_with_3_where_it_cannot_tell() -> None:
@@ -48,30 +52,31 @@ def test_bracket_holds_the_contract() -> None:
     done = blocksim("bracket", *ARCH, "--method", "pymunk", "--tol", "0.005", "--json")
     answer = json.loads(done.stdout)
     assert done.returncode == 0
-    assert answer["eta_high"] - answer["eta_low"] <= 0.005 * answer["eta_high"]
-    assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
-    assert answer["mode"] == answer["mode_theory"] == "rrr"
+    arch = answer["arch"]
+    assert arch["eta_high"] - arch["eta_low"] <= 0.005 * arch["eta_high"]
+    assert arch["eta_low"] < arch["eta_limit"] < arch["eta_high"]
+    assert arch["mode"] == arch["mode_theory"] == "rrr"
     assert answer["confirmed"] is True
     assert answer["undecided"] == 0
-    assert answer["thrust"] is None
+    assert arch["thrust"] is None
 
 
 def test_bracket_where_nothing_stands() -> None:
     answer = json.loads(blocksim("bracket", "--alpha", "90", "--mu", "0.3", "--json").stdout)
-    assert answer["eta_high"] is None
-    assert answer["mode"] == "ss"
+    assert answer["arch"]["eta_high"] is None
+    assert answer["arch"]["mode"] == "ss"
 
 
 def test_unbounded_friction_is_valid_json() -> None:
     done = blocksim("bracket", "--alpha", "90", "--mu", "inf", "--json")
-    assert json.loads(done.stdout, parse_constant=pytest.fail)["mu"] == "inf"
+    assert json.loads(done.stdout, parse_constant=pytest.fail)["problem"]["mu"] == "inf"
 
 
 def test_options_override_the_scenario() -> None:
     done = blocksim("bracket", "semicircle", "--alpha", "125", "--mu", "0.9", "--json")
     answer = json.loads(done.stdout)
-    assert answer["half_angle_deg"] == pytest.approx(125)
-    assert answer["mode_theory"] == "srr"
+    assert answer["arch"]["half_angle_deg"] == pytest.approx(125)
+    assert answer["arch"]["mode_theory"] == "srr"
 
 
 REPEATED = {"--with", "--point-load", "--patch-load", "--set", "--figure", "cite --method"}
@@ -310,7 +315,8 @@ def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
     assert json.loads(done.stdout)["reason"].endswith("; hold_sweeps 100 as given")
     done = blocksim("bracket", *ARCH, "--method", "direct", "--set", "step=0.005", "--json")
     answer = json.loads(done.stdout)
-    assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
+    arch = answer["arch"]
+    assert arch["eta_low"] < arch["eta_limit"] < arch["eta_high"]
     assert answer["reason"].endswith("; step 0.005 as given")
     out = tmp_path / "run.npz"
     blocksim(
@@ -346,9 +352,9 @@ def test_a_wrong_setting_is_one_line(method: str, given: str, said: str) -> None
 
 def test_direct_answers_and_brackets_finely() -> None:
     done = blocksim("bracket", *ARCH, "--method", "direct", "--tol", "1e-7", "--json")
-    answer = json.loads(done.stdout)
-    assert answer["eta_low"] < answer["eta_limit"] < answer["eta_high"]
-    assert answer["eta_high"] - answer["eta_low"] <= 1e-7 * answer["eta_high"]
+    arch = json.loads(done.stdout)["arch"]
+    assert arch["eta_low"] < arch["eta_limit"] < arch["eta_high"]
+    assert arch["eta_high"] - arch["eta_low"] <= 1e-7 * arch["eta_high"]
 
 
 def test_a_reduced_arch_answers_with_few_blocks() -> None:

@@ -114,10 +114,12 @@ def test_an_engineers_arch_in_one_command() -> None:
         "unit_weight_kN_per_m3": 20.0,
         "depth_m": 1.0,
     }
-    assert {key: told[key] for key in expected} == pytest.approx(expected, rel=EXACT)
-    assert (told["voussoirs"], told["weight"]) == (31, "sector")
+    arch = told["arch"]
+    found = {**arch, **told["problem"]}
+    assert {key: found[key] for key in expected} == pytest.approx(expected, rel=EXACT)
+    assert (arch["voussoirs"], arch["weight"]) == (31, "sector")
     least = limit.least_thickness(ALPHA, expected["mu"], 31, "sector").eta
-    assert told["eta_limit"] == pytest.approx(least, rel=1e-12)
+    assert arch["eta_limit"] == pytest.approx(least, rel=1e-12)
 
 
 def test_words_give_both_forms() -> None:
@@ -138,10 +140,11 @@ def test_words_give_both_forms() -> None:
 )
 def test_the_line_that_was_measured_is_said(at: str, radius: float) -> None:
     told = json.loads(inside("check", *ASKED, "--at", at, "--json").stdout)
-    assert told["radius_m"] == pytest.approx(radius, rel=EXACT)
-    assert told["half_angle_deg"] == pytest.approx(math.degrees(ALPHA), rel=EXACT)
+    assert told["problem"]["radius_m"] == pytest.approx(radius, rel=EXACT)
+    assert told["arch"]["half_angle_deg"] == pytest.approx(math.degrees(ALPHA), rel=EXACT)
     # What is told is the clear span, whichever was given.
-    assert told["span_m"] == pytest.approx(8 * (radius - 0.225) / (25 / 6), rel=EXACT)
+    clear = 8 * (radius - 0.225) / (25 / 6)
+    assert told["problem"]["span_m"] == pytest.approx(clear, rel=EXACT)
 
 
 def test_both_forms_are_one_question() -> None:
@@ -150,38 +153,39 @@ def test_both_forms_are_one_question() -> None:
     ratios = ("--alpha", repr(math.degrees(ALPHA)), "--eta", repr(0.45 / radius))
     one = json.loads(inside("check", *ASKED, "--json").stdout)
     two = json.loads(inside("check", *ratios, *others, "--weight", "sector", "--json").stdout)
-    for key in ("eta_limit", "eta_theory", "mode_limit", "verdict"):
-        assert (
-            one[key] == pytest.approx(two[key], rel=1e-12)
-            if key[:3] == "eta"
-            else (one[key] == two[key])
-        )
+    assert one["verdict"] == two["verdict"]
+    one, two = one["arch"], two["arch"]
+    for key in ("eta_limit", "eta_theory"):
+        assert one[key] == pytest.approx(two[key], rel=1e-12)
+    assert one["mode_limit"] == two["mode_limit"]
     told = json.loads(inside("check", *ASKED, "--weight", "centreline", "--json").stdout)
-    assert told["weight"] == "centreline"
+    assert told["arch"]["weight"] == "centreline"
 
 
 def test_a_bracket_answers_in_metres() -> None:
     told = json.loads(inside("bracket", *ASKED, "--json").stdout)
-    radius = 25 / 6 + 0.225
-    assert told["fixed_line"] == "centreline"
-    assert told["radius_m"] == pytest.approx(radius, rel=EXACT)
-    assert told["thickness_limit_m"] == pytest.approx(told["eta_limit"] * radius, rel=EXACT)
+    arch = told["arch"]
+    assert arch["fixed_line"] == "intrados"
+    # The intrados has this radius, whatever thickness was given.
+    radius = 25 / 6 + told["limit"] / 2
+    assert told["limit"] == pytest.approx(arch["eta_limit"] * radius, rel=EXACT)
     said = inside("bracket", *ASKED).stdout
-    assert f"least thickness {told['thickness_high_m']:.6g} m, the centreline staying" in said
+    assert f"least thickness {told['high']:.6g} m, the intrados staying" in said
 
 
 def test_without_a_thickness_the_line_that_was_measured_stays() -> None:
     asked = ("--span", "8", "--rise", "3", "--friction-angle", "35", "--voussoirs", "31")
     told = json.loads(inside("bracket", *asked, "--json").stdout)
-    assert told["fixed_line"] == "intrados"
-    thickness = told["thickness_limit_m"]
+    assert told["arch"]["fixed_line"] == "intrados"
+    thickness = told["limit"]
     # On the same intrados an arch of that thickness has that ratio.
     found = Dimensions(span=8, rise=3, thickness=thickness)
-    assert found.eta == pytest.approx(told["eta_limit"], rel=1e-13)
+    assert found.eta == pytest.approx(told["arch"]["eta_limit"], rel=1e-13)
     at_ratio = json.loads(inside("check", *asked, "--ratio", "1.5", "--json").stdout)
-    assert at_ratio["eta"] == pytest.approx(1.5 * told["eta_limit"], rel=1e-13)
-    assert at_ratio["span_m"] == pytest.approx(8, rel=EXACT)
-    assert at_ratio["rise_m"] == pytest.approx(3, rel=EXACT)
+    eta = at_ratio["arch"]["eta"]
+    assert eta == pytest.approx(1.5 * told["arch"]["eta_limit"], rel=1e-13)
+    assert at_ratio["problem"]["span_m"] == pytest.approx(8, rel=EXACT)
+    assert at_ratio["problem"]["rise_m"] == pytest.approx(3, rel=EXACT)
 
 
 @pytest.mark.parametrize(
@@ -256,10 +260,10 @@ def test_a_scenario_in_metres(tmp_path: Path) -> None:
     # One measure given instead of the file's: the others stay.
     told = json.loads(inside("check", str(path), "--thickness", "0.6", "--json").stdout)
     wanted = {"span_m": 8.0, "rise_m": 3.0, "thickness_m": 0.6}
-    assert {key: told[key] for key in wanted} == pytest.approx(wanted, rel=EXACT)
+    assert {key: told["problem"][key] for key in wanted} == pytest.approx(wanted, rel=EXACT)
     told = json.loads(inside("check", str(path), "--alpha", "90", "--json").stdout)
-    assert told["half_angle_deg"] == 90
-    assert told["radius_m"] == found.radius
+    assert told["arch"]["half_angle_deg"] == 90
+    assert told["problem"]["radius_m"] == found.radius
 
 
 @pytest.mark.parametrize(

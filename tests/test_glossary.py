@@ -15,7 +15,8 @@ GLOSSARY = (DOCS / "glossary.md").read_text(encoding="utf-8")
 OF_THE_ANSWER = {
     "version", "method", "problem", "title", "runs", "undecided", "confirmed", "splits", "tol",
     "simulated_s", "state_hash", "wall_s", "over", "unit", "low", "high", "limit", "stands",
-    "falls", "intervals", "events", "x", "y", "rotation", "block", "angle_deg",
+    "events", "intervals", "falls", "proved", "evidence", "test", "found", "arch", "x", "y",
+    "rotation", "block", "angle_deg",
 }  # fmt: skip
 """What tells of the asking, not of the structure; coordinates."""
 

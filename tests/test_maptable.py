@@ -65,11 +65,11 @@ def test_modes_that_coincide_are_all_told() -> None:
             math.degrees(PRINTED["table1"][name]["alpha"]), rel=1e-13
         )
         assert math.tan(math.radians(each["friction_angle_deg"])) == pytest.approx(each["mu"])
-    told = json.loads(inside("check", "fig18_triple_point", "--json").stdout)
+    told = json.loads(inside("check", "fig18_triple_point", "--json").stdout)["arch"]
     assert set(told["modes_theory"]) == {"rrr", "srr", "rrs", "ss"}
     assert told["modes_theory"][0] == told["mode_theory"]
     words = "bracket --alpha 145 --mu 1.6 --method theory --json"
-    assert json.loads(inside(*words.split()).stdout)["modes_theory"] == ["rrs"]
+    assert json.loads(inside(*words.split()).stdout)["arch"]["modes_theory"] == ["rrs"]
 
 
 def rows_of(

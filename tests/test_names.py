@@ -24,7 +24,7 @@ from blocksim.engines import get_engine
 from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import load_structure
 from blocksim.many import load_design
-from blocksim.report.answers import signed
+from blocksim.report.answerwords import signed
 from blocksim.studies.validate import unasked
 
 
@@ -137,8 +137,10 @@ def test_a_name_that_was_nearly_right_is_asked_for(
 def test_a_ratio_is_of_the_least_as_built_and_depth_is_told() -> None:
     asked = ("check", "semicircle", "--depth", "2.5", "--json")
     answer = json.loads(blocksim(*asked, "--ratio", "0.999").stdout)
-    assert answer["eta"] == pytest.approx(0.999 * answer["eta_limit"], rel=1e-14)
-    assert (answer["depth"], answer["lean_deg"], answer["verdict"]) == (2.5, 0.0, "collapses")
+    arch = answer["arch"]
+    assert arch["eta"] == pytest.approx(0.999 * arch["eta_limit"], rel=1e-14)
+    assert (arch["depth"], answer["verdict"]) == (2.5, "collapses")
+    assert answer["problem"]["lean_deg"] == 0.0
     stands = json.loads(blocksim(*asked, "--ratio", "1.001").stdout)
     assert stands["verdict"] == "stands"
 
@@ -150,7 +152,7 @@ def test_depth_is_in_metres_of_a_check_and_of_a_bracket(tmp_path: Path) -> None:
         "radius = 5.0\ndepth = 2.0\n[contact]\nmu = 0.7\n"
     )
     for command in ("check", "bracket"):
-        answer = json.loads(blocksim(command, str(file), "--json").stdout)
+        answer = json.loads(blocksim(command, str(file), "--json").stdout)["arch"]
         assert (answer["radius"], answer["depth"]) == (5.0, 2.0)
 
 
@@ -172,7 +174,7 @@ def test_every_scenario_can_be_checked(name: str) -> None:
     assert done.stderr == ""
     answer = json.loads(done.stdout)
     scenario = load_scenario(name)
-    assert answer["lean_deg"] == pytest.approx(math.degrees(scenario.lean))
+    assert answer["problem"]["lean_deg"] == pytest.approx(math.degrees(scenario.lean))
     assert answer["verdict"] == (scenario.expected_verdict or "collapses")
     assert ("no thickness was given" in answer["reason"]) == (scenario.eta is None)
 

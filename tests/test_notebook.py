@@ -52,7 +52,11 @@ def shown() -> dict[str, Any]:
         "check": ask.check(problem.with_load(0.45)),
         "arch bracket": blocksim.bracket(
             CircularArch(
-                half_angle=ARCH.half_angle, friction=0.7, voussoirs=27, weight="centreline"
+                half_angle=ARCH.half_angle,
+                friction=0.7,
+                voussoirs=27,
+                weight="centreline",
+                density=ARCH.specific_weight,
             ),
             method="limit",
         ),

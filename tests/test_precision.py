@@ -32,7 +32,7 @@ from blocksim.arch.theory.regions import (
 )
 from blocksim.common.errors import InputError
 from blocksim.kinds.circular import CircularArch
-from blocksim.report.answers import bracket_lines, check_lines
+from blocksim.report.answerwords import bracket_lines, check_lines
 
 WEIGHTS = ("centreline", "sector")
 RELATIVE = 1e-13

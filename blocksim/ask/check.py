@@ -143,8 +143,8 @@ class Check(Shown):
         Or what may move though it can rest. The largest way of a corner is 1. None where the
         blocks stand, or nothing is known.
         """
-        rates = self.rates
-        if self.simulated is None and self.static is not None:
+        rates, falls = self.rates, self.verdict is not Verdict.STANDS
+        if self.method == "limit" and falls and self.static is not None:
             rates = self.static.mechanism
         if self.motion is not None:
             rates = self.motion.accelerations

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
 from typing import Annotated
 
 import click
 
-from blocksim.arch.carried import carried_by_arch
 from blocksim.ask.bracket import bracket as ask_bracket
+from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
 from blocksim.cli.arguments import Option
 from blocksim.cli.options import (
@@ -31,18 +30,12 @@ from blocksim.cli.options import (
 )
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
-from blocksim.cli.question import arch_of, joint_of, question, thickness_words
-from blocksim.common.checks import FRICTION, require
-from blocksim.evidence.verdict import aside
-from blocksim.kinds.circular import CircularArch, arch_problem
-from blocksim.report.answers import (
-    bracket_lines,
-    bracket_record,
-    check_lines,
-    check_record,
-    joint_names_of,
-)
-from blocksim.report.sizes import bracket_size_lines, bracket_size_record
+from blocksim.cli.question import joint_of
+from blocksim.cli.subject import is_structure, problem_asked
+from blocksim.common.checks import require
+from blocksim.report.answers import bracket_record, check_record
+from blocksim.report.answerwords import bracket_lines, check_lines
+from blocksim.report.problems import joint_names
 
 
 def check(
@@ -58,27 +51,9 @@ def check(
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
-    if scene is not None or loading.given:
-        # An arch under its own weight is answered sooner than these are loaded.
-        from blocksim.cli.structures import check_problem
-
-        check_problem(
-            scene,
-            given,
-            loading,
-            method,
-            settings,
-            joint,
-            reduce=reduce,
-            must_rest=must_rest,
-            proof=proof,
-            as_json=as_json,
-        )
-    asked = question(scene, given, thick=True)
-    arch = arch_of(asked, given.ratio)
-    at_joint = None if joint is None else joint_of(joint, joint_names_of(arch))
+    problem = problem_asked(scene, given, loading, thick=True)
+    at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
     with named_options(), progress() as report:
-        problem = arch_problem(arch, asked.mu, asked.lean)
         answer = ask_check(
             problem,
             method=method,
@@ -87,14 +62,12 @@ def check(
             must_rest=must_rest,
             progress=report,
         )
+        told = answer.carried
+        if at is not None and told is not None:
+            report(1.0, "thrust")
+            told = carried_of(problem, at)
     write_proof(answer, proof)
-    said = aside("note", thickness_words(asked, given.ratio))
-    answer = replace(answer, evidence=answer.evidence + said)
-    at = asked.line and asked.line.at
-    told = answer.carried
-    if told is not None and at_joint is not None:
-        told = carried_by_arch(arch, problem, at_joint)
-    answer_with(check_record(answer, told), check_lines(answer, at, told), as_json=as_json)
+    answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 
 
@@ -111,47 +84,21 @@ def bracket(
     as_json: Json = False,
 ) -> None:
     """Find where it starts to fall as one parameter changes: how thin an arch can be."""
-    if scene is not None or loading.given or over not in {None, THICKNESS}:
-        from blocksim.cli.structures import bracket_problem
-
-        if bracket_problem(
-            scene,
-            given,
-            loading,
-            over,
-            within,
-            method,
-            tol,
-            settings,
-            reduce=reduce,
-            as_json=as_json,
-        ):
-            return
-    left = {"eta": given.eta, "ratio": given.ratio, **asdict(loading)}
-    for name, value in left.items():
+    # The thickness of an arch under its own weight need not be given to be sought.
+    sought = over in {None, THICKNESS} and not loading.given and not is_structure(scene)
+    for name in ("eta", "ratio") if sought else ():
+        value = getattr(given, name)
         require(value is None, f"--{name}", value, "left out over thickness")
-    require(within is None, "--within", within, "left out over thickness")
-    asked = question(scene, given)
+    problem = problem_asked(scene, given, loading, thick=not sought, sought=sought)
     with named_options(), progress() as report:
-        FRICTION.require("mu", asked.mu)
-        made = CircularArch(
-            half_angle=asked.half_angle,
-            eta=1.0,
-            voussoirs=asked.voussoirs,
-            weight=asked.weight,
-            radius=asked.radius,
-            depth=asked.depth,
-            friction=asked.mu,
-        )
         answer = ask_bracket(
-            made.problem().leaning(asked.lean),
-            over=THICKNESS,
+            problem,
+            over=over,
+            within=within,
             method=method,
             tol=tol,
             settings=settings_of(settings),
             reduce=reduce,
             progress=report,
         )
-    record = bracket_record(answer, asked.radius) | bracket_size_record(answer, asked)
-    lines = bracket_lines(answer) + bracket_size_lines(answer, asked)
-    answer_with(record, lines, as_json=as_json)
+    answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)

@@ -5,6 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
+from blocksim.ask.methods import choose
+from blocksim.ask.simulate import simulate as let_go
+from blocksim.ask.spread import Spreading
+from blocksim.blocks.problem import Problem
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.drawing import write_still
 from blocksim.cli.filming import (
@@ -29,20 +33,19 @@ from blocksim.cli.options import (
     Loading,
     Scene,
     Set,
+    named_options,
     require_given,
+    settings_of,
 )
-from blocksim.cli.output import picture_kind
+from blocksim.cli.output import picture_kind, progress, say
 from blocksim.cli.question import question
-from blocksim.cli.structures import (
-    problem_asked,
-    say_recorded,
-    simulate_structure,
-    spread_structure,
-)
+from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import is_number, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
+from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import plain_arch
+from blocksim.report.recordings import recording_lines
 
 FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0
@@ -75,11 +78,37 @@ def simulate(
         ok = is_number(seconds, 0, LONGEST_RECORDING)
         require(ok, "--seconds", seconds, f"above 0 and at most {LONGEST_RECORDING:g}")
     if over is not None:
-        recording = spread_structure(problem, over, method, seconds, settings)
+        recording = _spread(problem, over, method, seconds, settings)
     else:
-        recording = simulate_structure(problem, method, seconds, settings)
+        with named_options(), progress() as report:
+            recording = let_go(
+                problem,
+                method=method,
+                duration=None if seconds is None else seconds / problem.seconds,
+                settings=settings_of(settings),
+                progress=report,
+            )
     recording.save(out)
-    say_recorded(out, recording, size)
+    first, *others = recording_lines(recording, size)
+    say(f"{out}: {first}", *others)
+
+
+def _spread(
+    problem: Problem,
+    over: str,
+    method: str,
+    seconds: float | None,
+    settings: list[str] | None,
+) -> Recording:
+    """Move the supports of a structure until it has fallen, and record it."""
+    require(over == "spread", "--over", over, "spread, or left out: nothing else moves slowly")
+    able = method == "auto" or choose(method, moving=True).moves_supports
+    require(able, "--method", method, "direct: others move no supports")
+    require(seconds is None, "--seconds", seconds, "left out: it ends when all has fallen")
+    require(settings is None, "--set", settings, "left out where supports move")
+    require(problem.shaking is None, "--shake", over, "left out where supports move")
+    with named_options(), progress() as report:
+        return Spreading(problem).recorded(report)
 
 
 def render(

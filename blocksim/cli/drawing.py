@@ -11,8 +11,8 @@ from blocksim.blocks.problem import Problem
 from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import Given, Loading, named_options
 from blocksim.cli.output import progress, save_picture, say
-from blocksim.cli.question import arch_of, question
-from blocksim.cli.structures import is_structure, problem_asked
+from blocksim.cli.question import question
+from blocksim.cli.subject import is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
@@ -47,7 +47,7 @@ def write_still(
     )  # fmt: skip
     require(kind != "dxf", "--out", str(out), flat)
     if asked.lean:
-        picture_of_leaning(out, kind, arch_of(asked, given.ratio), asked, height)
+        picture_of_leaning(out, kind, problem_asked(scene, given, loading), height)
         return
     # matplotlib takes a second to import, which other commands need not wait for.
     from blocksim.view.archfigure import arch_figure, picture_of_theory

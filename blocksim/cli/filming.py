@@ -8,15 +8,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from blocksim.arch.asked import Scenario
-from blocksim.arch.circular import Arch
 from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate
-from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.arguments import Option
 from blocksim.cli.options import OWN, Given, Loading, named_options, option_of
 from blocksim.cli.output import progress, say
-from blocksim.cli.structures import problem_asked
+from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
@@ -25,9 +23,10 @@ from blocksim.evidence.motion import MOVED
 from blocksim.evidence.observation import conclude, hold
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import arch_problem, plain_arch
+from blocksim.kinds.circular import plain_arch
 from blocksim.kinds.recorded import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
+from blocksim.report.problems import tilt_and_lean
 
 FALL = 20.0
 """Time recorded of a scenario at most: it ends when the rubble lies still [sqrt(r/g)]."""
@@ -189,9 +188,7 @@ def _motionless(recording: Recording) -> str:
     return f"nothing is seen to move in one recording ({arch}): it is at rest"
 
 
-def picture_of_leaning(
-    out: Path, kind: str, arch: Arch, asked: Scenario, height: int | None
-) -> None:
+def picture_of_leaning(out: Path, kind: str, problem: Problem, height: int | None) -> None:
     """Draw an arch in gravity that leans out of its plane, in perspective, with its verdict.
 
     The motion is that by which a check decides, drawn larger.
@@ -200,7 +197,6 @@ def picture_of_leaning(
     from blocksim.view.film import Film
 
     with named_options(), progress() as report:
-        problem = arch_problem(arch, asked.mu, asked.lean)
         held = hold(problem, choose("auto", problem=problem).name, progress=report)
         seen = conclude(held, moving=True, progress=report)
     run = seen.motion.recording if seen.motion else held.release(STILL).recording
@@ -209,5 +205,5 @@ def picture_of_leaning(
     tall = height or HEIGHT
     made = Film([run], verdict=seen.verdict, enlarge=enlarge, view="3d", height=tall)
     write_whole(out, lambda file: made.still(file, kind))
-    lean = math.degrees(asked.lean)
+    lean = tilt_and_lean(problem)["lean_deg"]
     say(f"wrote {out}: {seen.verdict}, gravity leans {lean:.4g} deg out of the plane")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -46,7 +47,7 @@ def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None
     say(f"wrote {out}")
 
 
-def answer_with(record: dict[str, object], lines: list[str], *, as_json: bool) -> None:
+def answer_with(record: Mapping[str, object], lines: list[str], *, as_json: bool) -> None:
     """Print an answer, as one JSON object or as lines for people."""
     say(*([json_text(record)] if as_json else lines))
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any
 
 from blocksim.arch.asked import Scenario
-from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import (
     Dimensions,
     Line,
@@ -21,6 +20,7 @@ from blocksim.cli.options import Given, named_options, option_of, require_given
 from blocksim.common.checks import FRICTION, is_number, require
 from blocksim.common.errors import MISSING, InputError, perhaps
 from blocksim.kinds import KINDS
+from blocksim.kinds.circular import CircularArch
 
 NO_SCENARIO = Scenario(
     name="",
@@ -183,7 +183,7 @@ def _shape(asked: Scenario, given: Given) -> dict[str, object]:
         return {**changes, "eta": found.eta, "radius": found.radius}
 
 
-def arch_of(asked: Scenario, ratio: float | None) -> Arch:
+def maker_of(asked: Scenario, ratio: float | None) -> CircularArch:
     """Return the arch asked about.
 
     At a share of the least thickness as built where that is given, else at the scenario's
@@ -191,7 +191,7 @@ def arch_of(asked: Scenario, ratio: float | None) -> Arch:
     """
     with named_options():
         if asked.eta is not None and ratio is None:
-            return asked.arch(asked.eta)
+            return _made(asked, asked.eta)
         if ratio is not None:
             require(is_number(ratio, 0, 100), "--ratio", ratio, "above 0 and at most 100")
         FRICTION.require("mu", asked.mu)
@@ -208,14 +208,38 @@ def arch_of(asked: Scenario, ratio: float | None) -> Arch:
         eta = (ratio or ASIDE) * least
         if ratio is not None:
             require(eta <= ETA_MAX, "--ratio", ratio, f"at most {ETA_MAX / least:.6g}, eta = 2")
-        return asked.arch(eta)
+        return _made(asked, eta)
 
 
-def thickness_words(asked: Scenario, ratio: float | None) -> str:
-    """Say which thickness was taken where none was given, to be added to a reason."""
+def of_any_thickness(asked: Scenario) -> CircularArch:
+    """Return the arch asked about, of which the thickness is sought."""
+    with named_options():
+        return _made(asked, 1.0 if asked.eta is None else asked.eta)
+
+
+def _made(asked: Scenario, eta: float) -> CircularArch:
+    """Make an arch by the line that was measured, else by its half-angle and radius."""
+    shape: dict[str, Any] = {"half_angle": asked.half_angle, "radius": asked.radius}
+    if asked.line is not None:
+        shape = vars(asked.line)
+    asked.arch(eta)
+    FRICTION.require("mu", asked.mu)
+    return CircularArch(
+        **shape,
+        eta=eta,
+        voussoirs=asked.voussoirs,
+        weight=asked.weight,
+        depth=asked.depth,
+        density=asked.specific_weight,
+        friction=asked.mu,
+    )
+
+
+def thickness_notes(asked: Scenario, ratio: float | None) -> tuple[str, ...]:
+    """Say which thickness was taken where none was given."""
     if asked.eta is not None or ratio is not None:
-        return ""
-    return f"; no thickness was given, so it is {ASIDE:g} of the least as built"
+        return ()
+    return (f"no thickness was given, so it is {ASIDE:g} of the least as built",)
 
 
 def joint_of(said: str, names: Sequence[str]) -> int:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -25,11 +24,10 @@ from blocksim.cli.options import (
     settings_of,
 )
 from blocksim.cli.output import progress, say
-from blocksim.cli.question import question, thickness_words
-from blocksim.cli.structures import is_structure, problem_asked
+from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import require_place, write_whole
-from blocksim.evidence.verdict import Verdict, aside
+from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import plain_arch
 
 
@@ -55,9 +53,6 @@ def report(
 
     with named_options(), progress() as told:
         answer = check(problem, method=method, settings=own, progress=told)
-    if not is_structure(scene):
-        said = thickness_words(question(scene, given), given.ratio)
-        answer = replace(answer, evidence=answer.evidence + aside("note", said))
     arch = plain_arch(problem)
     falls = answer.verdict is Verdict.COLLAPSES and problem.is_planar
     page = structure_page(

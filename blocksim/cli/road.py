@@ -1,20 +1,63 @@
-"""What lies on the road, as given on the command line: fill and live loads."""
+"""What acts besides weight, as given on the command line: the road, loads, tilt, shaking."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import with_fill, with_road
-from blocksim.cli.options import Loading, option_of
+from blocksim.blocks.shaking import SHAPES, Shaking, read_table
+from blocksim.cli.options import Given, Loading, named_options, option_of, require_given
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.kinds.circular import LEAST_DENSITY
 
 HIGHEST_FILL = 1000.0
 """[m]"""
+
+
+def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
+    """Put on a problem what the options say: friction, load, tilt, lean."""
+    with named_options():
+        if given.friction is not None:
+            problem = problem.with_friction(given.friction)
+        if loading.on_road:
+            problem = under_road(problem, loading)
+        if loading.load is not None:
+            require(bool(problem.live), "--load", loading.load, "left out: no live loads")
+            problem = problem.with_load(loading.load)
+        if loading.tilt is not None:
+            ok = is_number(loading.tilt, -180, 180)
+            require(ok, "--tilt", loading.tilt, "above -180 and at most 180 deg")
+            problem = problem.tilted(math.radians(loading.tilt))
+        if given.lean is not None:
+            ok = is_number(given.lean, -90, math.nextafter(90, 0))
+            require(ok, "--lean", given.lean, "above -90 and below 90 deg")
+            problem = problem.leaning(math.radians(given.lean))
+        return replace(problem, shaking=_shaking(problem.shaking, loading))
+
+
+def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
+    """Shake the ground as the options say, which change what a file says."""
+    shape, amplitude, duration = loading.shake, loading.amplitude, loading.duration
+    if shape is not None and shape.endswith(".csv"):
+        shaking = read_table(shape)
+    elif shape is not None:
+        shapes = ", ".join(SHAPES)
+        require(shape in SHAPES, "--shake", shape, f"one of {shapes}, or a .csv file")
+        require_given(amplitude=amplitude, duration=duration)
+        shaking = Shaking(shape=shape, amplitude=amplitude or 0.0, duration=duration or 0.0)
+    for name, value in (("amplitude", amplitude), ("duration", duration)):
+        allowed = "left out, or --shake beside it: the ground is at rest"
+        require(value is None or shaking is not None, f"--{name}", value, allowed)
+    if shaking is not None and amplitude is not None:
+        shaking = shaking.with_amplitude(amplitude)
+    if shaking is not None and duration is not None:
+        shaking = shaking.with_duration(duration)
+    return shaking
 
 
 def under_road(problem: Problem, loading: Loading) -> Problem:

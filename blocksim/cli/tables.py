@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from blocksim.cli.terminal import Table
-from blocksim.report.answers import ratio, signed
+from blocksim.report.answerwords import ratio, signed
 from blocksim.report.structurewords import found_of, question_of, summary_of_structures
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.chart import Point, on_front

@@ -245,15 +245,20 @@ class CircularArch(CurvedArch):
 
         return ArchOffers(arch, problem)
 
+    @property
+    def line(self) -> Line | None:
+        """The line that was measured; None where none was."""
+        if self.span is None or self.rise is None:
+            return None
+        return Line(span=self.span, rise=self.rise, at=self.at)
+
     def mean_radius(self, eta: float) -> float:
         """Return the radius of the centreline at a thickness-to-radius ratio [m].
 
         The centreline stays as it is, wherever it is known. A line that was measured says
         where that line is, and the centreline follows.
         """
-        if self.span is None or self.rise is None:
-            return self.radius
-        return Line(span=self.span, rise=self.rise, at=self.at).mean_radius(eta)
+        return self.radius if self.line is None else self.line.mean_radius(eta)
 
     @property
     def length_name(self) -> str:

@@ -1,94 +1,115 @@
-"""Answers as JSON objects and as text for people."""
+"""Answers as JSON objects, the same keys for every subject; see `blocksim.report.schema`."""
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from collections.abc import Callable
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from blocksim.arch.circular import GRAVITY, Arch
-from blocksim.ask.check import proof_words
-from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.version import __version__
-from blocksim.report.carried import carried_lines, carried_record
-from blocksim.report.sizes import size_lines, size_record, unit_lines
+from blocksim.report.carried import carried_record
+from blocksim.report.problems import joint_names, measured_line, problem_record, side_name
 
 if TYPE_CHECKING:
-    from blocksim.arch.answers import ArchAnswer, ArchBracket
-    from blocksim.arch.dimensions import At
-    from blocksim.arch.modes import Mode
+    from blocksim.arch.answers import ArchAnswer
     from blocksim.ask.bracket import Bracket
     from blocksim.ask.check import Check
     from blocksim.blocks.problem import Problem
     from blocksim.limit.carried import Carried
+    from blocksim.report.schema import (
+        ArchBracketRecord,
+        ArchRecord,
+        BracketRecord,
+        CheckRecord,
+        JointRecord,
+        MovementRecord,
+        ShakenRecord,
+    )
 
-SIX = 6
-"""Digits of ratios, where no more are known."""
+HINGE = "hinge"
+HINGED = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
+"""Which end of a joint stays closed, in the order of its `ends`."""
 
 
-def check_record(answer: Check, carried: Carried | None = None) -> dict[str, object]:
-    """Return a check as `check --json` prints it."""
-    of, mu, carried = _of(answer), answer.problem.mu, carried or answer.carried
-    arch = of.shape
-    seconds = None
-    if answer.simulated is not None:
-        seconds = answer.simulated * math.sqrt(arch.radius / GRAVITY)
+def check_record(answer: Check, carried: Carried | None = None) -> CheckRecord:
+    """Return a check as `check --json` prints it.
+
+    Forces of joints are in N, as a file has them; normal forces press where they are above
+    0. They are those of the safest state of equilibrium.
+    """
+    problem, carried = answer.problem, carried or answer.carried
+    seconds = None if answer.simulated is None else answer.simulated * problem.seconds
     return {
         "version": __version__,
         "method": answer.method,
         "verdict": answer.verdict.value,
         "proved": answer.proved,
+        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
         "reason": answer.reason,
-        "eta": arch.eta,
-        "mu": mu,
-        "half_angle_deg": math.degrees(arch.half_angle),
-        "voussoirs": arch.voussoirs,
-        "weight": arch.weight,
-        "radius": arch.radius,
-        "depth": arch.depth,
-        **size_record(arch, mu),
-        "lean_deg": lean_deg(answer.problem),
-        "eta_limit": of.eta_limit,
-        "eta_theory": of.eta_theory,
-        "factor_of_safety": carried and carried.geometrical_factor,
-        **carried_record(carried, joint_names_of(arch)),
+        "problem": problem_record(problem),
+        "load_factor": answer.load_factor,
+        "factor_of_safety": _factor_of_safety(answer, carried),
+        **carried_record(carried, joint_names(problem.assembly)),
         "rest": answer.rest,
         "rest_goes_on": answer.motion and answer.motion.goes_on,
-        "mode": of.mode,
-        "mode_in_motion": of.mode_in_motion,
-        "mode_limit": of.mode_limit,
-        "mode_theory": of.mode_theory,
-        "modes_theory": list(of.modes_theory),
-        "joints": [
-            {"angle_deg": math.degrees(joint.angle), "state": joint.state.value}
-            for joint in answer.joints
-        ],
+        "joints": _joints(answer, carried),
+        "mechanism": _mechanism(answer),
+        "shaken": _shaken(answer),
         "simulated_s": seconds,
         "state_hash": answer.state_hash,
         "blocks": answer.blocks,
         "splits": answer.splits,
         "wall_s": answer.wall_s,
+        "arch": answer.arch and _arch(answer.arch),
     }
 
 
-def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
-    """Return a bracket as `bracket --json` prints it, its depth in m, as the radius is."""
-    of = bracket_of(answer)
-    arch = of.shape
+def bracket_record(answer: Bracket) -> BracketRecord:
+    """Return a bracket as `bracket --json` prints it."""
     return {
         "version": __version__,
         "method": answer.method,
+        "over": answer.over,
+        "unit": answer.unit,
+        "low": answer.low,
+        "high": answer.high,
+        "stands": answer.stands,  # type: ignore[typeddict-item]
+        "limit": answer.limit,
+        "confirmed": answer.confirmed,
+        "runs": answer.runs,
+        "undecided": answer.undecided,
+        "tol": answer.tol,
+        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
+        "reason": answer.reason,
+        "problem": problem_record(answer.problem, answer.over),
+        "events": answer.events and [asdict(each) for each in answer.events],  # type: ignore[typeddict-item]
+        "intervals": answer.intervals and [asdict(each) for each in answer.intervals],  # type: ignore[typeddict-item]
+        "blocks": answer.blocks,
+        "splits": answer.splits,
+        "wall_s": answer.wall_s,
+        "arch": _arch_bracket(answer),
+    }
+
+
+def state_words(problem: Problem) -> Callable[[JointState], str]:
+    """Return what says a joint's state: only an arch has an intrados and an extrados."""
+    if problem.maker is not None and problem.maker.is_arch:
+        return lambda state: state.value
+    return lambda state: HINGE if state in HINGED else state.value
+
+
+def _arch(of: ArchAnswer) -> ArchRecord:
+    """Tell ratios and modes of an arch."""
+    arch = of.shape
+    return {
         "half_angle_deg": math.degrees(arch.half_angle),
-        "mu": answer.problem.mu,
+        "eta": arch.eta,
         "voussoirs": arch.voussoirs,
         "weight": arch.weight,
-        "radius": radius,
-        "depth": arch.depth / arch.radius * radius,
-        "lean_deg": lean_deg(answer.problem),
-        "tol": answer.tol,
-        "eta_low": of.eta_low,
-        "eta_high": of.eta_high,
+        "radius": arch.radius,
+        "depth": arch.depth,
         "eta_limit": of.eta_limit,
         "eta_theory": of.eta_theory,
         "mode": of.mode,
@@ -96,169 +117,88 @@ def bracket_record(answer: Bracket, radius: float = 1.0) -> dict[str, object]:
         "mode_limit": of.mode_limit,
         "mode_theory": of.mode_theory,
         "modes_theory": list(of.modes_theory),
-        "thrust": of.thrust,
-        "beta_r_deg": _degrees(of.beta_r),
-        "beta_s_deg": _degrees(of.beta_s),
-        "confirmed": answer.confirmed,
-        "runs": answer.runs,
-        "undecided": answer.undecided,
-        "blocks": answer.blocks,
-        "splits": answer.splits,
-        "reason": answer.reason,
-        "wall_s": answer.wall_s,
     }
 
 
-def _of(answer: Check) -> ArchAnswer:
-    assert answer.arch is not None  # noqa: S101
-    return answer.arch
+def _arch_bracket(answer: Bracket) -> ArchBracketRecord | None:
+    """Tell the same of a bracket over its thickness, and both ratios tried."""
+    of, line = answer.arch, measured_line(answer.problem)
+    if of is None:
+        return None
+    return {
+        **_arch(of),
+        "eta": None,
+        "radius": None if line else of.shape.radius,
+        "fixed_line": line.at if line else "centreline",
+        "eta_low": of.eta_low,
+        "eta_high": of.eta_high,
+        "thrust": of.thrust,
+        "beta_r_deg": None if of.beta_r is None else math.degrees(of.beta_r),
+        "beta_s_deg": None if of.beta_s is None else math.degrees(of.beta_s),
+    }
 
 
-def bracket_of(answer: Bracket) -> ArchBracket:
-    """Return what is known of the arch."""
-    assert answer.arch is not None  # noqa: S101
-    return answer.arch
+def _factor_of_safety(answer: Check, carried: Carried | None) -> float | None:
+    """Return the factor on live loads where there are any, else the geometrical one."""
+    if answer.load_factor is not None and answer.problem.load > 0:
+        return answer.load_factor / answer.problem.load
+    if answer.problem.live:
+        return answer.load_factor
+    return carried and carried.geometrical_factor
 
 
-def lean_deg(problem: Problem) -> float:
-    """Return by how many degrees gravity leans out of the plane."""
-    x, y, z = problem.gravity.tolist()
-    return math.degrees(math.atan2(z, math.hypot(x, y)))
-
-
-def joint_names_of(arch: Arch) -> list[str]:
-    """Name joints by the voussoirs on their two sides, numbered from 1 at the left.
-
-    As `joint_names` does, but without blocks, which take longer to make than an answer.
-    """
-    sides = ["support", *map(str, range(1, arch.voussoirs + 1)), "support"]
-    return [f"{before}-{after}" for before, after in pairwise(sides)]
-
-
-def _degrees(angle: float | None) -> float | None:
-    return None if angle is None else math.degrees(angle)
-
-
-def check_lines(
-    answer: Check, at: At | None = None, carried: Carried | None = None
-) -> list[str]:
-    """Return a check in words; `at` is the line that was measured, if one was."""
-    of, mu, carried = _of(answer), answer.problem.mu, carried or answer.carried
-    arch = of.shape
-    lines = [
-        f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
-        f"  arch    alpha {math.degrees(arch.half_angle):g} deg, eta {arch.eta:g}, "
-        f"mu {mu:g}, {arch.voussoirs} voussoirs, weight {arch.weight}, "
-        f"depth {arch.depth / arch.radius:g} r{lean_words(math.radians(lean_deg(answer.problem)))}",
-        *size_lines(arch, mu, at),
-        f"  because {answer.reason}",
-        _exact("least  ", of),
-        *carried_lines(carried, joint_names_of(arch)),
-        *(unit_lines(arch, at) if carried else []),
-    ]
-    if answer.method == "theory":
-        whose = "of the continuous arch at its least thickness"
-        if of.eta_theory is None:
-            whose = "of the continuous arch, of any thickness"
-    else:
-        whose = f"of the voussoirs as built, at eta {arch.eta:g}"
-    if answer.method == "limit":
-        lines.append(f"  proof   {proof_words(answer)}")
-    if rest := rest_words(answer.rest, answer.motion, asked=answer.asked_rest):
-        lines.append(f"  rest    {rest}")
-    lines += _modes(of, whose)
-    active = [joint for joint in answer.joints if joint.state is not JointState.CLOSED]
-    if active:
-        told = ", ".join(
-            f"{signed(math.degrees(j.angle), 1)} deg {j.state.value}" for j in active
+def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
+    problem = answer.problem
+    assembly, words = problem.assembly, state_words(problem)
+    is_arch = problem.maker is not None and problem.maker.is_arch
+    found = None if carried is None else carried.resultants
+    told: list[JointRecord] = []
+    for k, joint in enumerate(assembly.joints):
+        ends = [joint.inner.tolist()] + ([] if joint.is_corner else [joint.outer.tolist()])
+        seen = answer.joints[k]
+        end = HINGED.get(seen.state)
+        told.append(
+            {
+                "a": side_name(assembly, k, 0),
+                "b": side_name(assembly, k, 1),
+                "ends": ends,
+                "gap": joint.gap,
+                "angle_deg": math.degrees(seen.angle) if is_arch else None,
+                "state": words(seen.state),
+                "hinge": None if end is None else ends[min(end, len(ends) - 1)],
+                "normal_force": None if found is None else float(found.normal[k]),
+                "friction_force": None if found is None else float(found.friction[k]),
+                "width_used": None if found is None else float(found.width_used[k]),
+                "friction_used": None if found is None else float(found.friction_used[k]),
+            }
         )
-        lines.append(f"  joints  {told}")
-    return lines
+    return told
 
 
-def bracket_lines(answer: Bracket) -> list[str]:
-    """Return a bracket in words."""
-    of = bracket_of(answer)
-    arch, digits = of.shape, _digits(of)
-    if of.eta_high is None:
-        head = "NOTHING STANDS up to eta = 2"
-    elif of.eta_high == 0:
-        head = "ANY THICKNESS STANDS"
-    elif of.eta_low == of.eta_high:
-        head = f"LEAST ETA {of.eta_high:.12g}"
-    else:
-        low, high = of.eta_low or 0.0, of.eta_high
-        head = f"LEAST ETA between {low:.{digits}g} and {high:.{digits}g}"
-    lines = [
-        f"{head}  ({answer.method}, {answer.wall_s:.2g} s)",
-        f"  arch    alpha {math.degrees(arch.half_angle):g} deg, mu {answer.problem.mu:g}, "
-        f"{arch.voussoirs} voussoirs, weight {arch.weight}, "
-        f"depth {arch.depth / arch.radius:g} r{lean_words(math.radians(lean_deg(answer.problem)))}",
-        f"  because {answer.reason}",
-        _exact("exact  ", of, digits),
+def _shaken(answer: Check) -> ShakenRecord | None:
+    """Tell what became of blocks on ground that shakes; times since the release."""
+    if answer.shaken is None:
+        return None
+    rocking, assembly = answer.shaken.rocking, answer.problem.assembly
+    return {
+        "largest_rotation_deg": math.degrees(rocking.rotation),
+        "block": assembly.blocks[rocking.block].name or str(rocking.block),
+        "first_impact_s": answer.shaken.first_impact_s,
+        "moved_m": answer.shaken.moved * assembly.size,
+    }
+
+
+def _mechanism(answer: Check) -> list[MovementRecord] | None:
+    """Rates of the blocks: x and y in m for each radian of rotation, which has no unit."""
+    rates, assembly = answer.mechanism, answer.problem.assembly
+    if rates is None:
+        return None
+    return [
+        {
+            "block": block.name or str(index),
+            "x": float(rate[0]) * assembly.size,
+            "y": float(rate[1]) * assembly.size,
+            "rotation": float(rate[2]),
+        }
+        for index, (block, rate) in enumerate(zip(assembly.blocks, rates, strict=True))
     ]
-    whose = "continuous arch" if answer.method == "theory" else "voussoirs as built"
-    lines += _modes(of, f"of the {whose}, at eta {ratio(of.eta_low, digits)}")
-    if of.thrust is not None:
-        lines.append(f"  thrust  h = {of.thrust:.9g}, in units of gamma t d r")
-    if of.beta_r is not None:
-        lines.append(f"  hinge   {math.degrees(of.beta_r):.4f} deg from the crown")
-    if of.beta_s is not None:
-        lines.append(f"  slides  {math.degrees(of.beta_s):.4f} deg from the crown")
-    if answer.undecided:
-        lines.append(f"  unsure  {answer.undecided} of {answer.runs} ratios undecided")
-    return lines
-
-
-def _exact(label: str, answer: ArchAnswer, digits: int = SIX) -> str:
-    """Tell the least thickness as built and of the continuous arch, each with its mode."""
-
-    def least(eta: float | None, mode: Mode | None) -> str:
-        if eta == 0:
-            return "any"
-        told = "none up to 2" if eta is None else ratio(eta, digits)
-        return f"{told} ({mode or 'mode unnamed'})"
-
-    return (
-        f"  {label} eta {least(answer.eta_limit, answer.mode_limit)} as built, "
-        f"{least(answer.eta_theory, answer.mode_theory)} continuous"
-    )
-
-
-def _digits(answer: ArchBracket) -> int:
-    """Digits that tell both ends of a bracket apart, and one or two more; six at least."""
-    low, high = answer.eta_low or 0.0, answer.eta_high or 0.0
-    return SIX if low >= high else max(SIX, 2 - math.floor(math.log10(1 - low / high)))
-
-
-def _modes(answer: ArchAnswer, of: str) -> list[str]:
-    """Tell the mode an arch starts with and, if it is another, that in motion."""
-    lines: list[str] = []
-    if answer.mode:
-        lines.append(f"  mode    {answer.mode.value}, {answer.mode.description}, {of}")
-    if answer.mode_in_motion and answer.mode_in_motion is not answer.mode:
-        from blocksim.evidence.motion import EARLY
-
-        later = answer.mode_in_motion
-        lines.append(
-            f"  moving  {later.value}, {later.description}, once it has moved {EARLY:g} r"
-        )
-    return lines
-
-
-def lean_words(lean: float) -> str:
-    """Say how far gravity leans out of the plane, where it does."""
-    return f", gravity leans {math.degrees(lean):g} deg out of the plane" if lean else ""
-
-
-def signed(value: float, digits: int) -> str:
-    """Return a number with its sign; what rounds to nothing has none."""
-    said = f"{value:+.{digits}f}"
-    return said if float(said) else said[1:]
-
-
-def ratio(eta: float | None, digits: int = SIX) -> str:
-    """Return a ratio in so many digits, "any" where every one stands, or a dash."""
-    if eta == 0:
-        return "any"
-    return "-" if eta is None else f"{eta:.{digits}g}"

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from blocksim.limit.carried import Carried
+
+if TYPE_CHECKING:
+    from blocksim.report.schema import CarriedRecord
 
 KILO = 1e3
 FIELDS = (
@@ -29,7 +33,7 @@ SHOWN = 4
 """Supports and joints told in a line of text."""
 
 
-def carried_record(carried: Carried | None, names: Sequence[str]) -> dict[str, object]:
+def carried_record(carried: Carried | None, names: Sequence[str]) -> CarriedRecord:
     """Return what a structure carries, every field null where it is not known.
 
     Parameters
@@ -39,7 +43,7 @@ def carried_record(carried: Carried | None, names: Sequence[str]) -> dict[str, o
         Of the joints.
     """
     if carried is None:
-        return {field: None for field in FIELDS}  # noqa: C420 - of any value
+        return dict.fromkeys(FIELDS)  # type: ignore[return-value]
     low, high = carried.thrust or (None, None)
     depth, weight = carried.depth, carried.weight
     used = carried.resultants

@@ -5,7 +5,7 @@ from __future__ import annotations
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from blocksim.common.words import printed
-from blocksim.report.answers import ratio
+from blocksim.report.answerwords import ratio
 
 
 def environment() -> Environment:

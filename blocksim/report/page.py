@@ -14,7 +14,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.common.dates import made_at
 from blocksim.engines import engine_named
 from blocksim.evidence.verdict import Verdict
-from blocksim.report.answers import ratio
+from blocksim.report.answerwords import ratio
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import ArchDrawing, drawing

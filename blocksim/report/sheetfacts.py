@@ -15,7 +15,7 @@ from blocksim.blocks.road import fill_of
 from blocksim.kinds.circular import is_plain_arch, plain_arch, weighed_arch
 from blocksim.limit import reactions, resultants
 from blocksim.limit.carried import Carried
-from blocksim.report.structures import joint_names, tilt_and_lean
+from blocksim.report.problems import joint_names, tilt_and_lean
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
 from blocksim.view.sheet import LARGEST, Sheet

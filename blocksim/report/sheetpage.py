@@ -19,6 +19,7 @@ from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
 from blocksim.report.mechanism import mechanism_drawing
 from blocksim.report.motion import Drawing
+from blocksim.report.problems import joint_names
 from blocksim.report.sheetfacts import (
     MOST,
     Fact,
@@ -30,7 +31,6 @@ from blocksim.report.sheetfacts import (
     reaction_table,
     thrust_facts,
 )
-from blocksim.report.structures import joint_names
 from blocksim.studies.questions import Drawn
 from blocksim.view import style
 from blocksim.view.drawing import save_figure, state_of_any, words_of

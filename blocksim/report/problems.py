@@ -1,0 +1,227 @@
+"""What a problem is, in words and as JSON: joints by name, dimensions, weights, the road."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from blocksim.arch.circular import Arch
+from blocksim.arch.dimensions import At, Line, dimensions_of, friction_angle
+from blocksim.blocks.assembly import SUPPORT, Assembly
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.road import fill_of
+from blocksim.blocks.shaking import shaking_record
+from blocksim.common.words import counted
+from blocksim.kinds.circular import CircularArch, plain_arch, weighed_arch
+
+if TYPE_CHECKING:
+    from blocksim.report.schema import ProblemRecord
+
+SIZES = (
+    "span_m", "rise_m", "thickness_m", "radius_m", "depth_m", "unit_weight_kN_per_m3",
+)  # fmt: skip
+FOLLOWS = {
+    "tilt": {"tilt_deg"},
+    "lean": {"lean_deg"},
+    "load": {"load"},
+    "mu": {"mu", "friction_angle_deg"},
+    "amplitude": {"shake"},
+    "duration": {"shake"},
+    "spread": set[str](),
+}
+"""What follows from each parameter that any problem may have."""
+BUILT = {"span_m", "rise_m", "thickness_m", "radius_m", "weight_kN", "fill_weight_kN"}
+"""What follows from the parameters of a maker."""
+
+
+def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
+    """Return a problem as answers have it; null what follows from a parameter.
+
+    Parameters
+    ----------
+    problem : Problem
+    over : str, optional
+        The parameter that is searched over.
+    """
+    arch, fill, shaking = weighed_arch(problem), fill_of(problem), problem.shaking
+    said: dict[str, object] = {
+        "title": problem.title,
+        "blocks": len(problem.assembly.blocks),
+        "joints": len(problem.assembly.joints),
+        "mu": problem.mu,
+        "friction_angle_deg": friction_angle(problem.mu),
+        **tilt_and_lean(problem),
+        "load": problem.load,
+        "shake": None if shaking is None else shaking_record(shaking),
+        **(dict.fromkeys(SIZES) if arch is None else size_record(arch)),
+        "weight_kN": weight_of(problem) / 1000,
+        "fill_m": None if fill is None else fill.height,
+        "fill_weight_kN": None if fill is None else fill.weight / 1000,
+        "live_weight_kN": 0.0 - _live(problem) / 1000,
+    }
+    if not problem.weighed:
+        said["unit_weight_kN_per_m3"] = None
+    if over is not None:
+        said |= dict.fromkeys(FOLLOWS.get(over, BUILT)) | _fixed_sizes(problem, over)
+    return said  # type: ignore[return-value]
+
+
+def _fixed_sizes(problem: Problem, over: str) -> dict[str, object]:
+    """Return what stays of a circular arch as its thickness changes: a line, or the radius."""
+    maker = problem.maker
+    if over != "thickness" or not isinstance(maker, CircularArch) or maker.shape is None:
+        return {}
+    line = maker.line
+    return (
+        {"radius_m": maker.radius}
+        if line is None
+        else {"span_m": line.span, "rise_m": line.rise}
+    )
+
+
+def size_record(arch: Arch) -> dict[str, object]:
+    """Return the dimensions of an arch, span and rise of its intrados, for JSON.
+
+    At eta = 2 the intrados is a point, without span and rise.
+    """
+    clear = dimensions_of(arch) if arch.eta < 2 else None
+    return {
+        "span_m": clear and clear.span,
+        "rise_m": clear and clear.rise,
+        "thickness_m": arch.thickness,
+        "radius_m": arch.radius,
+        "depth_m": arch.depth,
+        "unit_weight_kN_per_m3": arch.specific_weight / 1000,
+    }
+
+
+def measured_line(problem: Problem) -> Line | None:
+    """Return the line of an arch that was measured; None where none was."""
+    maker = problem.maker
+    return maker.line if isinstance(maker, CircularArch) else None
+
+
+def at_of(problem: Problem) -> At | None:
+    """Return which line that is."""
+    line = measured_line(problem)
+    return None if line is None else line.at
+
+
+def size_lines(problem: Problem) -> list[str]:
+    """Return the dimensions of a circular arch, and what lies on its road, in words."""
+    arch, fill = weighed_arch(problem), fill_of(problem)
+    lines: list[str] = []
+    if arch is not None:
+        lines = arch_size_lines(arch, problem.mu, at_of(problem))
+    live = -_live(problem)
+    said: list[str] = []
+    if fill is not None:
+        said.append(f"fill {fill.height:.6g} m over the crown, {fill.weight / 1000:.6g} kN")
+    if live and any(load.point is not None for load in problem.live):
+        said.append(f"live loads {live / 1000:.6g} kN times {problem.load:g}")
+    if said:
+        said.append("straight down to the blocks below: fill spreads no load")
+        lines.append(f"  road    {', '.join(said)}")
+    return lines
+
+
+def arch_size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -> list[str]:
+    """Return the dimensions of an arch in words.
+
+    Parameters
+    ----------
+    arch : Arch
+    mu : float, optional
+    at : str, optional
+        The line that was measured; the intrados if none was. An arch with a radius of 1
+        of which none was measured is told in radii.
+    """
+    metric = is_metric(arch, at)
+    unit, at = ("m" if metric else "r"), at or "intrados"
+    said: list[str] = []
+    if arch.eta < 2 or at != "intrados":
+        found = dimensions_of(arch, at)
+        said.append(f"span {found.span:.6g} {unit}, rise {found.rise:.6g} {unit} ({at})")
+    said.append(f"thickness {arch.thickness:.6g} {unit}")
+    if metric:
+        said.append(f"r {arch.radius:.6g} m, depth {arch.depth:.6g} m")
+        said.append(f"unit weight {arch.specific_weight / 1000:.6g} kN/m3")
+    if mu is not None:
+        said.append(f"friction angle {friction_angle(mu):.6g} deg")
+    return [f"  size    {', '.join(said)}"]
+
+
+def unit_lines(problem: Problem) -> list[str]:
+    """Return of which size forces are, in words, where an arch is told in radii."""
+    arch = plain_arch(problem)
+    if arch is None or is_metric(arch, at_of(problem)):
+        return []
+    heavy = arch.specific_weight / 1000
+    return [f"  unit    no size was given: forces are those of r = 1 m and {heavy:.6g} kN/m3"]
+
+
+def is_metric(arch: Arch, at: At | None = None) -> bool:
+    """Tell whether an arch has a size: a line of it was measured, or its radius is given."""
+    return at is not None or arch.radius != 1
+
+
+def weight_of(problem: Problem) -> float:
+    """Weight of all blocks [N]."""
+    return sum(block.mass for block in problem.assembly.blocks) * STANDARD_GRAVITY
+
+
+def _live(problem: Problem) -> float:
+    """Vertical live loads in all at a factor of 1, upwards [N]; body forces are none."""
+    loads = [load for load in problem.live if not load.per_weight]
+    return float(sum(load.force[1] * len(load.blocks) for load in loads))
+
+
+def tilt_and_lean(problem: Problem) -> dict[str, float]:
+    """Return by how many degrees gravity is turned in the plane, and out of it."""
+    x, y, z = problem.gravity.tolist()
+    return {
+        "tilt_deg": math.degrees(math.atan2(x, -y)),
+        "lean_deg": math.degrees(math.atan2(z, math.hypot(x, y))),
+    }
+
+
+def joint_names(assembly: Assembly) -> list[str]:
+    """Name each joint by the bodies on its two sides."""
+    return [
+        f"{side_name(assembly, k, 0)}-{side_name(assembly, k, 1)}"
+        for k in range(len(assembly.joints))
+    ]
+
+
+def side_name(assembly: Assembly, joint: int, side: int) -> str:
+    """Name the body on a side of a joint."""
+    here = assembly.joints[joint]
+    index = (here.before, here.after)[side]
+    if index != SUPPORT:
+        return assembly.blocks[index].name or str(index)
+    if here.support is None:
+        return "support"
+    return assembly.supports[here.support].name or "support"
+
+
+def described(problem: Problem) -> str:
+    """Say what a problem is, in a line."""
+    turned = tilt_and_lean(problem)
+    assembly = problem.assembly
+    said = [problem.title] if problem.title else []
+    said += [counted(len(assembly.blocks), "block"), counted(len(assembly.joints), "joint")]
+    said.append(f"mu {problem.mu:g}")
+    if turned["tilt_deg"]:
+        said.append(f"tilted {turned['tilt_deg']:g} deg")
+    if turned["lean_deg"]:
+        said.append(f"gravity leans {turned['lean_deg']:g} deg out of the plane")
+    if problem.live:
+        said.append(
+            f"live loads times {problem.load:g}" if problem.load else "no live load on it"
+        )
+    if problem.shaking is not None:
+        said.append(problem.shaking.words)
+    arch = plain_arch(problem)
+    metric = arch is None or is_metric(arch, at_of(problem))
+    said.append(f"L = {assembly.size:g} m" if metric else "L = r")
+    return ", ".join(said)

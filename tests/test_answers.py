@@ -1,0 +1,110 @@
+"""Answers as JSON: the same keys for every subject, as the published schema says."""
+
+from __future__ import annotations
+
+import json
+import runpy
+from pathlib import Path
+from typing import Any
+
+import pytest
+from running import inside
+
+DOCS = Path(__file__).parent.parent / "docs"
+PLACE = DOCS / "schema" / "answers.json"
+SCHEMA = json.loads(PLACE.read_text(encoding="utf-8"))
+TYPES: dict[str, tuple[type, ...]] = {
+    "string": (str,),
+    "integer": (int,),
+    "number": (int, float),
+    "boolean": (bool,),
+    "null": (type(None),),
+    "object": (dict,),
+    "array": (list,),
+}
+ARCH = "--alpha 90 --eta 0.12 --mu 0.7"
+PULSE = "--shake half-sine --amplitude 0.3 --duration 0.2 --method pymunk"
+CHECKS = (
+    f"{ARCH} --method theory",
+    f"{ARCH} --method limit --must-rest --voussoirs 5",
+    "--alpha 90 --eta 0.1 --mu 0.7 --method direct",
+    "--span 8 --rise 3 --thickness 0.45 --mu inf",
+    f"{ARCH} --lean 3 --method pybullet --voussoirs 5",
+    f"{ARCH} --tilt 20",
+    f"{ARCH} --fill 0.3 --point-load 0.2 1",
+    "pointed-arch --mu 0.7 --fill 0.3 --tilt 4",
+    "oppenheim_7 --load 0.4 --method direct",
+    f"column --mu 0.7 {PULSE}",
+)
+BRACKETS = (
+    "--alpha 90 --mu 0.7 --method theory",
+    "--alpha 90 --mu 0.3",
+    "--span 8 --rise 3 --mu 0.7 --method direct --tol 0.01",
+    f"{ARCH} --over tilt",
+    f"{ARCH} --over mu",
+    "pointed-arch --mu 0.7",
+    "pointed-arch --mu 0.7 --over tilt --method direct",
+    "oppenheim_7 --over load",
+    "spread_90_12_20 --over spread",
+)
+
+
+def wrong(value: Any, schema: dict[str, Any], where: str = "$") -> list[str]:
+    """What of a value is not as a schema says, for the words of JSON Schema it uses."""
+    if "$ref" in schema:
+        return wrong(value, SCHEMA["$defs"][schema["$ref"].removeprefix("#/$defs/")], where)
+    if "anyOf" in schema:
+        found = [wrong(value, each, where) for each in schema["anyOf"]]
+        return min(found, key=len)
+    if "enum" in schema:
+        return [] if value in schema["enum"] else [f"{where}: {value!r}"]
+    kind = schema["type"]
+    if not isinstance(value, TYPES[kind]) or (isinstance(value, bool) and kind != "boolean"):
+        return [f"{where}: {value!r} is no {kind}"]
+    if kind == "array":
+        pairs = enumerate(value)
+        return [
+            each for k, item in pairs for each in wrong(item, schema["items"], f"{where}.{k}")
+        ]
+    if kind != "object" or "properties" not in schema:
+        return []
+    known = schema["properties"]
+    keys = [f"{where}: {key}" for key in known.keys() ^ value.keys()]
+    both = known.keys() & value.keys()
+    return keys + [each for k in both for each in wrong(value[k], known[k], f"{where}.{k}")]
+
+
+def test_the_published_schema_is_that_of_the_code() -> None:
+    assert runpy.run_path(str(DOCS / "schema.py"))["text"]() == PLACE.read_text("utf-8")
+
+
+def test_what_is_not_as_the_schema_says_is_seen() -> None:
+    told = json.loads(inside("check", *ARCH.split(), "--json").stdout)
+    check = SCHEMA["$defs"]["Check"]
+    assert wrong(told, check) == []
+    joint = {**told["joints"][0], "ends": [["left", 0.0]]}
+    for change in (
+        {"verdict": "falls"},
+        {"wall_s": None},
+        {"more": 1},
+        {"joints": [joint]},
+        {"arch": {**told["arch"], "eta": True}},
+    ):
+        assert len(wrong({**told, **change}, check)) == 1
+
+
+@pytest.mark.parametrize(
+    ("command", "asked"),
+    [("check", each) for each in CHECKS] + [("bracket", each) for each in BRACKETS],
+)
+def test_answers_of_all_subjects_have_the_same_keys(command: str, asked: str) -> None:
+    done = inside(command, *asked.split(), "--json")
+    assert done.returncode in {0, 1, 3}, done.stderr
+    told = json.loads(done.stdout, parse_constant=pytest.fail)
+    assert wrong(told, SCHEMA["$defs"][command.capitalize()]) == []
+    assert [each["found"] for each in told["evidence"]]
+    # What is told of a symmetric circular arch is told of it under its own weight alone.
+    besides = {"--tilt", "--fill", "--over"}
+    assert (told["arch"] is not None) == (
+        asked.startswith("--") and not besides & {*asked.split()}
+    )
