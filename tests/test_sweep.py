@@ -466,6 +466,14 @@ def test_tables_of_kinds_have_a_column_and_a_type_for_each_parameter(tmp_path: P
                 assert held[same] == row[same]
 
 
+def test_a_date_is_no_load(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as executor:
+        text = 'kind = "column"\nmu = 0.7\nmethod = "limit"\ndead = 2026-11-23'
+        sweep(design_of(tmp_path, text), tmp_path, executor=executor)
+    [row] = read_rows(tmp_path)
+    assert "dead = '2026-11-23': must be" in str(row["error"])
+
+
 def test_a_table_of_one_question_about_a_kind(tmp_path: Path) -> None:
     """Without any whole number in it."""
     parquet = pytest.importorskip("pyarrow.parquet")

@@ -144,7 +144,12 @@ class Design(How):
     @property
     def is_plain(self) -> bool:
         """Whether statics answer it in bulk."""
-        return is_plain(self.kind, self.axes, self.over, json.dumps(self.rest))
+        return is_plain(self.kind, self.axes, self.over, self._common)
+
+    @property
+    def _common(self) -> str:
+        # A date of TOML is a text, at which the case is refused.
+        return json.dumps(self.rest, sort_keys=True, default=str)
 
     @property
     def size(self) -> int:
@@ -163,7 +168,7 @@ class Design(How):
         """Give the cases one after the other, always in the same order."""
         names, own = tuple(self.axes), tuple(self.settings.axes)
         whole = [at for at, name in enumerate(names) if self.is_whole(name)]
-        rest = json.dumps(self.rest, sort_keys=True)
+        rest = self._common
         free = [(method, *self._width(method), self.taken(method)) for method in self.method]
         for drawn in self._grid() if self.random is None else self._drawn(self.random):
             values = [*drawn]
