@@ -262,7 +262,9 @@ class _Search:
         last = math.inf
         for _ in range(ROUNDS):
             margin, slope = self.margin(guess)
-            if margin < -NOTHING:
+            # As little of the margin as decides that little of the share.
+            steep = slope * guess if slope > 0 else 1.0
+            if margin < -NOTHING * min(steep, 1.0):
                 low = guess
             else:
                 high = guess
