@@ -333,6 +333,8 @@ OPTIONS = {
     "eta",
     "mu",
     "must_rest",
+    "over",
+    "within",
     "voussoirs",
     "weight",
     "depth",
