@@ -30,6 +30,7 @@ from blocksim.arch.theory.regions import at_inner_sliding
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.assembly import Array
 from blocksim.many import Case
+from blocksim.many.case import ARCH
 
 SEED = 2024
 TOL = {"pymunk": 1e-3, "direct": 1e-8, "pybullet": 4e-3}
@@ -59,13 +60,24 @@ class Drawn:
 
     def cases(self, engine: str) -> list[Case]:
         """Ask an engine: with less, with more than is critical, and for a bracket."""
-        start, factors = (self.voussoirs, "centreline"), (1 - ASIDE, 1 + ASIDE)
+        factors = 1 - ASIDE, 1 + ASIDE
         if self.eta is not None:
-            rest = *start, self.eta, None, engine, math.inf, 0.0
-            return [Case(self.alpha_deg, self.mu * factor, *rest) for factor in factors]
-        arch = self.alpha_deg, self.mu, *start, None
-        beside = [Case(*arch, factor, engine, math.inf, 0.0) for factor in factors]
-        return [*beside, Case(*arch, None, engine, 0.0, TOL[engine], confirm=False)]
+            less = [self._given(factor) | {"eta": self.eta} for factor in factors]
+        else:
+            less = [self._given() | {"ratio": factor} for factor in factors]
+        made = [Case(ARCH, tuple(each.items()), engine, band=math.inf) for each in less]
+        if self.eta is not None:
+            return made
+        given, tol = tuple(self._given().items()), TOL[engine]
+        return [*made, Case(ARCH, given, engine, "thickness", tol=tol, confirm=False)]
+
+    def _given(self, factor: float = 1.0) -> dict[str, float | str]:
+        return {
+            "half_angle_deg": self.alpha_deg,
+            "mu": self.mu * factor,
+            "voussoirs": self.voussoirs,
+            "weight": "centreline",
+        }
 
 
 @dataclass(frozen=True)

@@ -25,11 +25,12 @@ from numpy.random import Generator
 
 from analysis.command import run
 from analysis.random_problems import Case, drawn
-from blocksim import Arch
+from blocksim.arch.circular import Arch
 from blocksim.ask.check import check
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import Load, Problem
 from blocksim.common.errors import InputError
+from blocksim.kinds.circular import arch_problem
 from blocksim.limit.proof import proof_record
 from blocksim.verify import verify
 
@@ -86,7 +87,7 @@ def _begun(index: int, random: Generator) -> tuple[str, Problem]:
             eta=float(10 ** random.uniform(-2, 0)),
             voussoirs=3,
         )
-        return "three voussoirs", arch.problem(_friction(random) or 0.5)
+        return "three voussoirs", arch_problem(arch, _friction(random) or 0.5)
     asked = drawn(Case(int(random.integers(10**6)), MOST))
     return asked.question.kind, asked.problem
 
@@ -178,7 +179,7 @@ def _changed(problem: Problem, random: Generator) -> Problem:
         force = share * np.array([math.cos(angle), math.sin(angle)])
         dead.append(Load(force=force, blocks=(on,), point=point))
     made = replace(assembly, blocks=tuple(blocks), joints=tuple(joints))
-    return replace(problem, assembly=made, dead=tuple(dead), origin={})
+    return replace(problem, assembly=made, dead=tuple(dead), maker=None)
 
 
 def _rounded(block: Block, decimals: int) -> Block:

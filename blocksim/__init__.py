@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from blocksim.blocks.assembly import Assembly, Block, Joint
     from blocksim.blocks.given import Body, GivenJoint
     from blocksim.blocks.joints import JointState
-    from blocksim.blocks.maker import Built, Fill, Made, Maker, Table, count, metres, parameter
+    from blocksim.blocks.made import Built, Fill, Made
+    from blocksim.blocks.maker import Maker, Table, count, metres, parameter
     from blocksim.blocks.problem import Load, Problem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
     from blocksim.evidence.recording import Recording
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from blocksim.kinds.stack import Stack
     from blocksim.kinds.wall import Wall
     from blocksim.limit import collapse, equilibrium
+    from blocksim.many.run import sweep
 
 __all__ = [
     "Arcade",
@@ -105,6 +107,7 @@ __all__ = [
     "parameter",
     "simulate",
     "structure_of",
+    "sweep",
 ]
 
 _PLACES = {
@@ -118,7 +121,8 @@ _PLACES = {
     "blocks.assembly": ("Assembly", "Block", "Joint"),
     "blocks.given": ("Body", "GivenJoint"),
     "blocks.joints": ("JointState",),
-    "blocks.maker": ("Built", "Fill", "Made", "Maker", "Table", "count", "metres", "parameter"),
+    "blocks.made": ("Built", "Fill", "Made"),
+    "blocks.maker": ("Maker", "Table", "count", "metres", "parameter"),
     "blocks.problem": ("Load", "Problem"),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "evidence.recording": ("Recording",),
@@ -141,6 +145,7 @@ _PLACES = {
     "kinds.stack": ("Stack",),
     "kinds.wall": ("Wall",),
     "limit": ("collapse", "equilibrium"),
+    "many.run": ("sweep",),
 }
 """Where the public names are; each is loaded when it is first used."""
 

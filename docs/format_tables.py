@@ -11,19 +11,36 @@ from pydantic import TypeAdapter
 
 from blocksim.arch.scenario import ScenarioFile
 from blocksim.blocks.entries import Around, StructureFile
-from blocksim.many.design import Design
+from blocksim.many.design import How
+from blocksim.many.load import BY_ANGLE, USUAL_ARCH, DesignFile
 
 
 def of_format(which: str) -> str:
     """Tables of the keys of a file: one of its top, one for each table inside it."""
-    schemas = {"structure": StructureFile, "scenario": ScenarioFile, "design": Design}
+    schemas = {"structure": StructureFile, "scenario": ScenarioFile, "design": DesignFile}
     schema = TypeAdapter(schemas[which]).json_schema()
     parts = {"": schema, **{_word(name): part for name, part in schema["$defs"].items()}}
-    return "\n\n".join(
+    tables = [
         (f"**{name}**: {_sentence(part)}\n\n" if name else "") + _keys(part)
         for name, part in parts.items()
         if "properties" in part
-    )
+    ]
+    return "\n\n".join([*tables, _by_angle()] if which == "design" else tables)
+
+
+def _by_angle() -> str:
+    """Table of the axes of arches by their half-angle."""
+    rows = [
+        [
+            f"`{name}`",
+            known.allowed(known.low, known.high, known.above),
+            f"`{USUAL_ARCH[name]}`" if name in USUAL_ARCH else "-",
+            known.about,
+        ]
+        for name, known in BY_ANGLE.items()
+    ]
+    said = "**circular-arch**: axes of arches by their half-angle, or by what can be measured."
+    return f"{said}\n\n" + table(["key", "may be", "if left out", "what it is"], rows)
 
 
 def _word(name: str) -> str:
@@ -53,8 +70,9 @@ def _keys(part: dict[str, Any]) -> str:
 def _described(part: dict[str, Any]) -> dict[str, str]:
     """Return what a docstring in numpy style says of each parameter, bases included."""
     text = part.get("description", "")
-    if part.get("title") == "StructureFile":
-        text += "\n" + re.sub(r"^ {4}", "", Around.__doc__ or "", flags=re.MULTILINE)
+    base = {"StructureFile": Around, "DesignFile": How}.get(part.get("title", ""))
+    if base is not None:
+        text += "\n" + re.sub(r"^ {4}", "", base.__doc__ or "", flags=re.MULTILINE)
     said = dict[str, str]()
     for found in re.finditer(
         r"^(\w[\w, ]*) : [^\n]*\n((?:    [^\n]*\n?)*)", text, flags=re.MULTILINE

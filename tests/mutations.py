@@ -166,7 +166,7 @@ MUTATIONS = (
     ),
     Mutation(
         "friction of a pair in pymunk",
-        "engines/pymunk.py",
+        "engines/chipmunk.py",
         "math.sqrt(min(float(mu), FRICTION_CAP))",
         "min(float(mu), FRICTION_CAP)",
         "test_pymunk.py validation/test_simple_truths.py",
@@ -288,7 +288,7 @@ MUTATIONS = (
         "test_bracket.py",
     ),
     Mutation(
-        "old spaces wait for the collector", "engines/pymunk.py",
+        "old spaces wait for the collector", "engines/chipmunk.py",
         "weakref.finalize(self, _let_go, space)", "pass",
         "test_pymunk.py",
     ),
@@ -356,7 +356,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a time after the end is passed over", "view/film.py",
-        "later = at > max(shown, round(shown, _digits(shown)))", "later = False",
+        "later = at > max(shown, round(shown, digits_of(shown)))", "later = False",
         "test_video.py",
     ),
     Mutation(

@@ -13,6 +13,7 @@ import math
 import re
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import ezdxf
@@ -202,10 +203,10 @@ BY_KIND = {
     "friction": 0.7,
     "density": 20000.0,
     "pier_width": 1.0,
-    "pier_height": 2.0,
-    "arch": {"kind": "circular", "thickness": 0.4, "voussoirs": 7, "fill": 0.2},
+    "pier_height": 1.0,
+    "arch": {"kind": "circular-arch", "thickness": 0.4, "voussoirs": 7, "fill": 0.2},
 }
-WALL = {"kind": "wall", "friction": 0.7, "courses": 3, "height": 1.5}
+WALL = {"kind": "wall", "friction": 0.7, "courses": 3, "block_height": 0.5}
 SCENARIO = {
     "title": "t",
     "source": "s",
@@ -302,9 +303,11 @@ def _dxf() -> bytes:
 @cache
 def _plain_dxf() -> bytes:
     """Entities alone, in which a change is sure to matter."""
-    lines = ["0", "SECTION", "2", "ENTITIES"]
+    lines = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1015", "0", "ENDSEC"]
+    lines += ["0", "SECTION", "2", "ENTITIES"]
     for layer, corners in (("supports", _box(-1, -1, 4, 1)), ("blocks", _box(0, 0, 1, 1))):
-        lines += ["0", "LWPOLYLINE", "8", layer, "90", "4", "70", "1"]
+        lines += ["0", "LWPOLYLINE", "100", "AcDbEntity", "8", layer]
+        lines += ["100", "AcDbPolyline", "90", "4", "70", "1"]
         lines += [word for x, y in corners for word in ("10", str(x), "20", str(y))]
     return "\n".join([*lines, "0", "ENDSEC", "0", "EOF", ""]).encode()
 
@@ -576,9 +579,58 @@ def options(draw: st.DrawFn) -> Attack:
     return Attack({}, (command, *sane))
 
 
+@cache
+def corpus() -> dict[str, Attack]:
+    """Return what broke something once, and what is like it, by name."""
+    found: dict[str, Attack] = {}
+    for folder in sorted((Path(__file__).parent / "corpus").iterdir()):
+        files = {path.name: path.read_bytes() for path in folder.iterdir()}
+        found[folder.name] = Attack(files, tuple(json.loads(files.pop("words.json"))))
+    return found
+
+
+@st.composite
+def kept(draw: st.DrawFn) -> Attack:
+    """One of the corpus, of which a file is spoilt, but for what may become work."""
+    seeds = [each for each in corpus().values() if each.files and each.words[0] != "sweep"]
+    seed = draw(st.sampled_from(seeds))
+    name = draw(st.sampled_from(sorted(seed.files)))
+    return Attack({**seed.files, name: draw(spoilt(seed.files[name]))}, seed.words)
+
+
 ATTACKS = {
     each.__name__: each
     for each in (
-        structures, scenarios, designs, motions, drawings, tables, options,
+        structures, scenarios, designs, motions, drawings, tables, options, kept,
     )
 }  # fmt: skip
+
+
+def good() -> dict[str, Attack]:
+    """Return the files that are changed and spoilt, as they are: each must be read."""
+    mu = ("--mu", "0.7")
+    arch = ("--alpha", "90", *mu, "--voussoirs", "9", "--eta", "0.2")
+    trees = {"structure": STRUCTURE, "given": GIVEN, "shaken": SHAKEN, "kind": BY_KIND}
+    trees |= {"wall": WALL, "peer": PEER, "peer of before": _peer_of_before()}
+    made = {
+        name: Attack(
+            {"a.json": _json(tree)}, ("check", "a.json", *mu * name.startswith("peer"))
+        )
+        for name, tree in trees.items()
+    }
+    for name, tree in {"scenario": SCENARIO, "measured": MEASURED}.items():
+        made[name] = Attack({"a.toml": toml(tree)}, ("check", "a.toml"))
+    for name, tree in {"design": DESIGN, "drawn design": DRAWN_DESIGN}.items():
+        words = ("sweep", "a.toml", "--out", "o", "--workers", "1")
+        made[name] = Attack({"a.toml": toml(tree)}, words)
+    for name, text in {"a.svg": SVG, "a.dxf": _dxf(), "plain.dxf": _plain_dxf()}.items():
+        made[name] = Attack({name: text}, ("check", name, *mu))
+    shaken = ("check", *arch, "--shake", "a.csv")
+    filmed = ("render", "a.npz", "--out", "o.svg")
+    coloured = ("map", "--out", "o.html", "--results", "a.json")
+    return {
+        **made,
+        "ground": Attack({"a.csv": CSV}, shaken),
+        "recording": Attack({"a.npz": packed(*_recording())}, filmed),
+        "results": Attack({"a.json": _json(RESULTS)}, coloured),
+    }

@@ -224,7 +224,7 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
         ("friction", 0.0, "1e-06 to 1e+06 (or inf)"),
         ("method", "fem", "theory"),
         ("half_angle", 4.0, "to 3.14159 rad"),
-        ("voussoirs", 2, "3 to 1000"),
+        ("voussoirs", 2, "3 to 10000"),
         ("weight", "mean", "centreline"),
     ],
 )

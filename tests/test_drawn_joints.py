@@ -14,8 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from running import inside
 
-from blocksim import Assembly, InputError, Verdict, ask, structure_of
+from blocksim import Assembly, InputError, Problem, Verdict, ask, structure_of
 from blocksim.blocks import regions
+from blocksim.view.structure import problem_figure
 
 Corners = list[tuple[float, float]]
 
@@ -133,6 +134,25 @@ def test_gaps_and_overlaps_are_closed_as_asked_and_listed(tmp_path: Path, gap: f
     assert f"{1000 * gap:+.3g} mm" in said["reason"]
     # Blocks may be told apart only as far as they are wide: a tolerance of a metre closes less.
     assert "within 0.01" in asked(table, tmp_path, "--tolerance", "1")["reason"]
+
+
+@pytest.mark.parametrize("gap", [0.003, -0.003])
+def test_closed_gaps_are_marked_in_the_still(gap: float):
+    """Each joint at which one is closed, with its size; of a drawing merely rounded none."""
+    wall = spread(bricks(3, 3), gap)
+    closed = structure_of(drawn(wall, 7.0, 15, tolerance=0.005))
+    marked = marks(closed)
+    assert {name for name in marked if "size" not in name} == {f"gap-{k}" for k in range(16)}
+    sizes = [words for name, words in marked.items() if "size" in name]
+    assert sizes == [f"{1000 * gap:+.3g} mm"] * 16
+    assert not marks(structure_of(drawn(bricks(3, 3), 7.0, 5)))
+
+
+def marks(problem: Problem) -> dict[str, str]:
+    """Artists of gaps in the still, by their gid, with their words."""
+    artists = problem_figure(problem).findobj()
+    named = {str(each.get_gid()): getattr(each, "get_text", str)() for each in artists}
+    return {name: words for name, words in named.items() if name.startswith("gap-")}
 
 
 def test_the_answer_names_what_closing_can_do(tmp_path: Path):

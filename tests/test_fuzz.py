@@ -5,7 +5,7 @@ Briefly in every run. For longer, which prints how often each fault was seen:
     BLOCKSIM_FUZZ_MINUTES=20 pytest -n 0 -s -m long tests/test_fuzz.py
 
 What breaks something is kept in `out/fuzz`; mended, it goes to `tests/corpus`, a folder each
-with the files and `words.json`, the words of the command.
+with the files and `words.json`, the words of the command. Attacks begin there, too.
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from isolated import Ended, Nursery
-from strangers import ATTACKS, Attack
+from strangers import ATTACKS, Attack, corpus, good
 
 ROOT = Path(__file__).parent.parent
-CORPUS = Path(__file__).parent / "corpus"
 CODES = {0, 1, 2, 3}
 MINUTES = float(os.environ.get("BLOCKSIM_FUZZ_MINUTES", "1"))
 AT_ONCE = 40
@@ -54,12 +53,18 @@ def faults(nursery: Nursery, attack: Attack, folder: Path) -> tuple[list[str], E
     return found, ended
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in CORPUS.iterdir()))
+@pytest.mark.parametrize("name", corpus())
 def test_what_broke_something_once(name: str, nursery: Nursery, tmp_path: Path) -> None:
-    files = {path.name: path.read_bytes() for path in (CORPUS / name).iterdir()}
-    words = tuple(json.loads(files.pop("words.json")))
-    found, ended = faults(nursery, Attack(files, words), tmp_path / "run")
+    found, ended = faults(nursery, corpus()[name], tmp_path / "run")
     assert not found, ended
+
+
+@pytest.mark.parametrize("name", good())
+def test_what_is_spoilt_was_good(name: str, nursery: Nursery, tmp_path: Path) -> None:
+    """Of a file that is refused as it is, nothing beyond that would ever be tried."""
+    found, ended = faults(nursery, good()[name], tmp_path / "run")
+    assert not found
+    assert ended.code in {0, 1, 3}, ended
 
 
 @pytest.mark.parametrize("kind", ATTACKS)

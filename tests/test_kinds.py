@@ -447,6 +447,37 @@ def of(kind: str, **more: object) -> dict[str, Any]:
     return {"kind": kind, "friction": 1, **more}
 
 
+@pytest.mark.parametrize(
+    ("kind", "whole"),
+    [
+        ("rubble", {"stones": 12, "seed": 3}),
+        ("wall", {"courses": 2}),
+        ("flat-arch", {"voussoirs": 3}),
+    ],
+)
+def test_a_whole_number_may_be_written_with_a_point(kind: str, whole: dict[str, int]) -> None:
+    pointed_out = structure_of(
+        of(kind, **{name: float(value) for name, value in whole.items()})
+    )
+    plain = structure_of(of(kind, **whole)).assembly.blocks
+    for one, other in zip(pointed_out.assembly.blocks, plain, strict=True):
+        assert np.array_equal(one.vertices, other.vertices)
+
+
+@pytest.mark.parametrize("width", [1e-6, 1e-3, 1e3, 1e6])
+@pytest.mark.parametrize("height", [1e-6, 1.0, 1e6])
+def test_rubble_of_extreme_sizes_is_made_or_refused_in_a_line(
+    width: float, height: float
+) -> None:
+    said = ""
+    try:
+        made = structure_of(of("rubble", width=width, height=height, stones=20))
+    except InputError as error:
+        said = str(error)
+    assert said or len(made.assembly.blocks) == 20
+    assert "\n" not in said
+
+
 SAID = [
     (
         {"kind": "gothic", "friction": 1},
@@ -459,7 +490,7 @@ SAID = [
     (pointed(thickness=True), "thickness = True: must be 1e-06 or more"),
     (pointed(thickness=math.nan), "thickness = nan: must be 1e-06 or more"),
     (pointed(voussoirs=7), "voussoirs = 7: must be an even number"),
-    (pointed(voussoirs=3.5), "voussoirs = 3.5: must be a whole number from 2 to 1000"),
+    (pointed(voussoirs=3.5), "voussoirs = 3.5: must be a whole number from 2 to 10000"),
     (pointed(joints="oblique"), "joints = 'oblique': must be one of normal, radial, vertical"),
     (pointed(radius=0.9), "radius = 0.9: must be above 1 and at most 1e+06 m"),
     (pointed(fill=-1), "fill = -1: must be 0 or more and at most 1e+06 m"),

@@ -54,7 +54,7 @@ def test_infinite_friction_may_be_a_text_in_files(tmp_path: Path) -> None:
     )
     assert load_scenario(str(path)).mu == math.inf
     path.write_text('half_angle_deg = 90\nmu = ["inf", 1]\n')
-    assert load_design(str(path)).mu.values == (math.inf, 1.0)
+    assert load_design(str(path)).axes["mu"].values == (math.inf, 1.0)
     path.write_text("alpha_deg = 90\nmu = 1\n")
     with pytest.raises(InputError, match="alpha_deg = 90: must be named half_angle_deg"):
         load_design(path)

@@ -74,6 +74,7 @@ def test_it_agrees_with_limit_analysis_on_an_arch(ratio: float, verdict: str) ->
     assert done.returncode == (verdict == "collapses")
 
 
+@pytest.mark.long
 def test_it_brackets_the_angle_at_which_a_column_overturns() -> None:
     options = "--mu", "0.7", "--over", "tilt", "--tol", "0.05"
     done = asked("bracket", "column", *options, "--method", SPRINGS, "--json")
@@ -94,9 +95,14 @@ def test_a_package_offers_engines_and_kinds(package: Path) -> None:
     [
         ("broken", "RuntimeError: two lines"),
         ("os:system", "must be an Engine"),
-        ("nowhere:ENGINE", "No module named 'nowhere'"),
-        ("own_engine:Springs", "must be an Engine"),
-        ("spring", "one of auto, theory, limit"),
+        *(
+            pytest.param(*each, marks=pytest.mark.long)
+            for each in (
+                ("nowhere:ENGINE", "No module named 'nowhere'"),
+                ("own_engine:Springs", "must be an Engine"),
+                ("spring", "one of auto, theory, limit"),
+            )
+        ),
     ],
 )
 def test_what_is_no_engine_is_refused_in_one_line(package: Path, method: str, why: str) -> None:

@@ -28,7 +28,7 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
 from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.limit.proof import proof_record
 from blocksim.verify import checked, seal, verify
 
@@ -204,7 +204,7 @@ def proofs() -> Iterator[Table]:
     """Of arches, walls, kinds, corners and loads; half of them of collapse."""
     for mu in (0.7, math.inf):
         for eta in (0.09, 0.15):
-            yield proof_of(Arch(half_angle=math.pi / 2, eta=eta, voussoirs=7).problem(mu))
+            yield proof_of(arch_problem(Arch(half_angle=math.pi / 2, eta=eta, voussoirs=7), mu))
     for tilt in (0, 50):
         yield proof_of(structure_of(wall(2, 2, 10, 8, 0.6)).tilted(math.radians(tilt)))
     for friction in (0.2, 0.6):

@@ -390,7 +390,7 @@ def test_blocks_let_go_start_neither_early_nor_late() -> None:
     slides = simulate_problem(slope, method="pybullet", duration=1.0)
     pull = math.sin(math.pi / 6) - 0.2 * math.cos(math.pi / 6)
     assert slides.displacement == pytest.approx(pull * slides.times**2 / 2, rel=1e-4, abs=1e-6)
-    arch = Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13).problem(0.7)
+    arch = arch_problem(Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13), 0.7)
     one, other = (
         simulate_problem(arch, method=method, duration=1.5) for method in ("pybullet", "pymunk")
     )

@@ -66,8 +66,8 @@ def test_a_space_goes_without_pythons_collector() -> None:
         world.hold(100)
         world.advance(60)
         assert np.abs(world.poses()[:, 2]).max() > 0.01
-        assert world._solids.loose or world._polygons
-        space = weakref.ref(world._space)
+        assert world._space.solids.loose or world._space.is_solid
+        space = weakref.ref(world._space._space)
         assert space() is not None
         del world
         assert space() is None

@@ -246,6 +246,41 @@ def test_svg_with_transforms_units_and_layers(tmp_path: Path) -> None:
     assert "1 text on layer Blocks" in problem.notes[1]
 
 
+HEAD = 'viewBox="-1000 -2000 8000 3000" width="8000mm" height="3000mm"'
+READ = ["utf-8", "utf-8-sig", "utf-16", "us-ascii", "iso-8859-1", "windows-1252", "koi8-r"]
+NOT_READ = [
+    "utf-32",
+    "utf-7",
+    "shift_jis",
+    "gb18030",
+    "cp037",
+    "rot13",
+    "hex",
+    "idna",
+    "none",
+    "",
+]
+
+
+@pytest.mark.parametrize("encoding", [*READ, *NOT_READ])
+def test_svg_of_any_encoding_is_read_or_refused_in_a_line(
+    tmp_path: Path, encoding: str
+) -> None:
+    drawing = svg_of(SHAPES.replace('<circle r="3"/>', ""), HEAD)
+    drawing = drawing[drawing.index("<svg") :]
+    said = encoding.removesuffix("-sig")
+    text = f'<?xml version="1.0" encoding="{said}"?>{drawing}'
+    path = tmp_path / "courses.svg"
+    path.write_bytes(text.encode(encoding if encoding in {*READ, *NOT_READ[:5]} else "ascii"))
+    if encoding in READ:
+        assert len(load_structure(path, friction=0.5).assembly.blocks) == 3
+        return
+    with pytest.raises(InputError) as refused:
+        load_structure(path, friction=0.5)
+    assert "a valid SVG file" in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
 def test_svg_and_dxf_of_a_wall_are_one_problem(tmp_path: Path, told: np.ndarray) -> None:
     def polygon(each: object) -> str:
         return f'<polygon points="{" ".join(f"{x!r},{-y!r}" for x, y in each)}"/>'

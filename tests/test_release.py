@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from running import inside
 
-from blocksim import Arch, simulate
+from blocksim import CircularArch, simulate
 from blocksim.common import later
 from blocksim.view import video
 
@@ -62,8 +62,8 @@ def test_what_is_missing_is_named_with_its_remedy(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     (tmp_path / "drawn.dxf").write_text("0\nEOF\n")
-    arch = Arch(half_angle=1.5, eta=0.3, voussoirs=3)
-    simulate(arch, mu=0.7, method="direct", duration=0.02).save(tmp_path / "run.npz")
+    arch = CircularArch(half_angle_deg=86, eta=0.3, voussoirs=3, friction=0.7)
+    simulate(arch, method="direct", duration=0.02).save(tmp_path / "run.npz")
     before = sorted(tmp_path.iterdir())
     monkeypatch.setattr(later, "find_spec", lambda name: None if name == library else name)
     monkeypatch.setattr(video, "find_spec", lambda name: None if name == library else name)

@@ -30,7 +30,15 @@ def above(room: str) -> list[str]:
     return [each for floor in FLOORS[: at + 1] for each in floor if each != room]
 
 
-@pytest.mark.parametrize("room", ROOMS)
+@pytest.mark.parametrize(
+    "room",
+    [
+        pytest.param(
+            room, marks=[] if room in {"blocksim.blocks", "blocksim.ask"} else pytest.mark.long
+        )
+        for room in ROOMS
+    ],
+)
 def test_a_room_loads_none_above_it(room: str) -> None:
     """All modules of a room, in a process of its own."""
     within = [name for name in PLACES if name == room or name.startswith(f"{room}.")]

@@ -133,7 +133,7 @@ def test_a_file_becomes_an_arch(tmp_path: Path) -> None:
         ),
         ("half_angle_deg = 90\n", "", "arch.half_angle_deg", "is missing", "given"),
         ("voussoirs = 27", "voussoirs = 2", "arch.voussoirs", "2", "3"),
-        ("voussoirs = 27", "voussoirs = 1001", "arch.voussoirs", "1001", "1000"),
+        ("voussoirs = 27", "voussoirs = 10001", "arch.voussoirs", "10001", "10000"),
         ("voussoirs = 27", "voussoirs = 9.0", "arch.voussoirs", "9.0", "integer"),
         ("eta = 0.12", "eta = 2.5", "arch.eta", "2.5", "2"),
         ("eta = 0.12", "eta = 0", "arch.eta", "0", "1e-15 to 2"),

@@ -154,6 +154,7 @@ def test_a_pulse_overturns_a_block_from_its_known_duration_on(name: str) -> None
     assert shake(shaken(name, 1.005), "direct").verdict is Verdict.COLLAPSES
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["pulse_1x4_05"])
 def test_pymunk_sees_the_same_pulses(name: str) -> None:
     assert shake(shaken(name, 0.99), "pymunk").verdict is Verdict.STANDS
@@ -166,10 +167,8 @@ def pushed(problem: Problem, amplitude: float) -> Shaken:
     return shake(replace(problem, shaking=shaking), "pymunk")
 
 
-@pytest.mark.parametrize(
-    ("share", "verdict"),
-    [(0.98, "stands"), pytest.param(1.02, "collapses", marks=pytest.mark.long)],
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("share", "verdict"), [(0.98, "stands"), (1.02, "collapses")])
 def test_a_push_moves_an_arch_in_pymunk_where_statics_says(share: float, verdict: str) -> None:
     """0.14510 g by limit analysis; 0.0976 g where steps end before forces are found."""
     table = {"kind": "circular-arch", "voussoirs": 27, "thickness": 0.15, "friction": 0.7}

@@ -262,7 +262,7 @@ def test_a_crash_says_nothing_that_a_terminal_obeys(monkeypatch: pytest.MonkeyPa
     def crash(*_: Any) -> None:
         raise RuntimeError("".join(NASTY))
 
-    monkeypatch.setattr("blocksim.cli.citing.references", crash)
+    monkeypatch.setattr("blocksim.ask.citing.cite", crash)
     done = inside("cite")
     assert done.returncode == 70
     require_plain(done.stderr)

@@ -120,6 +120,17 @@ def test_no_answer_is_beyond_the_range_given(
     assert {end: answer[end] for end in ends} == ends
 
 
+@pytest.mark.parametrize("method", [(), ("--method", "limit")])
+@pytest.mark.parametrize("within", [("0.1", "0.2"), ("0.3", "0.7")])
+def test_a_range_is_refused_where_nothing_is_searched(
+    stack: str, method: tuple[str, ...], within: tuple[str, str]
+) -> None:
+    """The limit, 0.4, was told as if no range had been given."""
+    done = blocksim("bracket", stack, "--over", "load", "--within", *within, *method)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "left out by limit, which searches no range" in done.stderr
+
+
 def test_a_structure_is_let_go_and_read_back(stack: str, tmp_path: Path) -> None:
     out = tmp_path / "run.npz"
     done = blocksim("simulate", stack, "--tilt", "25", "--seconds", "0.3", "--out", str(out))

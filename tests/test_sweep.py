@@ -17,6 +17,7 @@ from running import inside as blocksim
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim import Arch, Problem, bracket, check
+from blocksim import sweep as public_sweep
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.kinds.circular import CircularArch
 from blocksim.many import Case, answers, read_rows, run, sweep, write_csv, write_parquet
@@ -25,6 +26,17 @@ from blocksim.many.answers import Answered, Asked, answer
 from blocksim.many.shards import identities
 
 DIRECT = 'half_angle_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
+CASE = Case(
+    "circular-arch",
+    (
+        ("half_angle_deg", 90.0),
+        ("mu", 0.7),
+        ("voussoirs", 27),
+        ("weight", "centreline"),
+        ("eta", 0.1),
+    ),
+    "limit",
+)
 PYMUNK = DIRECT.replace("direct", "pymunk")
 
 
@@ -33,8 +45,9 @@ def test_a_grid_takes_every_combination(tmp_path: Path) -> None:
     cases = list(design.cases())
     assert len(cases) == design.size == 4 * 3 * 2 * 2 * 2 * 2
     assert len(set(cases)) == len(cases)
-    assert {case.half_angle_deg for case in cases} == {60.0, 90.0, 120.0, 150.0}
-    assert {case.mu for case in cases} == {0.5, 0.9, math.inf}
+    given = [dict(case.given) for case in cases]
+    assert {each["half_angle_deg"] for each in given} == {60.0, 90.0, 120.0, 150.0}
+    assert {each["mu"] for each in given} == {0.5, 0.9, math.inf}
 
 
 def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
@@ -44,22 +57,25 @@ def test_a_random_design_is_the_same_again_and_can_grow(tmp_path: Path) -> None:
     assert more[: len(few)] == few
     assert len(more) == 10_000
     assert few != list(design_of(tmp_path, SIMULATED.replace("seed = 7", "seed = 8")).cases())
-    assert all(60 <= case.half_angle_deg <= 150 and 0.4 <= case.mu <= 2 for case in more)
+    given = [dict(case.given) for case in more]
+    assert all(60 <= each["half_angle_deg"] <= 150 and 0.4 <= each["mu"] <= 2 for each in given)
     # Even over the whole numbers, ends included: 833 of each in 5000, +-5 standard errors.
-    counts = Counter(case.voussoirs for case in more)
+    counts = Counter(each["voussoirs"] for each in given)
     assert sorted(counts) == [7, 8, 9, 10, 11, 12]
     assert all(abs(count / 2 - 833) < 132 for count in counts.values())
     # Log-uniform: half of the draws lie below the geometric mean.
-    below = sum(case.mu < math.sqrt(0.8) for case in more) / len(more)
+    below = sum(each["mu"] < math.sqrt(0.8) for each in given) / len(more)
     assert abs(below - 0.5) < 0.036
 
 
 def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
-    case = Case(90.0, 0.7, 27, "centreline", 0.1, None, "limit", 0.0, 0.0)
+    case = CASE
     same = Case(*case)
     assert case.identity("1") == same.identity("1")
     assert case.identity("1") != case.identity("2")
-    others = [case._replace(mu=0.70001), case._replace(eta=None, ratio=0.1)]
+    other = dict(case.given) | {"mu": 0.70001}
+    ratio = tuple(("ratio" if name == "eta" else name, value) for name, value in case.given)
+    others = [case._replace(given=tuple(other.items())), case._replace(given=ratio)]
     assert len({each.identity("1") for each in (case, *others)}) == 3
 
 
@@ -67,8 +83,11 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
     ("change", "said"),
     [
         (("half_angle_deg = {", "alpha = {"), "alpha = "),
-        (("high = 150", "high = 180"), "half_angle_deg = 180.0: must be above 0 and below 180"),
-        (("low = 60", "low = 0"), "half_angle_deg = 0.0: must be above 0"),
+        (
+            ("high = 150", "high = 180"),
+            "half_angle_deg = 180.0: must be 0.06 or more and below 180 deg",
+        ),
+        (("low = 60", "low = 0"), "half_angle_deg = 0.0: must be 0.06 or more"),
         (("high = 150", "high = 50"), "half_angle_deg.high = 50.0: must be above low = 60.0"),
         ((", steps = 4", ""), "half_angle_deg.steps is missing"),
         (("steps = 4", "steps = 1"), "half_angle_deg.steps = 1"),
@@ -76,10 +95,11 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
         (("[0.5, 0.9, inf]", "[]"), "mu = []"),
         (("[0.5, 0.9, inf]", '["rough"]'), "mu.values.0 = 'rough'"),
         (("[0.5, 0.9, inf]", "nan"), "mu = nan"),
-        (("[9, 12]", "[9.5]"), "voussoirs = 9.5: must be a whole number from 3 to 1000"),
+        (("[9, 12]", "[9.5]"), "voussoirs = 9.5: must be a whole number from 3 to 10000"),
         (("[9, 12]", "2"), "voussoirs = 2.0"),
         (("[9, 12]", "{ low = 3, high = 1000, steps = 3 }"), "voussoirs = 501.5"),
-        (("0.1]", "2.1]"), "eta = 2.1: must be above 0 and at most 2"),
+        (("0.1]", "2.1]"), "eta = 2.1: must be 1e-15 or more and at most 2"),
+        (("eta =", "tilt_deg = 1\nband = 1\neta ="), "band = 1.0: must be left out: it is of"),
         (("eta =", "ratio = 1\neta ="), "ratio = 'given': must be left out where eta is given"),
         (('"sector"', '"stone"'), "weight = 'stone': must be one of centreline, sector"),
         (('"limit"', '"guess"'), "method = 'guess': must be one of auto"),
@@ -212,6 +232,56 @@ def test_settings_are_axes_like_any_other_and_part_of_the_question(tmp_path: Pat
     assert min(given.values()) > 40
 
 
+def test_an_arch_is_a_kind_like_any_other(tmp_path: Path) -> None:
+    """By angle, by what is measured, on a slope, over any parameter: as a single question."""
+    arch = {"voussoirs": 9, "mu": 0.7, "method": "limit"}
+    sized = {"span": 8, "rise": [2, 3], "thickness": 0.25, "at": "intrados"}
+    ring = {"half_angle_deg": [60, 90], "eta": 0.12}
+    designs = (
+        {"kind": "circular-arch", **sized, **arch},
+        {**ring, "tilt_deg": [0, 4], **arch},
+        {**ring, "over": "tilt", **arch},
+        {"half_angle_deg": 90, "over": "thickness", **arch},
+    )
+    with ThreadPoolExecutor(1) as executor:
+        for design in designs:
+            public_sweep(design, tmp_path, executor=executor)
+    rows = list(rows_of(tmp_path).values())
+    assert len(rows) == 2 + 4 + 2 + 1
+    for row in rows:
+        assert row["error"] is None
+        names = ("half_angle_deg", "eta") if row["parameters"] is None else ()
+        given = {name: row[name] for name in names if row[name]} | (row["parameters"] or {})
+        weight = "centreline" if names else "curved"
+        maker = CircularArch(**given, voussoirs=9, friction=0.7, weight=weight)
+        problem = maker.problem().tilted(math.radians(row["tilt_deg"] or 0.0))
+        if row["over"] is None:
+            seen = check(problem, method="limit")
+            assert (row["verdict"], row["load_factor"]) == (seen.verdict, seen.load_factor)
+            assert row["half_angle_deg"] == pytest.approx(math.degrees(maker.half_angle))
+            if seen.arch is not None:
+                assert row["eta"] == seen.arch.shape.eta
+        else:
+            found = bracket(problem, over=row["over"], method="limit")
+            assert row["unit"] == found.unit
+            assert row["limit"] == pytest.approx(found.limit, rel=1e-9)
+            assert row["low"] == pytest.approx(found.low, rel=1e-9)
+    assert {row["verdict"] for row in rows if row["tilt_deg"]} == {"stands", "collapses"}
+
+
+def test_rows_of_earlier_versions_go_into_the_same_table(tmp_path: Path) -> None:
+    old = {"id": "0" * 24, "half_angle_deg": 90.0, "mu": "inf", "verdict": "stands"}
+    (tmp_path / "rows-old.jsonl").write_text(json.dumps(old) + "\n")
+    with ThreadPoolExecutor(1) as executor:
+        sweep(design_of(tmp_path, KINDS_GRID), tmp_path, executor=executor)
+    write_csv(tmp_path, tmp_path / "rows.csv")
+    with (tmp_path / "rows.csv").open(newline="") as file:
+        held = {row["id"]: row for row in csv.DictReader(file)}
+    assert len(held) == 25
+    assert held[str(old["id"])]["half_angle_deg"] == "90.0"
+    assert sum(row["pier_width_m"] != "" for row in held.values()) == 24
+
+
 def test_a_bracket_may_do_without_moving_runs(tmp_path: Path) -> None:
     text = (
         'half_angle_deg = 90\nmu = 0.7\nvoussoirs = 9\nmethod = ["limit", "direct"]\nconfirm = '
@@ -270,7 +340,8 @@ def test_a_case_that_kills_its_process_becomes_a_row(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: type[Exception]
 ) -> None:
     def poison(case: Case) -> bool:
-        return case.mu == 0.9 and case.voussoirs == 12 and case.half_angle_deg == 90
+        given = dict(case.given)
+        return (given["mu"], given["voussoirs"], given["half_angle_deg"]) == (0.9, 12, 90)
 
     made: list[Executor] = []
 
@@ -293,7 +364,11 @@ def test_a_case_that_kills_its_process_becomes_a_row(
 def test_an_executor_that_breaks_is_not_ours_to_replace(tmp_path: Path) -> None:
     design = design_of(tmp_path, GRID)
     with pytest.raises(BrokenExecutor):
-        sweep(design, tmp_path, executor=Fragile(lambda case: case.mu > 1, BrokenExecutor))
+        sweep(
+            design,
+            tmp_path,
+            executor=Fragile(lambda case: dict(case.given)["mu"] > 1, BrokenExecutor),
+        )
     with ThreadPoolExecutor(1) as executor:
         assert sweep(design, tmp_path, executor=executor).cases == 192
 
@@ -334,6 +409,7 @@ def test_a_parquet_table_holds_the_same_rows(
     table = parquet.read_table(out / "rows.parquet").to_pylist()
     assert len(table) == len(rows) == 192 + 1 + 192
     for row, held in zip(rows, table, strict=True):
+        assert row.pop("parameters") is None
         assert list(held) == list(row)
         settings = held["settings"]
         if settings is not None:
@@ -412,7 +488,7 @@ def test_csv_of_arches_is_their_rows(tmp_path: Path) -> None:
     assert len(held) == len(rows) == 192
     for row, said in zip(rows, held, strict=True):
         for name, value in row.items():
-            if name == "settings":
+            if name in {"settings", "parameters"}:
                 continue
             if isinstance(value, float) and not isinstance(value, bool):
                 assert float(said[name]) == value
@@ -444,7 +520,7 @@ def test_what_is_no_row_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_worker_of_another_version_is_refused() -> None:
-    case = Case(90.0, 0.7, 27, "centreline", 0.1, None, "limit", 0.0, 0.0)
+    case = CASE
     with pytest.raises(MissingPart, match="install the same"):
         answer([Asked(case.identity("x"), case)], {"limit": "x"})
 

@@ -16,8 +16,8 @@ from blocksim.common.checks import (
     HALF_ANGLE,
     LENGTH,
     PER_VOLUME,
-    is_number,
     require,
+    require_voussoirs,
 )
 from blocksim.common.shown import Shown
 
@@ -39,7 +39,7 @@ class Arch(Shown):
     eta : float
         Thickness-to-radius ratio t/r, 1e-15 to 2.
     voussoirs : int
-        Number of equal voussoirs n, 3 to 1000.
+        Number of equal voussoirs n, 3 to 10000.
     weight : {"centreline", "sector"}
         Where the weight of a voussoir acts: at the centroid of its arc of the mean
         circle (the paper's model), or at the centroid of the annular sector.
@@ -68,8 +68,7 @@ class Arch(Shown):
         """Check the ranges."""
         HALF_ANGLE.require("half_angle", self.half_angle)
         ETA.require("eta", self.eta)
-        whole = is_number(self.voussoirs, 2, 1000) and self.voussoirs == int(self.voussoirs)
-        require(whole, "voussoirs", self.voussoirs, "a whole number from 3 to 1000")
+        require_voussoirs(self.voussoirs)
         require(self.weight in WEIGHTS, "weight", self.weight, f"one of {', '.join(WEIGHTS)}")
         LENGTH.require("radius", self.radius)
         LENGTH.require("depth", self.depth)

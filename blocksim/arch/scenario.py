@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 
@@ -20,7 +20,7 @@ from blocksim.arch.dimensions import (
 )
 from blocksim.arch.modes import Mode
 from blocksim.blocks.entries import Density, Length, allowed_words
-from blocksim.common.checks import ETA, FRICTION, require
+from blocksim.common.checks import ETA, FRICTION, VOUSSOIRS, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath, read_file, shipped_files, toml_of
 from blocksim.evidence.verdict import Verdict
@@ -79,7 +79,7 @@ class ArchTable:
 
     __pydantic_config__: ClassVar = {"extra": "forbid"}
 
-    voussoirs: Annotated[int, Field(ge=3, le=1000, strict=True)]
+    voussoirs: Annotated[int, Field(ge=VOUSSOIRS.low, le=VOUSSOIRS.high, strict=True)]
     half_angle_deg: Angle | None = None
     eta: Ratio | None = None
     radius: Length | None = None
@@ -222,15 +222,24 @@ def read_table(path: AnyPath, schema: type[Table], what: str, allowed: str) -> T
     InputError
         In one line, with file, field, value and what is allowed.
     """
+    return as_said(schema, written_in(path, what, allowed), str(path))
+
+
+def written_in(path: AnyPath, what: str, allowed: str) -> dict[str, Any]:
+    """Read a TOML file; as of `read_table`."""
     text = read_file(path, what, allowed, LARGEST_FILE)
     try:
-        table = toml_of(text)
+        return toml_of(text)
     except ValueError as error:
         raise InputError("file", str(error), "valid TOML", where=str(path)) from None
+
+
+def as_said(schema: type[Table], table: object, where: str | None = None) -> Table:
+    """Check what a file says; as of `read_table`."""
     try:
         return _adapter(schema).validate_python(table)
     except ValidationError as error:
-        raise _first_of(error, str(path)) from None
+        raise _first_of(error, where) from None
 
 
 @cache
@@ -238,7 +247,7 @@ def _adapter(schema: type[Table]) -> TypeAdapter[Table]:
     return TypeAdapter(schema)
 
 
-def _first_of(error: ValidationError, where: str) -> InputError:
+def _first_of(error: ValidationError, where: str | None) -> InputError:
     """Turn the first of pydantic's complaints into one line."""
     errors = error.errors(include_url=False, include_context=False)
     # A misspelt key shows twice, as unknown and as missing: the first says more.

@@ -173,7 +173,8 @@ def bracket(
         One of `blocksim.ask.families.families_of`; by default the thickness, where there is
         one.
     within : tuple of float, optional
-        Where to search; by default where limit analysis says, within the family's range.
+        Where an engine searches; by default where limit analysis says, within the family's
+        range. Other methods search nowhere and take none.
     **options
         `method`, `settings`, `reduce`, `progress`, `tol`, `confirm`
         (`blocksim.ask.options.Options`).
@@ -309,6 +310,8 @@ def _of_family(
     chosen = choose(
         given.method, given.tol, problem=probe, settings=given.settings, reduce=given.reduce
     )
+    allowed = f"left out by {chosen.name}, which searches no range; engines do"
+    require(within is None or not chosen.is_static, "within", f"{low:g} {high:g}", allowed)
     if family.spreading is not None:
         allowed = "limit or direct: others move no supports"
         require(chosen.moves_supports, "method", chosen.name, allowed)

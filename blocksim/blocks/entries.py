@@ -8,8 +8,9 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
+from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shaking import MOST_ROWS
+from blocksim.blocks.shapes import MOST_CORNERS
 from blocksim.common.checks import (
     COORDINATE,
     ETA,

@@ -14,8 +14,9 @@ from blocksim.blocks.touching import Touch
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 
-OFF = 0.01
-"""How far a joint may lie off both of its faces, in units of the size: drawn in mortar."""
+OFF = 0.1
+"""How far a joint may lie off both of its faces, in units of half the larger side of the
+smaller block: drawn in mortar."""
 
 SQUARE = 0.999
 """Least cosine between a given normal and the one across the ends, to be the same."""
@@ -82,8 +83,8 @@ def as_given(
     joints: Sequence[GivenJoint],
     outlines: Sequence[Sequence[Array]],
     names: Sequence[str],
-    size: float,
-    tolerance: float,
+    sizes: Array,
+    share: float,
     notes: list[str],
 ) -> list[tuple[Touch, float | None]]:
     """Lay given joints on the faces of their bodies.
@@ -94,8 +95,10 @@ def as_given(
     outlines : sequence of sequences of (k, 2) float
         Of each body, counter-clockwise [m].
     names : sequence of str
-    size, tolerance : float
-        [m]
+    sizes : (bodies,) float
+        Half the larger side of each [m].
+    share : float
+        Tolerance at a joint, in units of the smaller one's size.
     notes : list of str
         To which it adds what was mended.
 
@@ -110,12 +113,13 @@ def as_given(
         If a joint lies off the faces of both bodies, has no length, or a corner no normal.
     """
     found: list[tuple[Touch, float | None]] = []
-    off: list[str] = []
+    off, farthest = list[str](), 0.0
     for index, joint in enumerate(joints):
         field, ends, normal = f"joints[{index}]", joint.ends, joint.normal
         between = f"blocks {names[joint.a]} and {names[joint.b]}"
         one, other = _face(outlines[joint.a], ends), _face(outlines[joint.b], ends)
-        nearest = min(one[0], other[0])
+        nearest, size = min(one[0], other[0]), float(min(sizes[joint.a], sizes[joint.b]))
+        tolerance = share * size
         require(
             nearest <= OFF * size,
             f"{field}.ends",
@@ -123,6 +127,7 @@ def as_given(
             f"on a face of {between}: it is {nearest:.3g} m off both",
         )
         if nearest > tolerance:
+            farthest = max(farthest, nearest)
             off.append(between)
         if normal is not None:
             way = float(np.hypot(*normal))
@@ -164,7 +169,7 @@ def as_given(
         found.append((Touch(joint.a, joint.b, ends, known), joint.friction))
     if off:
         notes.append(
-            f"{len(off)} joints given lie off their faces by more than {tolerance:.3g} m, "
+            f"{len(off)} joints given lie off their faces, by up to {farthest:.3g} m, "
             f"the first between {off[0]}"
         )
     return found

@@ -14,7 +14,8 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, cast
 
-from blocksim.blocks.problem import Load, Problem
+from blocksim.blocks.made import Built, Made
+from blocksim.blocks.problem import Problem
 from blocksim.common.checks import (
     LENGTH,
     PER_VOLUME,
@@ -26,8 +27,7 @@ from blocksim.common.errors import MISSING, InputError, perhaps
 from blocksim.common.shown import Shown
 
 if TYPE_CHECKING:
-    from blocksim.blocks.assembly import Assembly
-    from blocksim.blocks.given import Body, GivenJoint
+    pass
 
 Array = Any
 Stands = Literal["low", "high"]
@@ -118,7 +118,11 @@ class Parameter:
         if self.whole:
             return f"a whole number from {low:g} to {high:g}"
         start = f"above {low:.6g}" if above else f"{low:.6g} or more"
-        return f"{start} and at most {high:.6g}{unit}"
+        after = math.nextafter(high, math.inf)
+        # The last number below a round one is not said as that.
+        is_next = after.is_integer() and not float(high).is_integer()
+        end = f"below {after:g}" if is_next else f"at most {high:.6g}"
+        return f"{start} and {end}{unit}"
 
 
 def parameter(default: object, about: str, **known: Any) -> Any:
@@ -139,42 +143,6 @@ def count(default: int, about: str, **known: Any) -> Any:
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Fill:
-    """What presses on a block besides gravity.
-
-    Parameters
-    ----------
-    body : int
-        Which of the bodies bears it.
-    weight : float
-        [N]
-    point : (float, float)
-        Where its line of action meets the block [m].
-    """
-
-    body: int
-    weight: float
-    point: tuple[float, float]
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Made:
-    """What a kind makes of its parameters.
-
-    Parameters
-    ----------
-    bodies : tuple of Body
-    joints : tuple of GivenJoint or None
-        None where they are to be found.
-    fills : tuple of Fill
-    """
-
-    bodies: tuple[Body, ...]
-    joints: tuple[GivenJoint, ...] | None = None
-    fills: tuple[Fill, ...] = ()
-
-
 @dataclass(frozen=True, kw_only=True)
 class Table:
     """Parameters, each checked against its range.
@@ -188,7 +156,11 @@ class Table:
     def __post_init__(self) -> None:
         """Check first each value alone, then those that depend on others."""
         for name, known in parameters_of(type(self)).items():
-            known.require(name, getattr(self, name))
+            value = getattr(self, name)
+            known.require(name, value)
+            if known.whole and isinstance(value, float):
+                # 40.0 of a file is 40.
+                object.__setattr__(self, name, int(value))
         # What all kinds have comes first and depends on what comes after it.
         for name, known in reversed(parameters_of(type(self)).items()):
             known.require(name, getattr(self, name), self.limits(name))
@@ -201,27 +173,6 @@ class Table:
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them."""
         return {name: _plain(getattr(self, name)) for name in parameters_of(type(self))}
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Built:
-    """Blocks as engines and limit analysis take them.
-
-    Parameters
-    ----------
-    assembly : Assembly
-    fills : tuple of Load
-        What presses on blocks besides gravity.
-    notes : tuple of str
-        What was mended or assumed.
-    bodies : tuple of Body
-        Of which the blocks were made; none where they were made of nothing else.
-    """
-
-    assembly: Assembly
-    fills: tuple[Load, ...] = ()
-    notes: tuple[str, ...] = ()
-    bodies: tuple[Body, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

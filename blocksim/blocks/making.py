@@ -8,7 +8,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
 from blocksim.blocks.given import Body, GivenJoint
-from blocksim.blocks.maker import Built, Made
+from blocksim.blocks.made import Built, Made
 from blocksim.blocks.polygons import assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load
 

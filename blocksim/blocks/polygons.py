@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
@@ -14,16 +13,10 @@ from scipy.sparse.csgraph import connected_components
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, Support
 from blocksim.blocks.given import Body as Body
 from blocksim.blocks.given import GivenJoint, as_given
-from blocksim.blocks.outlines import Extents, are_plain, extents, mended, moments, step_of
+from blocksim.blocks.outlines import Extents, extents, moments, step_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
-from blocksim.blocks.regions import (
-    convex_parts,
-    hull,
-    is_simple,
-    near_faces,
-    overlap_each_other,
-    overlaps,
-)
+from blocksim.blocks.regions import hull, near_faces, overlaps
+from blocksim.blocks.shapes import Shape, finite, name_of, shapes_of
 from blocksim.blocks.touching import Slack, Touch, faces_of_polygons, merged, touches
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
@@ -38,17 +31,7 @@ NARROW, NARROW_ASKED = 1 / 40, 1 / 10
 SHOWN = 5
 """Pairs of blocks that a line names."""
 MOST_BLOCKS = 100_000
-MOST_CORNERS = 1_000
-"""Of one block."""
 _ROUNDING = 64 * np.finfo(float).eps
-
-
-@dataclass(frozen=True, eq=False)
-class _Shape:
-    """A body mended: faces of its outlines, and convex parts."""
-
-    outlines: tuple[Array, ...]
-    parts: tuple[Array, ...]
 
 
 def assembly_of_polygons(
@@ -133,7 +116,7 @@ def assembly_of_bodies(
         itself, a weight not above zero, an overlap, a block that nothing holds.
     """
     require(0 < len(bodies) <= MOST_BLOCKS, "blocks", len(bodies), f"1 to {MOST_BLOCKS}")
-    raw = [_finite(body, index) for index, body in enumerate(bodies)]
+    raw = [finite(body, index) for index, body in enumerate(bodies)]
     moving = [index for index, body in enumerate(bodies) if not body.fixed]
     require(bool(moving), "blocks", "all fixed", "at least one that is not fixed")
     held = (
@@ -158,13 +141,13 @@ def assembly_of_bodies(
     measured = extents(raw)
     exact = np.maximum(TOLERANCE * measured.wide / 2, _ROUNDING * measured.far)
     slack = _slack(measured, exact, fixed_ones, rounding, tolerance)
-    shapes = _shapes(raw, bodies, exact, notes)
+    shapes = shapes_of(raw, bodies, exact, notes)
     parts = [shape.parts for shape in shapes]
     if joints is None:
         for one, other, depth in overlaps(parts, fixed_ones, slack, 1):
             most = float(slack.at(one, other).close)
             raise InputError(
-                f"overlap of blocks {_name(bodies, one)} and {_name(bodies, other)}",
+                f"overlap of blocks {name_of(bodies, one)} and {name_of(bodies, other)}",
                 f"{depth:.3g} m",
                 f"at most {most:.3g} m: move one of them, give the joints, or --tolerance",
             )
@@ -176,8 +159,8 @@ def assembly_of_bodies(
             pairs = [(one, other) for one, other, _ in deep]
             notes.append(f"overlaps taken, as joints are given: {_pairs(bodies, pairs)}")
         outlines = [shape.outlines for shape in shapes]
-        names = [_name(bodies, index) for index in range(len(bodies))]
-        found = as_given(joints, outlines, names, size, TOLERANCE * size, notes)
+        names = [name_of(bodies, index) for index in range(len(bodies))]
+        found = as_given(joints, outlines, names, exact / TOLERANCE, TOLERANCE, notes)
         notes.append(f"{counted(len(found), 'joint')} as given")
     _require_held([touch for touch, _ in found], bodies)
     blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
@@ -195,67 +178,6 @@ def assembly_of_bodies(
             )
         )
     return Assembly(blocks, tuple(made), size, supports), tuple(notes)
-
-
-def _name(bodies: Sequence[Body], index: int) -> str:
-    return bodies[index].name or str(index)
-
-
-def _finite(body: Body, index: int) -> tuple[Array, ...]:
-    """Check the numbers of a body."""
-    field = f"blocks[{index}].vertices"
-    polygons: list[Array] = []
-    for corners in body.polygons:
-        try:
-            polygon = np.array(corners, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InputError(field, corners, "pairs of numbers") from None
-        require(polygon.ndim == 2 and polygon.shape[1] == 2, field, corners, "pairs of numbers")
-        require(len(polygon) >= 3, field, corners, "at least three corners")
-        require(bool(np.isfinite(polygon).all()), field, corners, "finite numbers")
-        polygons.append(polygon)
-    require(bool(polygons), field, "no polygon", "at least three corners")
-    corners = sum(len(polygon) for polygon in polygons)
-    require(corners <= MOST_CORNERS, field, f"{corners} corners", f"at most {MOST_CORNERS}")
-    return tuple(polygons)
-
-
-def _shapes(
-    raw: Sequence[tuple[Array, ...]], bodies: Sequence[Body], exact: Array, notes: list[str]
-) -> list[_Shape]:
-    """Mend all bodies; those with nothing to be mended are told all at once."""
-    plain = are_plain([polygons[0] for polygons in raw], exact)
-    return [
-        _Shape(polygons, polygons)
-        if len(polygons) == 1 and plain[index]
-        else _shape(polygons, bodies, index, float(exact[index]), notes)
-        for index, polygons in enumerate(raw)
-    ]
-
-
-def _shape(
-    polygons: tuple[Array, ...],
-    bodies: Sequence[Body],
-    index: int,
-    tolerance: float,
-    notes: list[str],
-) -> _Shape:
-    """Mend the polygons of a body and cut them into convex parts."""
-    field = f"blocks[{index}].vertices"
-    outlines: list[Array] = []
-    parts: list[Array] = []
-    for polygon in polygons:
-        outline, done = mended(polygon, tolerance)
-        notes += [f"block {_name(bodies, index)}: {what}" for what in done]
-        said = polygon.tolist()
-        require(len(outline) >= 3, field, said, "at least three corners that differ")
-        require(is_simple(outline), field, said, "a polygon that does not cross itself")
-        outlines.append(outline)
-        parts += convex_parts(outline, tolerance)
-    if len(polygons) > 1:
-        apart = not overlap_each_other(parts, tolerance)
-        require(apart, field, polygons, "polygons that do not overlap each other")
-    return _Shape(tuple(outlines), tuple(parts))
 
 
 def _slack(
@@ -292,17 +214,18 @@ def _said(
     why = f"coordinates are rounded to {step:.3g} m" if tolerance is None else "as asked"
     notes[0] += f", within {close.max():.3g} m ({why})"
     if closed:
-        listed = ", ".join(
-            f"{_name(bodies, each.one)}-{_name(bodies, each.other)} {1000 * each.gap:+.3g} mm"
-            for each in closed[:SHOWN]
-        )
+        pairs = [
+            f"{name_of(bodies, each.one)}-{name_of(bodies, each.other)}" for each in closed
+        ]
+        sizes = [f"{1000 * each.gap:+.3g} mm" for each in closed[:SHOWN]]
+        listed = ", ".join(map(" ".join, zip(pairs, sizes, strict=False)))
         more = f" and {len(closed) - SHOWN} more" if len(closed) > SHOWN else ""
         notes.append(f"gaps (+) and overlaps (-) closed at joints: {listed}{more}")
     return notes
 
 
 def _found(
-    shapes: Sequence[_Shape], bodies: Sequence[Body], slack: Slack, notes: list[str]
+    shapes: Sequence[Shape], bodies: Sequence[Body], slack: Slack, notes: list[str]
 ) -> list[Touch]:
     """Find where bodies touch, in a fixed order and sense."""
     outlines = [outline for shape in shapes for outline in shape.outlines]
@@ -333,7 +256,7 @@ def _found(
 
 def _pairs(bodies: Sequence[Body], pairs: Sequence[tuple[int, int]]) -> str:
     """Name pairs of blocks, not more than a line holds."""
-    shown = [f"{_name(bodies, a)} and {_name(bodies, b)}" for a, b in sorted(set(pairs))]
+    shown = [f"{name_of(bodies, a)} and {name_of(bodies, b)}" for a, b in sorted(set(pairs))]
     more = f" and {len(shown) - SHOWN} pairs more" if len(shown) > SHOWN else ""
     return "blocks " + ", ".join(shown[:SHOWN]) + more
 
@@ -349,13 +272,13 @@ def _require_held(found: Sequence[Touch], bodies: Sequence[Body]) -> None:
     loose = np.flatnonzero(~np.isin(group, group[fixed]))
     if len(loose):
         raise InputError(
-            f"block {_name(bodies, int(loose[0]))}",
+            f"block {name_of(bodies, int(loose[0]))}",
             "held by nothing",
             "joined to a fixed block, directly or by others: close the gap or give its joints",
         )
 
 
-def _block(body: Body, shape: _Shape, index: int, density: float) -> Block:
+def _block(body: Body, shape: Shape, index: int, density: float) -> Block:
     measured = moments(shape.parts)
     weight = density * measured.area * body.depth if body.weight is None else body.weight
     field = f"blocks[{index}]"

@@ -136,7 +136,7 @@ class Given:
         float | None, Option(help="Instead of --mu: angle of friction in degrees.")
     ] = None
     voussoirs: Annotated[
-        int | None, Option(help="Number of voussoirs, 3 to 1000; 27 if left out.")
+        int | None, Option(help="Number of voussoirs, 3 to 10000; 27 if left out.")
     ] = None
     weight: Annotated[
         str | None,

@@ -77,6 +77,7 @@ COORDINATE = Range(low=0, high=1e9, unit="m", signed=True)
 HALF_ANGLE = Range(low=1e-3, high=math.nextafter(math.pi, 0), unit="rad")
 ETA = Range(low=1e-15, high=2)
 """Thickness over radius: the flattest arch stands at 1e-14."""
+VOUSSOIRS = Range(low=3, high=10_000)
 FRICTION = Range(low=1e-6, high=1e6, infinite=True)
 SMOOTH_OR_ROUGH = Range(low=0, high=1e6, infinite=True)
 """Friction that a search may come to, and that of a joint of its own, which may be smooth."""
@@ -95,6 +96,12 @@ def require_all(known: Range, field: str, values: object) -> None:
     """Raise `InputError` unless all numbers of an array are in a range."""
     for value in cast(Any, values).ravel().tolist():
         known.require(field, value)
+
+
+def require_voussoirs(count: object) -> None:
+    """Raise `InputError` unless it is a whole number of voussoirs that make an arch."""
+    whole = VOUSSOIRS.has(count) and count == int(cast(float, count))
+    require(whole, "voussoirs", count, f"a whole number from {VOUSSOIRS.words}")
 
 
 def require_friction(mu: object) -> None:

@@ -5,6 +5,7 @@ Outcomes (stands, collapses, undecided) are values and never exceptions.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from reprlib import Repr
 
@@ -31,6 +32,8 @@ class _Short(Repr):
 
 
 _SHORT = _Short()
+_LINES = re.compile(r"\s*\n\s*")
+"""Arrays are shown in several lines."""
 
 
 def in_line(text: str, most: int = LONGEST) -> str:
@@ -89,7 +92,7 @@ class InputError(BlocksimError, ValueError):
         self.where = where
         place = f"{in_line(where)}: " if where else ""
         said = {id(MISSING): "is missing", id(ALL_MISSING): "are missing"}
-        is_so = said.get(id(value), f"= {_SHORT.repr(value)}")
+        is_so = said.get(id(value), f"= {_LINES.sub(' ', _SHORT.repr(value))}")
         must = in_line(allowed, LONGEST_WORDS)
         super().__init__(f"{place}{in_line(field)} {is_so}: must be {must}")
 

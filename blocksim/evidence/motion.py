@@ -230,7 +230,7 @@ def _reason(
     halfway = moved[int(np.searchsorted(times, times[-1] / 2))]
     if moved[-1] - halfway < UNMOVED < halfway:
         return f"released, it gave way and came to rest again: {way}"
-    if max(moved) - moved[-1] > UNMOVED:
+    if (np.maximum.accumulate(moved) - moved).max() > UNMOVED:
         return f"released, it gave way and swings about another place: {way}"
     if moved[-1] < CREEP * halfway:
         return f"released, it creeps: {way}"

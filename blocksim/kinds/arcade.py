@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from blocksim.blocks.given import Body
-from blocksim.blocks.maker import Fill, Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Fill, Made
+from blocksim.blocks.maker import Maker, count, metres, parameter
 from blocksim.common.errors import InputError
 from blocksim.kinds.archkind import ArchKind
 from blocksim.kinds.blockwork import floor, pier

@@ -11,8 +11,10 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body, GivenJoint
-from blocksim.blocks.maker import FARTHEST, Fill, Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Fill, Made
+from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
 from blocksim.blocks.problem import STANDARD_GRAVITY
+from blocksim.common.checks import VOUSSOIRS
 from blocksim.common.errors import InputError
 from blocksim.kinds.curves import Curve, where
 from blocksim.kinds.strips import Voussoirs, chords, strips
@@ -31,7 +33,7 @@ class ArchKind(Maker):
     is_arch: ClassVar[bool] = True
 
     thickness: float = metres(0.2, "thickness, square to the centreline", stands="high")
-    voussoirs: int = count(27, "number of voussoirs", low=2)
+    voussoirs: int = count(27, "number of voussoirs", low=2, high=VOUSSOIRS.high)
     depth: float = metres(1.0, "depth out of the plane")
     fill: float | None = parameter(
         None,

@@ -11,9 +11,10 @@ import numpy as np
 
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.dimensions import At, Dimensions, Line
-from blocksim.blocks.maker import Built, metres, parameter, parameters_of
+from blocksim.blocks.made import Built
+from blocksim.blocks.maker import Parameter, metres, parameter, parameters_of
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, Range, require
+from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, LENGTH, VOUSSOIRS, Range, require
 from blocksim.common.errors import MISSING
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve
@@ -22,12 +23,36 @@ from blocksim.kinds.strips import Voussoirs
 if TYPE_CHECKING:
     from blocksim.kinds.archoffers import ArchOffers
 
-FEWEST = 3
-"""Voussoirs of an arch."""
 HALF_ANGLE_DEG = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
 ROUND = 360.0
 
 
+SIZES: dict[str, Any] = {"low": LENGTH.low, "high": LENGTH.high, "above": False}
+MEASURES = {
+    "half_angle_deg": Parameter(
+        about="crown to springing, in place of left_deg and right_deg",
+        unit="deg",
+        low=HALF_ANGLE_DEG.low,
+        high=HALF_ANGLE_DEG.high,
+        above=False,
+    ),
+    "eta": Parameter(
+        about="thickness over radius, in place of thickness",
+        low=ETA.low,
+        high=ETA.high,
+        above=False,
+    ),
+    "span": Parameter(
+        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
+    ),
+    "rise": Parameter(
+        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
+    ),
+    "at": Parameter(
+        about="line that span and rise are of", choices=("intrados", "centreline", "extrados")
+    ),
+}
+"""What an arch can be made by in place of parameters of its kind."""
 SPRINGINGS = "left_deg", "right_deg"
 WEIGHTS: dict[str, Weight] = {"centreline": "centreline", "curved": "sector"}
 """What an arch calls the weights of a kind that it has, too."""
@@ -176,7 +201,7 @@ class CircularArch(CurvedArch):
         if angle is None:
             angle = math.radians(self.left_deg)
             equal = self.left_deg == self.right_deg and HALF_ANGLE.has(angle)
-            if not equal or self.voussoirs < FEWEST:
+            if not equal or not VOUSSOIRS.has(self.voussoirs):
                 return None
         if self.weight not in WEIGHTS or self.joints == "vertical":
             return None

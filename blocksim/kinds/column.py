@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from blocksim.blocks.maker import FARTHEST, Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Made
+from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
 from blocksim.common.errors import InputError
 from blocksim.kinds.blockwork import floor, pier
 

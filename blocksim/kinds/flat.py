@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from blocksim.blocks.maker import metres, parameter
-from blocksim.common.checks import require
+from blocksim.common.checks import VOUSSOIRS, require
 from blocksim.kinds.archkind import ArchKind
 from blocksim.kinds.strips import Voussoirs, chords
 
@@ -23,7 +23,9 @@ class FlatArch(ArchKind):
     about: ClassVar[str] = "wedges between a level soffit and a level back"
 
     thickness: float = metres(0.4, "height, soffit to back", stands="high")
-    voussoirs: int = parameter(9, "number of wedges", whole=True, low=1, high=1000, above=False)
+    voussoirs: int = parameter(
+        9, "number of wedges", whole=True, low=1, high=VOUSSOIRS.high, above=False
+    )
     span: float = metres(2.0, "span of the soffit", stands="low")
     skew_deg: float = parameter(
         30.0, "angle of the springings from the vertical", unit="deg", high=80.0, above=False

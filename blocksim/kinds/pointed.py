@@ -11,7 +11,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.maker import count, metres
-from blocksim.common.checks import require
+from blocksim.common.checks import VOUSSOIRS, require
 from blocksim.kinds.archkind import NEARLY, CurvedArch
 from blocksim.kinds.circular import circle
 from blocksim.kinds.curves import Curve, where
@@ -27,7 +27,7 @@ class PointedArch(CurvedArch):
 
     span: float = metres(2.0, "span of the centreline", stands="low")
     radius: float = metres(1.5, "radius of both arcs of the centreline, half the span or more")
-    voussoirs: int = count(28, "number of voussoirs, even", low=2)
+    voussoirs: int = count(28, "number of voussoirs, even", low=2, high=VOUSSOIRS.high)
 
     def __post_init__(self) -> None:
         """Check that both arcs have as many voussoirs."""

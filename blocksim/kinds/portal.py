@@ -9,7 +9,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
-from blocksim.blocks.maker import FARTHEST, Fill, Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Fill, Made
+from blocksim.blocks.maker import FARTHEST, Maker, count, metres, parameter
 from blocksim.common.errors import InputError
 from blocksim.kinds.archkind import ArchKind
 from blocksim.kinds.blockwork import floor, pier

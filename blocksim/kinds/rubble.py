@@ -10,9 +10,13 @@ from scipy.spatial import Voronoi
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.given import Body
-from blocksim.blocks.maker import Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Made
+from blocksim.blocks.maker import Maker, count, metres, parameter
 from blocksim.blocks.outlines import signed_area
 from blocksim.kinds.blockwork import floor
+
+SLENDER = 1000.0
+"""Most that one side of the wall may be of the other."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +35,13 @@ class Rubble(Maker):
         whole=True, high=100, above=False,
     )  # fmt: skip
     depth: float = metres(1.0, "depth out of the plane")
+
+    def limits(self, name: str) -> tuple[float, float]:
+        """Range of a parameter: cells of a wall that is all but a line are none."""
+        low, high = super().limits(name)
+        if name == "height":
+            low, high = max(low, self.width / SLENDER), min(high, self.width * SLENDER)
+        return low, high
 
     def made(self, density: float) -> Made:  # noqa: ARG002
         """Make a floor and the stones; joints are found."""

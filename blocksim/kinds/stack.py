@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from blocksim.blocks.given import Body
-from blocksim.blocks.maker import Made, Maker, count, metres, parameter
+from blocksim.blocks.made import Made
+from blocksim.blocks.maker import Maker, count, metres, parameter
 from blocksim.kinds.blockwork import box
 
 

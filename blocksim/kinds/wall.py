@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from blocksim.blocks.given import Body
-from blocksim.blocks.maker import Made, Maker, Table, count, metres, parameter
+from blocksim.blocks.made import Made
+from blocksim.blocks.maker import Maker, Table, count, metres, parameter
 from blocksim.common.checks import require
 from blocksim.kinds.blockwork import box, floor
 

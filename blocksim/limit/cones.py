@@ -228,7 +228,8 @@ def carried_weights(problem: Problem) -> Array:
             neighbours[other].add(one)
     rank, layers = dict.fromkeys(first, 0), [sorted(first)]
     while layers[-1]:
-        beyond = {near for block in layers[-1] for near in neighbours[block]}.difference(rank)
+        near_by = (near for block in layers[-1] for near in neighbours[block])
+        beyond = {near for near in near_by if near not in rank}
         rank |= dict.fromkeys(beyond, len(layers))
         layers.append(sorted(beyond))
     for layer in layers[:0:-1]:

@@ -3,7 +3,6 @@
 from blocksim.many.case import Case as Case
 from blocksim.many.case import Questions as Questions
 from blocksim.many.design import Design as Design
-from blocksim.many.kinddesign import KindDesign as KindDesign
 from blocksim.many.load import load_design as load_design
 from blocksim.many.run import Summary as Summary
 from blocksim.many.run import sweep as sweep

@@ -12,18 +12,15 @@ from functools import cache
 from typing import NamedTuple, cast
 
 import blocksim
-from blocksim.arch.circular import Arch
-from blocksim.ask.bracket import bracket
-from blocksim.ask.check import check
+from blocksim.arch.answers import ArchAnswer, ArchBracket
+from blocksim.ask.bracket import Bracket, bracket
+from blocksim.ask.check import Check, check
 from blocksim.ask.methods import STATIC
 from blocksim.common.errors import MissingPart
 from blocksim.engines import NAMES, get_engine
-from blocksim.kinds.circular import CircularArch, arch_problem
-from blocksim.many.case import Case, Pace, Row
+from blocksim.many.case import Case, Pace, Row, written
 from blocksim.many.statics import by_statics
-from blocksim.many.structurecase import StructureCase, reason_of
 
-AnyCase = Case | StructureCase
 _ENCODER = json.JSONEncoder(allow_nan=False, check_circular=False)
 
 
@@ -31,7 +28,7 @@ class Asked(NamedTuple):
     """A case and its identity."""
 
     identity: bytes
-    case: AnyCase
+    case: Case
 
     def row(self, versions: dict[str, str]) -> Row:
         """Return its row with nothing answered."""
@@ -123,38 +120,36 @@ def answer(asked: Sequence[Asked], versions: dict[str, str]) -> Answered:
             raise MissingPart(part, f"a worker has {version_of(method)}; install the same")
     rows = [each.row(versions) for each in asked]
     cases = [each.case for each in asked]
-    arches = [k for k, case in enumerate(cases) if isinstance(case, Case)]
-    simulated = set(_arches([cast(Case, cases[k]) for k in arches], [rows[k] for k in arches]))
-    simulated = {arches[k] for k in simulated}
-    for k, case in enumerate(cases):
-        if isinstance(case, StructureCase) and case.answer(rows[k]):
-            simulated.add(k)
-    tally = Tally(rows=len(rows), failed=sum(row["error"] is not None for row in rows))
+    simulated = _fill_in(cases, rows)
+    tally = Tally(rows=len(rows), failed=sum("error" in row for row in rows))
     seconds: defaultdict[Pace, tuple[int, float]] = defaultdict(lambda: (0, 0.0))
     for k, (case, row) in enumerate(zip(cases, rows, strict=True)):
-        wall = float(str(row["wall_s"]))
-        count, total = seconds[case.pace]
-        seconds[case.pace] = count + 1, total + wall
+        wall = cast("float", row["wall_s"])
+        pace = case.pace
+        count, total = seconds[pace]
+        seconds[pace] = count + 1, total + wall
         if k in simulated:
             tally.simulated += 1
             tally.simulated_s += wall
-        elif isinstance(case, Case) and case.band and row["error"] is None:
+        elif case.band and "error" not in row:
             tally.spared += 1
     return Answered([encoded(row) for row in rows], tally, dict(seconds))
 
 
-def _arches(cases: list[Case], rows: list[Row]) -> list[int]:
-    """Fill in the rows of arches, in bulk where statics tell; return those simulated."""
-    if not cases:
-        return []
-    started = time.perf_counter()
-    simulations = by_statics(cases, rows)
-    share = (time.perf_counter() - started) / len(rows)
-    for row in rows:
-        row["wall_s"] = share
-    for k in simulations:
-        _by_simulation(cases[k], rows[k])
-    return simulations
+def _fill_in(cases: list[Case], rows: list[Row]) -> set[int]:
+    """Answer in bulk where statics tell, else one by one; return which were simulated."""
+    plain = [k for k, case in enumerate(cases) if case.is_plain]
+    left = [*range(len(cases))]
+    if plain:
+        started = time.perf_counter()
+        near = by_statics([cases[k] for k in plain], [rows[k] for k in plain])
+        share = (time.perf_counter() - started) / len(plain)
+        for k in plain:
+            rows[k]["wall_s"] = share
+        left = [*{*left}.difference(plain), *(plain[k] for k in near)]
+    for k in left:
+        _alone(cases[k], rows[k])
+    return {k for k in left if "error" not in rows[k] and rows[k]["method"] not in STATIC}
 
 
 def failed(asked: Asked, versions: dict[str, str], why: str) -> Answered:
@@ -169,57 +164,82 @@ def encoded(row: Row) -> bytes:
     return _ENCODER.encode(row).encode() + b"\n"
 
 
-def _by_simulation(case: Case, row: Row) -> None:
-    """Fill in what an engine shows, or why it shows nothing."""
+def _alone(case: Case, row: Row) -> None:
+    """Fill in the answer of one case, or why there is none."""
     started = time.perf_counter()
-    row.update(method=case.engine, verdict=None)
+    if case.is_plain:
+        row["method"] = NAMES[0] if case.method == "auto" else case.method
+    row.pop("verdict", None)
     try:
-        if case.is_bracket:
-            asked = CircularArch(
-                half_angle=math.radians(case.half_angle_deg),
-                eta=1.0,
-                voussoirs=case.voussoirs,
-                weight=case.weight,
-                friction=case.mu,
-            )
+        problem = case.problem(cast("float | None", row.get("eta")))
+        method, settings = str(row["method"]), dict(case.settings)
+        if case.over is None:
+            seen = check(problem, method=method, settings=settings)
+            row.update(_checked(seen), **_of_arch(row, seen.arch))
+        else:
             found = bracket(
-                asked,
-                method=case.engine,
+                problem,
+                over=case.over,
+                method=method,
                 tol=case.tol,
                 confirm=case.confirm,
-                settings=dict(case.settings),
+                settings=settings,
             )
-            of = found.arch
-            assert of is not None  # noqa: S101
-            row.update(
-                mode=of.mode,
-                mode_in_motion=of.mode_in_motion,
-                eta_limit=of.eta_limit,
-                eta_low=of.eta_low,
-                eta_high=of.eta_high,
-                confirmed=found.confirmed,
-                reason=found.reason,
-            )
-        else:
-            arch = Arch(
-                half_angle=math.radians(case.half_angle_deg),
-                eta=float(str(row["eta"])),
-                voussoirs=case.voussoirs,
-                weight=case.weight,
-            )
-            problem = arch_problem(arch, case.mu)
-            seen = check(problem, method=case.engine, settings=dict(case.settings))
-            told = seen.arch
-            assert told is not None  # noqa: S101
-            row.update(
-                verdict=seen.verdict.value,
-                mode=told.mode,
-                mode_in_motion=told.mode_in_motion,
-                eta_limit=told.eta_limit,
-                reason=seen.reason,
-            )
+            row.update(_bracketed(found), **_of_arch(row, found.arch))
     except MissingPart:
         raise
     except Exception as error:
         row["error"] = reason_of(error)
     row["wall_s"] = time.perf_counter() - started
+
+
+def _checked(seen: Check) -> Row:
+    found: Row = {
+        "method": seen.method,
+        "verdict": seen.verdict.value,
+        "rest": seen.rest,
+        "load_factor": written(seen.load_factor),
+        "reason": seen.reason,
+    }
+    if seen.shaken is not None:
+        found["largest_rotation_deg"] = math.degrees(seen.shaken.rocking.rotation)
+        found["first_impact_s"] = seen.shaken.first_impact_s
+    return found
+
+
+def _bracketed(found: Bracket) -> Row:
+    return {
+        "method": found.method,
+        "unit": found.unit,
+        "limit": written(found.limit),
+        "low": found.low,
+        "high": found.high,
+        "confirmed": found.confirmed,
+        "reason": found.reason,
+    }
+
+
+def _of_arch(row: Row, told: ArchAnswer | None) -> Row:
+    """Return what the row does not say yet of an arch."""
+    if told is None:
+        return {}
+    found: Row = {
+        "half_angle_deg": math.degrees(told.shape.half_angle),
+        "voussoirs": told.shape.voussoirs,
+        "weight": told.shape.weight,
+        "mode": told.mode,
+        "mode_in_motion": told.mode_in_motion,
+        "mode_theory": told.mode_theory,
+        "eta_theory": told.eta_theory,
+        "eta_limit": told.eta_limit,
+    }
+    if isinstance(told, ArchBracket):
+        found |= {"eta_low": told.eta_low, "eta_high": told.eta_high}
+    else:
+        found["eta"] = told.shape.eta
+    return {name: value for name, value in found.items() if row.get(name) is None}
+
+
+def reason_of(error: BaseException) -> str:
+    """Say in one line what went wrong."""
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"

@@ -88,5 +88,6 @@ def require_axis(field: str, axis: Axis, spaced: bool) -> None:
         require(value is not None, f"{field}.{name}", MISSING, "given in a range")
     low, high = axis.low or 0.0, axis.high or 0.0
     require(low < high, f"{field}.high", high, f"above low = {low}")
+    require(low > 0 or not axis.log, f"{field}.low", low, "above 0 where log is true")
     if spaced:
         require(axis.steps is not None, f"{field}.steps", MISSING, "given in a grid")

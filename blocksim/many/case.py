@@ -1,117 +1,206 @@
-"""A case: one question about one arch, its identity, and its row."""
+"""A case: one question about what a maker makes, its identity, and its row."""
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from hashlib import blake2b
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, cast
 
-from blocksim.arch.circular import Weight
-from blocksim.engines import NAMES
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.shaking import LONGEST, SHORTEST, STRONGEST
+from blocksim.common.checks import FACTOR, Range
+from blocksim.kinds.circular import MEASURES, CircularArch
+from blocksim.kinds.files import structure_of
 
-if TYPE_CHECKING:
-    from blocksim.many.structurecase import StructureCase
-
+ARCH = CircularArch.name
+NEEDED = {"half_angle_deg", "mu", "voussoirs", "weight"}
+PLAIN = NEEDED | {"eta", "ratio"}
+"""What may be given of an arch that is answered in bulk; a column of their own for each."""
+ACTING: dict[str, Range] = {
+    "load": FACTOR,
+    "tilt_deg": Range(low=-180, high=180, unit="deg"),
+    "amplitude_g": Range(low=0, high=STRONGEST, unit="g"),
+    "duration_s": Range(low=SHORTEST, high=LONGEST, unit="s"),
+}
+"""What acts on a structure, and the range of each: factor on the live loads, tilt of the table,
+how strongly and how long the ground shakes."""
+COLUMNS = {
+    "id": "string",
+    "kind": "string",
+    "half_angle_deg": "double",
+    "mu": "double",
+    "voussoirs": "int64",
+    "weight": "string",
+    "eta": "double",
+    "ratio": "double",
+    "parameters": "parameters",
+    **dict.fromkeys(ACTING, "double"),
+    "over": "string",
+    "unit": "string",
+    "asked": "string",
+    "settings": "settings",
+    "method": "string",
+    "version": "string",
+    "verdict": "string",
+    "rest": "string",
+    "load_factor": "double",
+    "largest_rotation_deg": "double",
+    "first_impact_s": "double",
+    "limit": "double",
+    "low": "double",
+    "high": "double",
+    "mode": "string",
+    "mode_in_motion": "string",
+    "mode_theory": "string",
+    "eta_theory": "double",
+    "eta_limit": "double",
+    "eta_low": "double",
+    "eta_high": "double",
+    "confirmed": "bool",
+    "reason": "string",
+    "error": "string",
+    "wall_s": "double",
+}
+"""The keys of a row, and what Arrow calls their types; each kind has parameters of its own."""
 Row = dict[str, object]
+EMPTY: Row = {**dict.fromkeys(COLUMNS)}
 Pace = tuple[object, ...]
-Given = tuple[tuple[str, float], ...]
-"""Settings by name."""
-
-
-def identity_of(case: tuple[object, ...], version: str) -> bytes:
-    """Hash of what is asked and of the version of the method that answers."""
-    return blake2b(f"{tuple(case)!r} {version}".encode(), digest_size=12).digest()
+Value = float | str
+Given = tuple[tuple[str, Value], ...]
+Overrides = tuple[tuple[str, float], ...]
 
 
 class Case(NamedTuple):
-    """One question about one arch.
+    """One question about one structure.
 
     Parameters
     ----------
-    half_angle_deg : float
-        Half-angle of embrace [deg].
-    mu : float
-    voussoirs : int
-    weight : str
-    eta : float or None
-        Thickness-to-radius ratio.
-    ratio : float or None
-        Thickness over the least thickness of the voussoirs as built. Where this and
-        `eta` are None, the question is how thin the arch can be.
+    kind : str
+    given : tuple of (str, value)
+        What the design sets: parameters of the kind (`arch.thickness`: of its arch), `mu`, and
+        what acts on it, of `ACTING`. `ratio` of an arch is its thickness over the least
+        thickness of the voussoirs as built.
     method : str
+    over : str or None
+        Parameter to bracket over; None: does it stand?
+    rest : str
+        JSON of what all cases of a design have in common: tables, loads, density.
     band : float
         An engine simulates arches within this share of their least thickness.
     tol : float
-        Relative width of the bracket of an engine; 0 where nothing is bracketed.
+        Relative width of a bracket; 0 where nothing is bracketed.
     confirm : bool
-        Let the arch go at both ends of an engine's bracket.
+        Let blocks go at both ends of an engine's bracket.
     settings : tuple of (str, float)
         Given to the engine instead of what its rule says.
     """
 
-    half_angle_deg: float
-    mu: float
-    voussoirs: int
-    weight: Weight
-    eta: float | None
-    ratio: float | None
+    kind: str
+    given: Given
     method: str
-    band: float
-    tol: float
+    over: str | None = None
+    rest: str = "{}"
+    band: float = 0.0
+    tol: float = 0.0
     confirm: bool = True
-    settings: Given = ()
+    settings: Overrides = ()
 
     @property
-    def engine(self) -> str:
-        """Method that answers where simulation is worth it: of `auto` the cheapest engine."""
-        return NAMES[0] if self.method == "auto" else self.method
-
-    @property
-    def is_bracket(self) -> bool:
-        """Whether the question is how thin the arch can be."""
-        return self.eta is None and self.ratio is None
+    def is_plain(self) -> bool:
+        """Whether statics answer it in bulk."""
+        return is_plain(self.kind, [name for name, _ in self.given], self.over, self.rest)
 
     @property
     def pace(self) -> Pace:
         """What cases that take about the same time have in common."""
-        return self.method, self.voussoirs, self.is_bracket, self.settings
-
-    def row(self, identity: bytes, version: str) -> Row:
-        """Return the row with nothing answered."""
-        return {
-            "id": identity.hex(),
-            "half_angle_deg": self.half_angle_deg,
-            "mu": "inf" if math.isinf(self.mu) else self.mu,
-            "voussoirs": self.voussoirs,
-            "weight": self.weight,
-            "eta": self.eta,
-            "ratio": self.ratio,
-            "asked": self.method,
-            "settings": dict(self.settings) or None,
-            "method": "limit" if self.method == "auto" else self.method,
-            "version": version,
-            "verdict": None,
-            "mode": None,
-            "mode_in_motion": None,
-            "mode_theory": None,
-            "eta_theory": None,
-            "eta_limit": None,
-            "eta_low": None,
-            "eta_high": None,
-            "confirmed": None,
-            "reason": None,
-            "error": None,
-            "wall_s": 0.0,
-        }
+        blocks = dict(self.given).get("voussoirs")
+        return self.method, self.kind, blocks, self.over, self.settings
 
     def identity(self, version: str) -> bytes:
         """Hash of what is asked and of the version of the method that answers."""
-        return identity_of(self, version)
+        names, values = zip(*self.given, strict=True)
+        said = f"{self.kind} {' '.join(names)} {values!r} {self[2:]!r} {version}"
+        return blake2b(said.encode(), digest_size=12).digest()
+
+    def row(self, identity: bytes, version: str) -> Row:
+        """Return the row with nothing answered; what there is nothing of has no key."""
+        own = PLAIN if self.kind == ARCH else {"mu"}
+        row: Row = {"id": identity.hex(), "kind": self.kind}
+        parameters: Row = {}
+        for name, value in self.given:
+            (row if name in own or name in ACTING else parameters)[name] = value
+        row["mu"] = written(cast("float", row["mu"]))
+        for key, said in (
+            ("parameters", parameters),
+            ("over", self.over),
+            ("settings", dict(self.settings)),
+        ):
+            if said:
+                row[key] = said
+        row["asked"] = row["method"] = self.method
+        row["version"] = version
+        row["wall_s"] = 0.0
+        return row
+
+    def problem(self, eta: float | None = None) -> Problem:
+        """Build it, under its load and on its slope; an arch of a ratio with this eta."""
+        given: dict[str, Any] = dict(self.given)
+        mu = given.pop("mu")
+        if self.is_plain:
+            given.pop("ratio", None)
+            # A search begins at another.
+            given["eta"] = 1.0 if eta is None else eta
+            return CircularArch(**given, friction=mu).problem()
+        acting = {name: given.pop(name) for name in ACTING if name in given}
+        measures = MEASURES if self.kind == ARCH else ()
+        measured = {name: given.pop(name) for name in measures if name in given}
+        problem = structure_of(self._table(given, mu, acting))
+        problem = problem.but(**measured) if measured else problem
+        return problem.tilted(math.radians(acting.get("tilt_deg", 0.0)))
+
+    def _table(
+        self, given: dict[str, Any], mu: float, acting: dict[str, float]
+    ) -> dict[str, Any]:
+        """Return the structure file that says it."""
+        table: dict[str, Any] = {"kind": self.kind, **json.loads(self.rest)}
+        for name, value in given.items():
+            inside = table
+            *path, last = name.split(".")
+            for part in path:
+                inside = inside.setdefault(part, {})
+            inside[last] = value
+        if isinstance(table.get("shake"), str):
+            table["shake"] = {"shape": table["shake"]}
+        if "shake" in table:
+            shaken = ("amplitude_g", "duration_s")
+            table["shake"] |= {name: acting[name] for name in shaken if name in acting}
+        if "load" in acting:
+            table["load"] = acting["load"]
+        return {**table, "friction": written(mu)}
+
+
+def is_plain(kind: str, names: Iterable[str], over: str | None, rest: str) -> bool:
+    """Tell whether statics answer arches in bulk of which that is given.
+
+    They are symmetric, under their own weight, by half-angle and ratio; or without one, and the
+    question is how thin they can be.
+    """
+    if kind != ARCH or rest != "{}" or over not in {None, "thickness"}:
+        return False
+    known = {*names}
+    is_sized = "eta" in known or "ratio" in known
+    return NEEDED <= known <= PLAIN and is_sized == (over is None)
+
+
+def written(value: float | None) -> float | str | None:
+    """Return a number that JSON can write."""
+    return "inf" if value is not None and math.isinf(value) else value
 
 
 class Questions(Protocol):
-    """What a sweep asks: a `Design`, a `KindDesign`, or anything else with these three."""
+    """What a sweep asks: a `Design`, or anything else with these three."""
 
     @property
     def method(self) -> tuple[str, ...]:
@@ -123,6 +212,6 @@ class Questions(Protocol):
         """Number of cases, by which progress is told."""
         ...
 
-    def cases(self) -> Iterator[Case | StructureCase]:
+    def cases(self) -> Iterator[Case]:
         """Give the cases, always in the same order."""
         ...

@@ -1,31 +1,287 @@
-"""Design files: of symmetric circular arches, or of the kind of structure they name."""
+"""Design files: axes for the parameters of a kind of structure, as a TOML file says."""
 
 from __future__ import annotations
 
-from blocksim.common.errors import InputError
-from blocksim.common.files import AnyPath, read_file, toml_of
-from blocksim.many.design import Design, load_arch_design
-from blocksim.many.kinddesign import KindDesign, load_kind_design
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
 
-LARGEST_PEEK = 1 << 20
-"""Bytes of a file that are looked at for its kind."""
+from blocksim.arch.circular import WEIGHTS
+from blocksim.arch.scenario import RENAMED, as_said, written_in
+from blocksim.ask.families import FAMILIES
+from blocksim.ask.methods import CHOICES, METHODS
+from blocksim.blocks.maker import Maker, Parameter, parameters_of
+from blocksim.blocks.shaking import SHAPES
+from blocksim.common.checks import (
+    FRICTION,
+    SMOOTH_OR_ROUGH,
+    VOUSSOIRS,
+    Range,
+    is_number,
+    require,
+)
+from blocksim.common.errors import MISSING, InputError
+from blocksim.common.files import AnyPath
+from blocksim.evidence.simulation import require_setting
+from blocksim.kinds import KINDS
+from blocksim.kinds.circular import MEASURES, CircularArch
+from blocksim.many.axis import Axis, AxisField, require_axis
+from blocksim.many.case import ACTING, PLAIN, Value
+from blocksim.many.design import Design, How, Values, Words
+
+LARGEST_DESIGN = 20_000_000
+"""Cases of one sweep: their identities are held in memory, about 0.1 kB each."""
+COMMON = ("live", "dead", "move", "density", "shake")
+"""Keys of structure files that all cases have in common."""
+RATIO = Parameter(
+    about="thickness over the least of the voussoirs as built",
+    low=1e-6,
+    high=100,
+    above=False,
+)
+BY_ANGLE: dict[str, Parameter] = {
+    **MEASURES,
+    "voussoirs": Parameter(
+        about="how many", low=VOUSSOIRS.low, high=VOUSSOIRS.high, above=False, whole=True
+    ),
+    "weight": Parameter(about="where a voussoir's weight acts", choices=WEIGHTS),
+    "ratio": RATIO,
+}
+"""Axes of arches by their half-angle."""
+USUAL_ARCH = {"voussoirs": 27, "weight": "centreline"}
 
 
-def load_design(path: AnyPath) -> Design | KindDesign:
+@dataclass(frozen=True, kw_only=True)
+class DesignFile(How):
+    """What a design file says besides the parameters of its kind.
+
+    Parameters
+    ----------
+    kind : str
+        Of structure.
+    mu : Axis
+        Friction coefficient; inf allowed.
+    load : Axis
+        Factor on the live loads.
+    tilt_deg : Axis
+        Slope of the table [deg].
+    amplitude_g, duration_s : Axis
+        How strongly [g] and how long [s] the ground shakes.
+    live, dead, move, density, shake : as in structure files
+        What all structures have in common.
+    """
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+    mu: AxisField
+    kind: str = CircularArch.name
+    load: AxisField | None = None
+    tilt_deg: AxisField | None = None
+    amplitude_g: AxisField | None = None
+    duration_s: AxisField | None = None
+    live: Any = None
+    dead: Any = None
+    move: Any = None
+    density: Any = None
+    shake: Any = None
+
+
+KEYS = tuple(each.name for each in fields(DesignFile))
+
+
+def load_design(path: AnyPath) -> Design:
     """Read a design.
 
     Parameters
     ----------
     path : Path
-        TOML file with the fields of `Design`; with `kind`, those of `KindDesign`.
+        TOML file with the fields of `DesignFile` and an axis for any parameter of its kind. One
+        without `kind` is of circular arches.
+
+    Returns
+    -------
+    Design
 
     Raises
     ------
     InputError
         In one line, with file, field, value and what is allowed.
     """
+    table = written_in(path, "design", "an existing .toml file")
     try:
-        table = toml_of(read_file(path, "design", "an existing .toml file", LARGEST_PEEK))
-    except (InputError, ValueError):
-        table = {}  # the reader of designs says what is wrong with it
-    return load_kind_design(path, table) if "kind" in table else load_arch_design(path)
+        return design_of(table)
+    except InputError as error:
+        raise InputError(error.field, error.value, error.allowed, where=str(path)) from None
+
+
+def design_of(table: Mapping[str, Any]) -> Design:
+    """Make a design of what its file says.
+
+    Raises
+    ------
+    InputError
+        In one line: the first key that is wrong, its value, and what is allowed.
+    """
+    kind = _kind({"kind": CircularArch.name, **table}, "kind")
+    parameters = parameters_of(kind)
+    by_angle = kind is CircularArch and ("half_angle_deg" in table or "kind" not in table)
+    if kind is CircularArch:
+        parameters = parameters | (BY_ANGLE if by_angle else MEASURES)
+    _require_known(table, (*KEYS, *parameters), "")
+    if by_angle:
+        require("half_angle_deg" in table, "half_angle_deg", MISSING, "given (or kind)")
+        table = USUAL_ARCH | dict(table)
+        if not {"eta", "ratio", "thickness", "over"} & {*table}:
+            table["over"] = "thickness"
+    written = as_said(DesignFile, {key: table[key] for key in KEYS if key in table})
+    axes, known, rest = _axes(parameters, table)
+    axes["mu"], known["mu"] = written.mu, FRICTION if by_angle else SMOOTH_OR_ROUGH
+    if by_angle:
+        axes = {name: axes[name] for name in sorted(axes, key=_place)}
+    axes |= {name: axis for name in ACTING if (axis := getattr(written, name)) is not None}
+    design = Design(
+        **{each.name: getattr(written, each.name) for each in fields(How)},
+        kind=kind.name,
+        axes=axes,
+        known=known | ACTING,
+        rest=rest | {key: table[key] for key in COMMON if key in table},
+    )
+    _require_ranges(design)
+    _require_acting(design)
+    _require_asked(design, kind)
+    return design
+
+
+def _place(name: str) -> int:
+    """Return the place in which arches have always been drawn: a seed draws the same again."""
+    order = "half_angle_deg", "mu", "voussoirs", "weight", "eta", "ratio"
+    return order.index(name) if name in order else len(order)
+
+
+def _kind(table: Mapping[str, Any], name: str) -> type[Maker]:
+    named = table.get("kind")
+    arches = [each.name for each in KINDS.values() if each.is_arch]
+    known = list(KINDS) if name == "kind" else arches
+    if not isinstance(named, str) or named not in known:
+        raise InputError(name, named, f"one of {', '.join(known)}")
+    return KINDS[named]
+
+
+def _require_known(table: Mapping[str, Any], keys: Sequence[str], path: str) -> None:
+    for name in table:
+        now = RENAMED.get(name)
+        allowed = f"named {now}" if now and now in keys else "left out: there is no such key"
+        require(name in keys, f"{path}{name}", table[name], allowed)
+
+
+def _axes(
+    parameters: Mapping[str, Parameter], table: Mapping[str, Any], path: str = ""
+) -> tuple[dict[str, Values], dict[str, Parameter | Range], dict[str, Any]]:
+    """Tell axes, and what they may be, from what all cases have in common."""
+    axes: dict[str, Values] = {}
+    known: dict[str, Parameter | Range] = {}
+    rest: dict[str, Any] = {}
+    for key, each in parameters.items():
+        name = f"{path}{key}"
+        if key not in table:
+            continue
+        value = table[key]
+        if each.table:
+            require(isinstance(value, Mapping), name, value, "a table with a kind of arch")
+            inside = parameters_of(_kind(value, f"{name}.kind"))
+            _require_known(value, ("kind", *inside), f"{name}.")
+            more, said, common = _axes(inside, value, f"{name}.")
+            axes |= more
+            known |= said
+            rest[key] = {"kind": value["kind"], **common}
+        elif each.tables:
+            rest[key] = value
+        else:
+            of = dict[str, Words] if each.choices else dict[str, AxisField]
+            axes |= as_said(of, {name: value})
+            known[name] = each
+    return axes, known, rest
+
+
+def _bracketed(kind: type[Maker], rest: Mapping[str, Any]) -> list[str]:
+    """Names of the parameters that may be bracketed over."""
+    names: list[str] = []
+    for name, known in parameters_of(kind).items():
+        if known.table:
+            arch = KINDS[rest.get(name, {}).get("kind", CircularArch.name)]
+            names += [f"{name}.{each}" for each in _bracketed(arch, {})]
+        elif known.stands is not None:
+            names.append(name)
+    return names
+
+
+def _require_ranges(design: Design) -> None:
+    """Raise `InputError` where a value is out of range by itself.
+
+    What is so beside other parameters only becomes a row that says so.
+    """
+    spaced = design.random is None
+    for name, axis in design.axes.items():
+        values: Sequence[Value] = axis if isinstance(axis, tuple) else axis.ends
+        if isinstance(axis, Axis):
+            require_axis(name, axis, spaced)
+            if spaced and design.is_whole(name):
+                values = axis.every()
+        for value in values:
+            design.known[name].require(name, value)
+    for name, axis in design.settings.axes.items():
+        require_axis(f"settings.{name}", axis, spaced)
+        for value in axis.every() if spaced else axis.ends:
+            require_setting(name, value)
+
+
+def _require_acting(design: Design) -> None:
+    """Raise `InputError` where what acts on nothing is given."""
+    live, shaken = "live" in design.rest, design.rest.get("shake")
+    known = not isinstance(shaken, str) or shaken in SHAPES
+    require(known, "shake", shaken, f"one of {', '.join(SHAPES)}, or a table")
+    for name, there, why in (
+        ("load", live, "no live loads"),
+        ("amplitude_g", shaken, "no shake"),
+        ("duration_s", shaken, "no shake"),
+    ):
+        ok = bool(there) or name not in design.axes
+        require(ok, name, "given", f"left out: {why}")
+        if isinstance(shaken, str) and name != "load" and name not in design.axes:
+            raise InputError(name, MISSING, "given with shake")
+    require(live or design.over != "load", "over", "load", "another: no live loads")
+
+
+def _require_asked(design: Design, kind: type[Maker]) -> None:
+    """Raise `InputError` where the question or the method is none, or there are too many."""
+    axes, plain, over = design.axes, design.is_plain, design.over
+    if over is not None:
+        names = (*FAMILIES, *_bracketed(kind, design.rest))
+        require(over in names, "over", over, f"one of {', '.join(names)}")
+    measured = bool({*axes} & {*MEASURES})
+    choices = [each for each in CHOICES if measured or each != "theory"]
+    for word in design.method:
+        # A file may name engines that are installed, but no module to be imported.
+        own = word in METHODS and word not in METHODS.shipped
+        require(word in choices or own, "method", word, f"one of {', '.join(choices)}")
+    require(is_number(design.tol, 0, 0.5), "tol", design.tol, "above 0 and at most 0.5")
+    for name in sorted({*design.method} - {"auto"}) if over is not None else ():
+        finest = METHODS[name].finest
+        require(design.tol >= finest, "tol", design.tol, f"at least {finest:g} for {name}")
+    for name in design.settings.axes:
+        taken = any(name in design.taken(method) for method in design.method)
+        allowed = "left out: no method asked is run with it"
+        require(taken, f"settings.{name}", "given", allowed)
+    if "ratio" in axes:
+        require("eta" not in axes, "ratio", "given", "left out where eta is given")
+        only = f"left out beside other parameters than {', '.join(sorted(PLAIN))}"
+        require(plain, "ratio", "given", only)
+    if design.band is not None:
+        require(over is None, "band", design.band, "left out where brackets are asked")
+        require(plain, "band", design.band, "left out: it is of arches by half_angle_deg")
+        band_ok = is_number(design.band, 0, math.inf)
+        require(band_ok, "band", design.band, "above 0 (inf to simulate every arch)")
+    cases = design.size
+    ok = 0 < cases <= LARGEST_DESIGN
+    require(ok, "design", f"{cases} cases", f"at most {LARGEST_DESIGN} cases")

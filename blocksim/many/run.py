@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
@@ -14,6 +15,7 @@ from concurrent.futures import (
 )
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from blocksim.ask.methods import STATIC
 from blocksim.common.checks import require
@@ -23,16 +25,16 @@ from blocksim.common.processes import Crew, processes
 from blocksim.common.progress import Progress, silent
 from blocksim.many.answers import (
     Answered,
-    AnyCase,
     Asked,
     Tally,
     answer,
     failed,
+    reason_of,
     version_of,
 )
-from blocksim.many.case import Pace, Questions
+from blocksim.many.case import Case, Pace, Questions
+from blocksim.many.load import design_of, load_design
 from blocksim.many.shards import identities, locked, write_shard
-from blocksim.many.structurecase import reason_of
 
 SHARE = 0.05
 """Time a chunk is meant to take, as a share of that gone by: what a kill loses is small."""
@@ -77,7 +79,7 @@ class Summary:
 
 
 def sweep(
-    design: Questions,
+    design: Questions | AnyPath | Mapping[str, Any],
     folder: AnyPath,
     *,
     executor: Executor | None = None,
@@ -85,11 +87,12 @@ def sweep(
     in_flight: int | None = None,
     progress: Progress = silent,
 ) -> Summary:
-    """Ask about many arches; rows that are there already are not asked for again.
+    """Ask about many structures; rows that are there already are not asked for again.
 
     Parameters
     ----------
-    design : Design or Questions
+    design : Design, Questions, path or mapping
+        What to ask: a design, its file, or what such a file says.
     folder : Path
         For the rows, made if need be; `read_rows` reads them. One sweep at a time.
     executor : Executor, optional
@@ -115,8 +118,21 @@ def sweep(
         If an engine is not installed, here or at a worker.
     BrokenExecutor
         If the executor given breaks; what is done is on disk.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> from tempfile import mkdtemp
+    >>> asked = {"kind": "column", "width": [0.5, 1.0], "mu": 0.7, "method": "limit"}
+    >>> with ThreadPoolExecutor(1) as executor:
+    ...     sweep(asked, mkdtemp(), executor=executor).cases
+    2
     """
     started = time.perf_counter()
+    if isinstance(design, str | os.PathLike):
+        design = load_design(design)
+    elif isinstance(design, Mapping):
+        design = design_of(design)
     require(workers >= 1, "workers", workers, "at least 1")
     require(in_flight is None or in_flight >= 1, "in_flight", in_flight, "at least 1")
     versions = {method: version_of(method) for method in design.method}
@@ -197,7 +213,7 @@ class _Todo:
                 break
         return chunk
 
-    def _seconds(self, case: AnyCase) -> float:
+    def _seconds(self, case: Case) -> float:
         """Time a case will take, by those of its pace so far."""
         count, seconds = self._pace.get(case.pace, (0, 0.0))
         if count:

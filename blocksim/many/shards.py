@@ -13,6 +13,7 @@ from filelock import FileLock, Timeout
 
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, refused, write_whole
+from blocksim.many.case import EMPTY
 
 HEAD = b'{"id": "'
 ID_LENGTH = 24
@@ -96,10 +97,11 @@ def read_rows(folder: AnyPath) -> Iterator[dict[str, object]]:
     Yields
     ------
     dict
-        The question (`half_angle_deg`, `mu`, `voussoirs`, `weight`, `eta`, `ratio`,
-        `asked`, `settings`), `method` that answered and its `version`, and the answer;
-        `error` says why there is no answer, and is None where there is
-        one. Infinite friction is the text "inf".
+        The question (`kind`, `parameters`, `mu`, what acts, `over`, `asked`, `settings`),
+        `method` that answered and its `version`, and the answer; `error` says why there is no
+        answer. What there is nothing of is None: all rows have the same keys. Half-angle,
+        voussoirs, weight, eta and ratio of a circular arch have keys of their own. Infinity is
+        the text "inf".
 
     Raises
     ------
@@ -107,7 +109,7 @@ def read_rows(folder: AnyPath) -> Iterator[dict[str, object]]:
         If a file is not of a sweep.
     """
     for line in _lines(Path(folder)):
-        yield cast("dict[str, object]", json.loads(line))
+        yield EMPTY | cast("dict[str, object]", json.loads(line))
 
 
 def _lines(folder: Path) -> Iterator[bytes]:

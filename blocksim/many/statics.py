@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from typing import cast
 
 import numpy as np
 
@@ -21,24 +22,26 @@ from blocksim.many.case import Case, Row
 def by_statics(cases: Sequence[Case], rows: list[Row]) -> list[int]:
     """Fill in what closed form and limit analysis tell; return which are left to simulate."""
     groups: defaultdict[tuple[int, Weight], list[int]] = defaultdict(list)
-    for k, case in enumerate(cases):
-        groups[case.voussoirs, case.weight].append(k)
+    for k, row in enumerate(rows):
+        groups[cast("int", row["voussoirs"]), cast("Weight", row["weight"])].append(k)
+        if row["method"] == "auto":
+            row["method"] = "limit"
     left: list[int] = []
     for (voussoirs, weight), group in groups.items():
-        alpha = np.radians([cases[k].half_angle_deg for k in group])
-        mu = np.array([cases[k].mu for k in group])
+        alpha = np.radians(_numbers(rows, group, "half_angle_deg"))
+        mu = _numbers(rows, group, "mu")
         continuous = least_thicknesses(alpha, mu, weight)
         names, least = continuous.mode.tolist(), _or_none(continuous.eta)
         for k, mode, eta in zip(group, names, least, strict=True):
             rows[k].update(mode_theory=mode, eta_theory=eta)
         _least_as_built(cases, rows, group, alpha, mu, voussoirs, weight)
-        judged = [i for i, k in enumerate(group) if rows[k]["eta"] is not None]
+        judged = [i for i, k in enumerate(group) if "eta" in rows[k]]
         if judged:
             chosen = [group[i] for i in judged]
             arches = alpha[judged], mu[judged], voussoirs, weight
             left += _verdicts(cases, rows, chosen, arches)
         for k in group:
-            if cases[k].is_bracket and not _bracketed(cases[k], rows[k]):
+            if cases[k].over and not _bracketed(cases[k], rows[k]):
                 left.append(k)
     return left
 
@@ -56,13 +59,14 @@ def _least_as_built(
     needed = [
         i
         for i, k in enumerate(group)
-        if (cases[k].eta is None and cases[k].method != "theory") or cases[k].ratio is not None
+        if (cases[k].over and cases[k].method != "theory") or "ratio" in rows[k]
     ]
     if not needed:
         return
     found = least_thickness_of_joints(joints_of(alpha[needed], voussoirs), mu[needed], weight)
     for i, least in zip(needed, _or_none(found), strict=True):
-        row, ratio = rows[group[i]], cases[group[i]].ratio
+        row = rows[group[i]]
+        ratio = cast("float | None", row.get("ratio"))
         row["eta_limit"] = least
         if ratio is None:
             continue
@@ -84,9 +88,9 @@ def _verdicts(
 ) -> list[int]:
     """Judge arches by statics; return those to be simulated instead."""
     alpha, mu, voussoirs, weight = arches
-    eta = np.array([rows[k]["eta"] for k in group], dtype=float)
+    eta = _numbers(rows, group, "eta")
     band = np.array([cases[k].band for k in group])
-    least = np.array([rows[k]["eta_theory"] for k in group], dtype=float)
+    least = _numbers(rows, group, "eta_theory")
     by_theory = np.array([cases[k].method == "theory" for k in group])
     stands = eta >= least  # False where none stands
     built = np.flatnonzero(~by_theory & np.isfinite(band))
@@ -115,10 +119,18 @@ def _bracketed(case: Case, row: Row) -> bool:
     if case.method not in {*STATIC, "auto"}:
         return False
     least = row["eta_theory" if case.method == "theory" else "eta_limit"]
-    row.update(eta_low=ETA_MAX if least is None else least or None, eta_high=least)
+    low = ETA_MAX if least is None else least or None
+    row.update(eta_low=low, eta_high=least)
+    # The radius is 1 m.
+    row.update(unit="m", low=low, high=least, limit=row.get("eta_limit"))
     if case.method == "theory":
         row["mode"] = row["mode_theory"]
     return True
+
+
+def _numbers(rows: Sequence[Row], group: Iterable[int], name: str) -> Array:
+    """Return a column; infinity is a text in it, and what is missing is no number."""
+    return np.array([rows[k][name] for k in group], dtype=float)
 
 
 def _or_none(values: Array) -> Iterable[float | None]:

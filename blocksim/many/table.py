@@ -8,8 +8,8 @@ Columns are the keys of a row. The unit ends the name of a number that has one: 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from itertools import chain, islice
+from collections.abc import Mapping
+from itertools import islice
 from typing import Any, BinaryIO, cast
 
 from blocksim.blocks.maker import Parameter, parameters_of
@@ -18,65 +18,11 @@ from blocksim.common.later import require_library
 from blocksim.common.sheets import write_sheet
 from blocksim.evidence.simulation import SETTINGS
 from blocksim.kinds import KINDS
+from blocksim.many.case import COLUMNS
 from blocksim.many.shards import read_rows
 
 ROWS_AT_ONCE = 50_000
 """Rows held in memory, a row group of the table."""
-COLUMNS = {
-    "id": "string",
-    "half_angle_deg": "double",
-    "mu": "double",
-    "voussoirs": "int64",
-    "weight": "string",
-    "eta": "double",
-    "ratio": "double",
-    "asked": "string",
-    "settings": "settings",
-    "method": "string",
-    "version": "string",
-    "verdict": "string",
-    "mode": "string",
-    "mode_in_motion": "string",
-    "mode_theory": "string",
-    "eta_theory": "double",
-    "eta_limit": "double",
-    "eta_low": "double",
-    "eta_high": "double",
-    "confirmed": "bool",
-    "reason": "string",
-    "error": "string",
-    "wall_s": "double",
-}
-"""The keys of a row of an arch, and what Arrow calls their types."""
-STRUCTURE_COLUMNS = {
-    "id": "string",
-    "kind": "string",
-    "parameters": "parameters",
-    "mu": "double",
-    "load": "double",
-    "tilt_deg": "double",
-    "amplitude_g": "double",
-    "duration_s": "double",
-    "over": "string",
-    "unit": "string",
-    "asked": "string",
-    "settings": "settings",
-    "method": "string",
-    "version": "string",
-    "verdict": "string",
-    "rest": "string",
-    "load_factor": "double",
-    "largest_rotation_deg": "double",
-    "first_impact_s": "double",
-    "limit": "double",
-    "low": "double",
-    "high": "double",
-    "confirmed": "bool",
-    "reason": "string",
-    "error": "string",
-    "wall_s": "double",
-}
-"""The same of other structures; each kind has parameters of its own."""
 NUMBERS = ("mu", "load_factor", "limit")
 """Those that may be infinite, which JSON writes as a text."""
 
@@ -156,20 +102,15 @@ def write_csv(folder: AnyPath, path: AnyPath) -> None:
 
 def _columns(folder: AnyPath) -> dict[str, str]:
     """Names and types of the columns: those of parameters are found in the rows."""
-    rows: Iterator[dict[str, object]] = read_rows(folder)
-    empty: dict[str, object] = {}
-    first = next(rows, empty)
-    if "kind" not in first:
-        return COLUMNS
     parameters: dict[str, str] = {}
-    for row in chain([first], rows):
+    for row in read_rows(folder):
         for name in _parameters(row):
             known = _known(str(row["kind"]), name)
             parameters[_column(name, known)] = _type_of(known)
     columns: dict[str, str] = {}
-    for name, kind in STRUCTURE_COLUMNS.items():
+    for name, kind in COLUMNS.items():
         columns |= parameters if name == "parameters" else {name: kind}
-    return columns
+    return columns | parameters
 
 
 def _parameters(row: Mapping[str, object]) -> dict[str, object]:

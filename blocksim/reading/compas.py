@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.outlines import signed_area
-from blocksim.blocks.polygons import MOST_BLOCKS, MOST_CORNERS
+from blocksim.blocks.polygons import MOST_BLOCKS
+from blocksim.blocks.shapes import MOST_CORNERS
 from blocksim.common.checks import COORDINATE, require
 from blocksim.common.errors import InputError
 

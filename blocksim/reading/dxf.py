@@ -101,14 +101,17 @@ def _entities(space: Iterable[Any]) -> Iterator[tuple[Any, str, str]]:
             at = f"INSERT {name.partition('.')[0]} on layer {layer}"
             deep = len(within) <= DEEPEST
             require(deep, at, f"more than {DEEPEST} deep", "block references without a loop")
-            known = entity.block() is not None
-            require(known, at, entity.dxf.name, "the name of a block in the drawing")
+            block = entity.block()
+            require(
+                block is not None, at, entity.dxf.name, "the name of a block in the drawing"
+            )
+            # Counted before they are made: rows and columns may stand for a billion.
+            inserted += max(1, entity.mcount) * max(1, len(block))
+            few = inserted <= MOST_INSERTED
+            require(few, at, "more entities", f"at most {MOST_INSERTED} by references")
             parts: list[tuple[Any, str, str]] = []
             for one in entity.multi_insert() if entity.mcount > 1 else (entity,):
                 for part in one.virtual_entities():
-                    inserted += 1
-                    few = inserted <= MOST_INSERTED
-                    require(few, at, "more entities", f"at most {MOST_INSERTED} by references")
                     own = str(part.dxf.layer)
                     # What is drawn on layer 0 of a block lies on that of its reference.
                     parts.append((part, layer if own == "0" else own, f"{name}.{len(parts)}"))

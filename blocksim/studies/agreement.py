@@ -2,12 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
+from concurrent.futures import as_completed
 from dataclasses import dataclass
+from typing import TypeVar
 
 from blocksim.arch.modes import Mode
+from blocksim.common.processes import crew
+from blocksim.common.progress import Progress
 from blocksim.evidence.recording import Recording
 from blocksim.evidence.verdict import Verdict
+
+Job = TypeVar("Job")
+Found = TypeVar("Found")
+
+
+def answered(
+    ask: Callable[[Job], Found],
+    jobs: Sequence[tuple[str, Job]],
+    workers: int,
+    progress: Progress,
+) -> list[Found]:
+    """Do jobs, each with a name to report it by; return what came of each, in their order.
+
+    Processes do them; one worker is this process.
+    """
+    if workers == 1:
+        found: list[Found] = []
+        for done, (name, job) in enumerate(jobs):
+            progress(done / len(jobs), name)
+            found.append(ask(job))
+        return found
+    with crew(workers) as executor:
+        futures = {executor.submit(ask, job): name for name, job in jobs}
+        for done, future in enumerate(as_completed(futures)):
+            progress((done + 1) / len(jobs), futures[future])
+        return [future.result() for future in futures]
 
 
 @dataclass(frozen=True, kw_only=True)

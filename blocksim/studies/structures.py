@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from concurrent.futures import as_completed
 from functools import partial
 
 from blocksim.ask.methods import choose, missing
 from blocksim.blocks.entries import ExpectEntry
 from blocksim.common.errors import InputError
-from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import engine_named
 from blocksim.kinds.files import shipped_structures
 from blocksim.kinds.known import Known, load_known
-from blocksim.studies.agreement import Unasked
+from blocksim.studies.agreement import Unasked, answered
 from blocksim.studies.questions import StructureRow, answer
 from blocksim.studies.validate import usual
 
@@ -78,19 +76,9 @@ def validate_structures(
     names = tuple(dict.fromkeys(usual("structures") if engines is None else engines))
     for name in names:
         engine_named(name, "methods")
-    ask = partial(answers, engines=names)
-    if workers == 1:
-        rows: list[list[StructureRow]] = []
-        for done, known in enumerate(chosen):
-            progress(done / len(chosen), known.name)
-            rows.append(ask(known))
-    else:
-        with crew(workers) as executor:
-            futures = {executor.submit(ask, known): known for known in chosen}
-            for done, future in enumerate(as_completed(futures)):
-                progress((done + 1) / len(chosen), futures[future].name)
-            rows = [future.result() for future in futures]
-    return [row for each in rows for row in each]
+    jobs = [(known.name, known) for known in chosen]
+    found = answered(partial(answers, engines=names), jobs, workers, progress)
+    return [row for rows in found for row in rows]
 
 
 def answers(known: Known, engines: Sequence[str]) -> list[StructureRow]:

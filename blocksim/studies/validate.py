@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
-from concurrent.futures import as_completed
 from dataclasses import replace
 
 from blocksim.arch import limit
@@ -17,13 +16,12 @@ from blocksim.arch.scenario import Scenario, load_scenario, shipped
 from blocksim.ask.bracket import bracket
 from blocksim.ask.methods import missing
 from blocksim.ask.search import ETA_MAX
-from blocksim.common.processes import crew
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.evidence.observation import observe
 from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
-from blocksim.studies.agreement import Unasked, Validation, agree
+from blocksim.studies.agreement import Unasked, Validation, agree, answered
 
 ERROR_BOUND = 0.002
 """A bracket whose centre is farther than this from `limit` is a miss."""
@@ -99,22 +97,16 @@ def validate(
         engine_named(name, "methods")
         get_engine(name)
     jobs = [
-        (scenario, engine)
+        (scenario.name, (scenario, engine))
         for scenario in chosen
         for engine in names
         if engine_named(engine).is_spatial or not scenario.lean
     ]
-    if workers == 1:
-        rows: list[Validation] = []
-        for done, job in enumerate(jobs):
-            progress(done / len(jobs), job[0].name)
-            rows.append(validate_one(*job))
-        return rows
-    with crew(workers) as executor:
-        futures = {executor.submit(validate_one, *job): job for job in jobs}
-        for done, future in enumerate(as_completed(futures)):
-            progress((done + 1) / len(jobs), futures[future][0].name)
-        return [future.result() for future in futures]
+    return answered(_asked_of, jobs, workers, progress)
+
+
+def _asked_of(job: tuple[Scenario, str]) -> Validation:
+    return validate_one(*job)
 
 
 def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> Validation:

@@ -19,6 +19,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from blocksim.blocks.assembly import SUPPORT, Array, Joint
+from blocksim.blocks.closing import closed_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.words import counted
@@ -37,6 +38,7 @@ from blocksim.view.drawing import (
 )
 from blocksim.view.style import (
     FONT,
+    GAP,
     GROUND,
     INK,
     MECHANISM,
@@ -56,6 +58,9 @@ WIDE, TALL = 7.6, (1.6, 8.0)
 SIDE_OF_TEXT = 2.2
 """Widest that a narrow structure is drawn over its height."""
 HATCH = "////"
+SEEN, SIZED = 1e-3, 20
+"""Share of a joint's length from which on the gap it closes is marked, for rounding is not; and
+how many have their size beside them, the largest ones."""
 LINE = 72
 """Letters in a line of a title."""
 
@@ -72,7 +77,8 @@ def problem_figure(
     """Draw a structure as it was built, and what is known of it.
 
     Every artist has a `gid` that says what it is: `block-3`, `support-0`, `joint-5`,
-    `hinge-5`, `force-5`, `dead-0`, `live-0`, `moved-3`, `gravity`, `scale`.
+    `gap-5`, `gap-size-5`, `hinge-5`, `force-5`, `dead-0`, `live-0`, `moved-3`, `gravity`,
+    `scale`.
 
     Parameters
     ----------
@@ -200,7 +206,7 @@ def _strip(joint: Joint, deep: float) -> Array:
 
 
 def draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
-    """Draw blocks as stone, with edges so wide [points]."""
+    """Draw blocks as stone, with edges so wide [points], and gaps closed between them."""
     for index, block in enumerate(problem.assembly.blocks):
         # Parts of one block have no edge between them: a hair of stone closes the seam.
         axes.add_patch(
@@ -211,6 +217,30 @@ def draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
         axes.add_collection(
             LineCollection(sides, colors=INK, linewidths=width, zorder=2, capstyle="round")
         )
+    _draw_gaps(axes, problem)
+
+
+def _draw_gaps(axes: Axes, problem: Problem) -> None:
+    """Mark joints at which a gap or an overlap of the drawing is closed, with its size."""
+    joints = problem.assembly.joints
+    gaps = {
+        index: gap
+        for index, gap in closed_gaps(problem.assembly).items()
+        if abs(gap) > SEEN * joints[index].length
+    }
+    largest = set(sorted(gaps, key=lambda index: -abs(gaps[index]))[:SIZED])
+    for index, gap in gaps.items():
+        joint = joints[index]
+        ends = np.array([joint.inner, joint.outer])
+        axes.plot(*ends.T, color=GAP, lw=1.8, zorder=2.5, solid_capstyle="butt",
+                  marker="D" if joint.is_corner else "", ms=4, gid=f"gap-{index}",
+                  label="closed gap (+) or overlap (-)")  # fmt: skip
+        if index in largest:
+            x, y = joint.tangent if joint.tangent[0] >= 0 else -joint.tangent
+            axes.annotate(f"{1000 * gap:+.3g} mm", ends.mean(axis=0), xytext=(-3 * y, 3 * x),
+                          textcoords="offset points", ha="center", va="bottom", color=GAP,
+                          rotation=math.degrees(math.atan2(y, x)), rotation_mode="anchor",
+                          fontsize=6.5, zorder=8, gid=f"gap-size-{index}")  # fmt: skip
 
 
 def draw_mechanism(

@@ -68,6 +68,8 @@ INK, QUIET = "#222222", "#5d5a53"
 """Of lines and words, and of those that matter less."""
 DEAD, LIVE = "#222222", "#CC0055"
 """Of loads besides gravity: those that stay, and those multiplied by the load factor."""
+GAP = "#AA4499"
+"""Of joints at which a drawing's gap or overlap is closed."""
 STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
 
 FONT: dict[Any, Any] = {

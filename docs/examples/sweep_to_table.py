@@ -5,18 +5,19 @@ The paper gives eta = 0.4208869 at 125 degrees and mu = 0.9 (Fig. 17).
 
 import csv
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from blocksim.many import load_design, sweep, write_csv
+from blocksim import sweep
+from blocksim.many import write_csv
 
-Path("sweep.toml").write_text(
-    'half_angle_deg = [90, 125, 140]\nmethod = "theory"\n'
-    "mu = { low = 0.3, high = 1.5, steps = 121 }\n"
-)
+asked = {
+    "half_angle_deg": [90, 125, 140],
+    "mu": {"low": 0.3, "high": 1.5, "steps": 121},
+    "method": "theory",
+}
 with ThreadPoolExecutor(1) as executor:  # with processes, put it into a main()
-    sweep(load_design("sweep.toml"), "sweep", executor=executor)
+    sweep(asked, "sweep", executor=executor)
 write_csv("sweep", "sweep.csv")
 with open("sweep.csv", newline="") as file:
     rows = [row for row in csv.DictReader(file) if row["eta_high"]]

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from blocksim.arch.circular import WEIGHTS, Weight
-from blocksim.arch.limit.halfplanes import Joints, sliding, turning
-from blocksim.arch.limit.statics import ETA_MAX
+from blocksim.arch.limit.halfplanes import FEW, Joints, sliding, turning
+from blocksim.arch.limit.statics import ETA_MAX, least_of, thrust_bounds
 from blocksim.blocks.assembly import Array
-from blocksim.common.checks import require
+from blocksim.common.checks import require, require_voussoirs
 
 WORKING_SET = 25_000
 """Pairs of joints held at once; their temporaries stay in the cache."""
@@ -50,7 +50,7 @@ def which_stand(
     mu : (...) float
         Above 0, inf allowed; the three broadcast against each other.
     voussoirs : int
-        Number of voussoirs of every arch, 3 to 1000.
+        Number of voussoirs of every arch, 3 to 10000.
     weight : {"centreline", "sector"}
 
     Returns
@@ -105,6 +105,12 @@ def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> I
     -------
     Intervals
     """
+    if joints.angles.shape[1] > FEW:
+        known = zip(np.sort(joints.angles), depth, mu, spread, strict=True)
+        bounds = [
+            thrust_bounds(Joints(a[None]), float(d), float(m), float(s)) for a, d, m, s in known
+        ]
+        return Intervals(*np.array([[low.short, high.short] for low, high in bounds]).T)
     turns = turning(joints, depth, spread)
     highest, lowest = turns.ends()
     most, least = highest.min(axis=(1, 2)), lowest.max(axis=(1, 2))
@@ -136,6 +142,10 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
     (k,) float
         0 where any thickness stands, nan where none up to 2 does.
     """
+    if angles.shape[1] > FEW:
+        each = zip(np.sort(angles), mu.tolist(), strict=True)
+        least = [least_of(Joints(a[None]), friction, weight)[0] for a, friction in each]
+        return np.array(least, dtype=float)
     found = np.empty(mu.size)
     size = chunk_size(angles.shape[1])
     for start in range(0, mu.size, size):
@@ -173,7 +183,6 @@ def _checked(
         wrong = ~((values > 0) & (values <= upto))
         if wrong.any():
             require(False, field, float(values[wrong].flat[0]), allowed)
-    whole = 3 <= voussoirs <= 1000 and voussoirs == int(voussoirs)
-    require(whole, "voussoirs", voussoirs, "a whole number from 3 to 1000")
+    require_voussoirs(voussoirs)
     require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
     return alpha, depth, friction

@@ -10,18 +10,26 @@ all scaled, with k the radius of the weight over the mean radius. In flat arches
 goes like the fourth power of the angles, and h and m are all but the same for every arch.
 Therefore the bounds are those of the shortfall 1 - h: with it, and with the entire functions
 of `blocksim.common.series`, nothing cancels.
+
+Where the line of thrust turns, each pair of joints sets a condition, and a sum of what each of
+the two sets. Few joints act: conditions are those of the pairs among a few, to which the pair
+is added that they leave least met, until there is none.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.series import lag_series, p_series
+
+FEW = 48
+"""Joints of which all pairs are looked at; of more, so many at first."""
 
 
 class Bounds(NamedTuple):
@@ -61,7 +69,7 @@ class Joints:
     Parameters
     ----------
     angles : (k, j) float
-        [rad]
+        From the crown on, where there are more than `FEW` [rad].
     """
 
     def __init__(self, angles: Array) -> None:
@@ -73,6 +81,28 @@ class Joints:
         # x sin x - 2 (1 - cos x), of the weight's lever
         self.bow = -(square**2) * p_series(square)
         self.lag = angles**3 * lag_series(square)
+        many = angles.shape[1]
+        self._looked_at: NDArray[np.int64] = np.arange(many)
+        if many > FEW:
+            self._looked_at = np.arange(FEW) * (many - 1) // (FEW - 1)
+        self._few: Joints | None = None
+
+    @property
+    def few(self) -> tuple[NDArray[np.int64], Joints]:
+        """Joints of which pairs are looked at: their places, and themselves."""
+        if len(self._looked_at) == self.angles.shape[1]:
+            return self._looked_at, self
+        if self._few is None:
+            self._few = Joints(self.angles[:, self._looked_at])
+        return self._looked_at, self._few
+
+    def look_at(self, places: set[int]) -> bool:
+        """Look at more of them; tell whether they are new."""
+        new = places - set(self._looked_at.tolist())
+        if new:
+            self._looked_at = np.sort([*self._looked_at.tolist(), *new])
+            self._few = None
+        return bool(new)
 
     @cached_property
     def pairs(self) -> Pairs:
@@ -126,6 +156,56 @@ def turning(joints: Joints, depth: Array, spread: Array) -> Bounds:
         return float(-(lever[i] - lever[j] + reach))
 
     return Bounds(half * pairs.cosine - pairs.lift, level, level_h)
+
+
+def least_met(
+    joints: Joints, depth: float, spread: float, ends: tuple[float, float]
+) -> set[int]:
+    """Joints of the pairs whose conditions the ends of an interval of 1 - h meet least.
+
+    A pair's rate and level are sums over its two joints. Rates fall with the angle of the one
+    and grow with that of the other, so those of one sign are all beyond a joint, or before it.
+
+    Parameters
+    ----------
+    joints : Joints
+        Of one half of one arch, from the crown on.
+    depth, spread : float
+        As in `turning`.
+    ends : (float, float)
+        Largest 1 - h, which pairs of rates above 0 bound, and smallest.
+
+    Returns
+    -------
+    set of int
+        None where both ends meet all their conditions.
+    """
+    half = depth / 2
+    cosine, lift, bow, force = (
+        each[0] for each in (joints.cosine, joints.lift, joints.bow, joints.force)
+    )
+    rate_i, rate_j = half * cosine - lift, half * cosine + lift
+    level_i, level_j = (
+        half * force + (bow - spread * lift),
+        half * force - (bow - spread * lift),
+    )
+    found: set[int] = set()
+    rest: Any
+    for short, way in zip(ends, (-1, 1), strict=True):
+        if not np.isfinite(short):
+            continue
+        side = "right" if way < 0 else "left"
+        bound: Any = np.searchsorted(rate_j, -rate_i, side)
+        rest_i, rest_j = level_i - short * rate_i, level_j - short * rate_j
+        # The least from each joint on to the end, or up to it; none beyond the last.
+        least = np.append(np.minimum.accumulate(rest_j[::way])[::way], np.inf)
+        rest = rest_i + least[bound if way < 0 else bound - 1]
+        i = int(rest.argmin())
+        if rest[i] < 0:
+            at = int(bound[i])
+            j = at + int(rest_j[at:].argmin()) if way < 0 else int(rest_j[:at].argmin())
+            found |= {i, j}
+    return found
 
 
 def sliding(joints: Joints, mu: Array, sign: float) -> Bounds:

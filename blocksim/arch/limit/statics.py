@@ -16,9 +16,10 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.arch.circular import Arch, Weight, crown_width
-from blocksim.arch.limit.halfplanes import Bounds, Joints, sliding, turning
+from blocksim.arch.limit.halfplanes import Bounds, Joints, least_met, sliding, turning
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import require_friction
@@ -124,10 +125,18 @@ def thrust_bounds(
     lower, upper : Bound
         Empty where ``lower.short < upper.short``.
     """
-    turns = turning(joints, np.array([depth]), np.array([spread]))
-    if turns.broken().any():
-        return Bound(-math.inf, math.inf), Bound(math.inf, -math.inf)
-    return _within(_tightest(turns), slides or friction_bounds(joints, mu))
+    while True:
+        places, few = joints.few
+        turns = turning(few, np.array([depth]), np.array([spread]))
+        if turns.broken().any():
+            return Bound(-math.inf, math.inf), Bound(math.inf, -math.inf)
+        lower, upper = _tightest(turns)
+        if few is joints:
+            break
+        if not joints.look_at(least_met(joints, depth, spread, (lower.short, upper.short))):
+            lower, upper = (_placed(bound, places) for bound in (lower, upper))
+            break
+    return _within((lower, upper), slides or friction_bounds(joints, mu))
 
 
 def friction_bounds(joints: Joints, mu: float) -> tuple[Bound, Bound]:
@@ -165,6 +174,14 @@ def _bound(bounds: Bounds, short: float, place: tuple[np.intp, ...]) -> Bound:
     if len(where) == 3:
         return Bound(short, thrust, extrados=where[1], intrados=where[2])
     return Bound(short, thrust, slides=where[1])
+
+
+def _placed(bound: Bound, places: NDArray[np.int64]) -> Bound:
+    """Name joints of a bound by their places among all."""
+    if bound.extrados < 0:
+        return bound
+    extrados, intrados = int(places[bound.extrados]), int(places[bound.intrados])
+    return bound._replace(extrados=extrados, intrados=intrados)
 
 
 def admissible(bounds: tuple[Bound, Bound]) -> bool:
@@ -302,20 +319,7 @@ def least_thickness(
     Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
     require_friction(mu)
     angles = half_joints(half_angle, voussoirs)
-    joints = Joints(angles[None])
-    slides = friction_bounds(joints, mu)
-
-    @cache
-    def bounds(eta: float) -> tuple[Bound, Bound]:
-        return thrust_bounds(joints, eta, mu, spread_of(eta, weight), slides)
-
-    def gap(eta: float) -> float:
-        return _gap(bounds(eta))
-
-    eta = None if gap(ETA_MAX) < 0 else 0.0
-    if eta is not None and gap(0.0) < 0:
-        eta = _boundary(gap, 0.0, ETA_MAX)
-    lower, upper = bounds(ETA_MAX if eta is None else eta)
+    eta, (lower, upper) = least_of(Joints(angles[None]), mu, weight)
     extrados = _places(angles, lower.extrados, upper.extrados)
     intrados = _places(angles, lower.intrados, upper.intrados)
     sliding_at = _places(angles, lower.slides, upper.slides)
@@ -335,6 +339,28 @@ def least_thickness(
         hinges_extrados=extrados,
         slides=sliding_at,
     )
+
+
+def least_of(
+    joints: Joints, mu: float, weight: Weight
+) -> tuple[float | None, tuple[Bound, Bound]]:
+    """Least thickness for joints of one half of an arch, and bounds on the thrust there.
+
+    None where none up to `ETA_MAX` stands, with the bounds at that.
+    """
+    slides = friction_bounds(joints, mu)
+
+    @cache
+    def bounds(eta: float) -> tuple[Bound, Bound]:
+        return thrust_bounds(joints, eta, mu, spread_of(eta, weight), slides)
+
+    def gap(eta: float) -> float:
+        return _gap(bounds(eta))
+
+    eta = None if gap(ETA_MAX) < 0 else 0.0
+    if eta is not None and gap(0.0) < 0:
+        eta = _boundary(gap, 0.0, ETA_MAX)
+    return eta, bounds(ETA_MAX if eta is None else eta)
 
 
 def _places(angles: Array, *indices: int) -> tuple[float, ...]:

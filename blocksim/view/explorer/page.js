@@ -13,7 +13,7 @@
   const TALLEST = 560, LOW = 520; // of the map, and a window called low [pixels]
   const STRIDES = 200; // of an arrow key across the map
   const NEAR = 12; // pixels within which a result is meant
-  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 1000] }; // of arches
+  const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 10000] }; // of arches
   const ON_MAP = { mu: [0.01, data.largestMu], eta: [1e-4, 2] };
 
   const find = (id) => document.getElementById(id);

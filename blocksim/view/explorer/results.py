@@ -8,7 +8,7 @@ from typing import Any
 
 from blocksim.arch.circular import WEIGHTS
 from blocksim.arch.modes import Mode
-from blocksim.common.checks import is_number
+from blocksim.common.checks import VOUSSOIRS, is_number
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, json_of, read_file
 from blocksim.common.words import printable
@@ -96,7 +96,7 @@ def _result(row: dict[str, Any]) -> Result | None:
         is_number(eta, 0, 2)
         and is_number(alpha, 0, math.nextafter(180, 0))
         and is_number(mu, 0, math.inf)
-        and is_number(row["voussoirs"], 2, 1000)
+        and VOUSSOIRS.has(row["voussoirs"])
         and row["weight"] in WEIGHTS
     )
     if not sound:
