@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.check import Check, check
 from blocksim.blocks.problem import Problem
@@ -16,8 +15,6 @@ from blocksim.cli.subject import is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
-from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import plain_arch
 
 
 def write_still(
@@ -89,10 +86,6 @@ def _write_sheet(
 
 def verdict_words(answer: Check) -> str:
     """Say the verdict and its method, and how an arch falls of its own weight."""
-    arch = plain_arch(answer.problem)
-    mode = None
-    falls = answer.verdict is Verdict.COLLAPSES
-    if arch is not None and falls and answer.problem.is_planar and not answer.shaken:
-        mode = observed_mode(answer.joints, arch)
+    mode = answer.arch and answer.arch.mode
     named = f", mode {mode}" if mode else ""
     return f"{answer.verdict.value}{named}, by {answer.method}"

@@ -38,7 +38,8 @@ Within = Annotated[
     tuple[float, float] | None,
     Option(
         metavar="LOW HIGH",
-        help="Where an engine searches, instead of where limit analysis says.",
+        help="Where an engine searches, instead of where limit analysis says. Other methods "
+        "search nowhere and refuse it.",
     ),
 ]
 Set = Annotated[
@@ -333,6 +334,8 @@ OPTIONS = {
     "eta",
     "mu",
     "must_rest",
+    "over",
+    "within",
     "voussoirs",
     "weight",
     "depth",

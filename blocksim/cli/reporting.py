@@ -9,7 +9,6 @@ from typing import Annotated
 
 import click
 
-from blocksim.arch.observed import observed_mode
 from blocksim.ask.check import check
 from blocksim.cli.arguments import Option
 from blocksim.cli.options import (
@@ -27,8 +26,6 @@ from blocksim.cli.output import progress, say
 from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import require
 from blocksim.common.files import require_place, write_whole
-from blocksim.evidence.verdict import Verdict
-from blocksim.kinds.circular import plain_arch
 
 
 def report(
@@ -53,11 +50,9 @@ def report(
 
     with named_options(), progress() as told:
         answer = check(problem, method=method, settings=own, progress=told)
-    arch = plain_arch(problem)
-    falls = answer.verdict is Verdict.COLLAPSES and problem.is_planar
     page = structure_page(
         answer,
-        mode=observed_mode(answer.joints, arch) if arch and falls else None,
+        mode=answer.arch and answer.arch.mode,
         command=shlex.join(["blocksim", *sys.argv[1:]]),
         settings=", ".join(f"{name} {value:g}" for name, value in own.items()),
     )
