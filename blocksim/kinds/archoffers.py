@@ -19,13 +19,13 @@ from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.evidence.simulation import Reduced
 from blocksim.evidence.verdict import Evidence, Verdict
-from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.offers import Offers, Static, Threshold
 from blocksim.limit.carried import Carried
 
 if TYPE_CHECKING:
     from blocksim.arch.limit.mechanism import Mechanism
     from blocksim.evidence.observation import Observation
+    from blocksim.kinds.circular import CircularArch
 
 THINNEST = 1e-6
 """Search below this ratio is given up."""
@@ -42,10 +42,12 @@ class ArchOffers(Offers):
     arch : Arch
     problem : Problem
         Of this arch, under its own weight; gravity may lean out of the plane.
+    maker : CircularArch
+        What made it, and makes it of other ratios.
     """
 
-    def __init__(self, arch: Arch, problem: Problem) -> None:
-        self.arch, self.problem = arch, problem
+    def __init__(self, arch: Arch, problem: Problem, maker: CircularArch) -> None:
+        self.arch, self.problem, self.maker = arch, problem, maker
         self.methods = ("limit", "theory") if problem.is_planar else ()
 
     @cached_property
@@ -149,18 +151,15 @@ class Thinning(Threshold):
 
     def problem(self, value: float) -> Problem:
         """Return the arch of a thickness-to-radius ratio."""
-        asked = self._offers.problem
-        return replace(
-            arch_problem(replace(self._arch, eta=value), asked.mu), gravity=asked.gravity
-        )
+        asked, maker = self._offers.problem, self._offers.maker
+        built = maker.of(replace(self._arch, eta=value), friction=asked.mu).problem()
+        return replace(built, gravity=asked.gravity)
 
     def value(self, number: float | None) -> float | None:
         """Return the thickness of a ratio [m]; the line that was measured stays."""
         if not number:
             return number
-        maker = self._offers.problem.maker
-        assert isinstance(maker, CircularArch)  # noqa: S101
-        return number * maker.mean_radius(number)
+        return number * self._offers.maker.mean_radius(number)
 
     def reduction(self, value: float, last: Reduced | None) -> Reduced | None:
         """Return half of the arch; what moves at one thickness is the best guess."""

@@ -243,7 +243,7 @@ class CircularArch(CurvedArch):
             return None
         from blocksim.kinds.archoffers import ArchOffers
 
-        return ArchOffers(arch, problem)
+        return ArchOffers(arch, problem, self)
 
     @property
     def line(self) -> Line | None:
