@@ -80,21 +80,21 @@ def overlaps(
     each_one = [part for each in parts for part in each]
     which = np.repeat(np.arange(len(each_one)), [len(part) for part in each_one])
     rings: Any = cast(Any, shapely).linearrings(np.concatenate(each_one), indices=which)
-    regions: Any = shapely.polygons(rings)
+    regions: Any = cast(Any, shapely).polygons(rings)
     boxes: Any = cast(Any, shapely).bounds(regions)
     tree, found = shapely.STRtree(regions), list[tuple[int, int, float]]()
     begin, step = 0, FIRST_LOOK
     while begin < len(regions) and len(found) < most:
-        one, other = tree.query(regions[begin : begin + step], predicate="intersects")
-        one = one + begin
+        looked: Any = tree.query(regions[begin : begin + step], predicate="intersects")
+        one, other = looked[0] + begin, looked[1]
         real = (owner[one] < owner[other]) & ~(fixed[owner[one]] & fixed[owner[other]])
         one, other = one[real], other[real]
-        close: Any = slack.at(owner[one], owner[other]).close
+        close = slack.at(owner[one], owner[other]).close
         # No overlap is deeper than the box around it is narrow.
         low, high = np.maximum(boxes[one], boxes[other]), np.minimum(boxes[one], boxes[other])
-        wide = (high[:, 2:] - low[:, :2]).min(axis=1) > close
-        one, other, close = (cast(Any, each)[wide] for each in (one, other, close))
-        common: Any = shapely.intersection(regions[one], regions[other])
+        wide: Any = (high[:, 2:] - low[:, :2]).min(axis=1) > close
+        one, other, close = one[wide], other[wide], close[wide]
+        common: Any = cast(Any, shapely).intersection(regions[one], regions[other])
         area, around = cast(Any, shapely).area(common), cast(Any, shapely).length(common)
         depth = np.divide(2 * area, around, out=np.zeros_like(area), where=around > 0)
         deep = np.flatnonzero(depth > close)
