@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from blocksim.blocks.acting import Load as Load
+from blocksim.blocks.acting import Move as Move
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
+from blocksim.blocks.road import with_road
 from blocksim.blocks.shaking import Shaking
 from blocksim.common.checks import (
-    COORDINATE,
     FACTOR,
-    FORCE,
     SMOOTH_OR_ROUGH,
     is_number,
     require,
@@ -31,65 +32,6 @@ STANDARD_GRAVITY = 9.81
 """To turn weight into mass [m/s^2]."""
 DOWN = np.array([0.0, -1.0, 0.0])
 """Gravity where nothing is tilted: x, y, and z out of the plane."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Load:
-    """A force on a block, or on several in proportion to their weights.
-
-    Parameters
-    ----------
-    force : (2,) float
-        x and y [N]; with `per_weight` in units of each block's weight.
-    blocks : tuple of int
-        The blocks it acts on.
-    point : (2,) float or None
-        Where it acts [m], carried by its block; None for the centre of mass.
-    per_weight : bool
-        Whether it is a body force.
-    """
-
-    force: Array
-    blocks: tuple[int, ...]
-    point: Array | None = None
-    per_weight: bool = False
-
-    def __post_init__(self) -> None:
-        """Check the ranges, and make the arrays read-only."""
-        object.__setattr__(self, "force", frozen(self.force, (2,)))
-        require_all(FACTOR if self.per_weight else FORCE, "force", self.force)
-        if self.point is not None:
-            object.__setattr__(self, "point", frozen(self.point, (2,)))
-            require_all(COORDINATE, "point", self.point)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Move:
-    """How a support moves as supports spread or settle.
-
-    Parameters
-    ----------
-    support : int
-    direction : (2,) float
-        Way of the support over the parameter, which is in metres.
-    turn : float
-        Rotation over the parameter [rad/m], counter-clockwise.
-    about : (2,) float
-        Point of the support about which it turns [m].
-    """
-
-    support: int
-    direction: Array
-    turn: float = 0.0
-    about: Array = field(default_factory=lambda: np.zeros(2))
-
-    def __post_init__(self) -> None:
-        """Check the ranges, and make the arrays read-only."""
-        object.__setattr__(self, "direction", frozen(self.direction, (2,)))
-        object.__setattr__(self, "about", frozen(self.about, (2,)))
-        FACTOR.require("turn", self.turn)
-        require_all(FACTOR, "direction", self.direction)
-        require_all(COORDINATE, "about", self.about)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -232,9 +174,6 @@ class Problem(Shown):
         Loads stay as they are but for the weight of fill, which comes first among the dead
         ones, and for those on the road.
         """
-        # It knows of problems, which know nothing of roads.
-        from blocksim.blocks.road import with_road
-
         before = 0 if self.maker is None else len(self.maker.built.fills)
         built = maker.built
         remade = replace(

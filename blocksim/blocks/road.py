@@ -7,14 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from blocksim.blocks.acting import Load
 from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.patch import shares, shares_at
-from blocksim.blocks.problem import Load, Problem
 from blocksim.common.checks import require
+
+if TYPE_CHECKING:
+    from blocksim.blocks.problem import Problem
 
 
 def on_road(

@@ -1,0 +1,69 @@
+"""What acts on blocks, and how supports move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array, frozen
+from blocksim.common.checks import COORDINATE, FACTOR, FORCE, require_all
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Load:
+    """A force on a block, or on several in proportion to their weights.
+
+    Parameters
+    ----------
+    force : (2,) float
+        x and y [N]; with `per_weight` in units of each block's weight.
+    blocks : tuple of int
+        The blocks it acts on.
+    point : (2,) float or None
+        Where it acts [m], carried by its block; None for the centre of mass.
+    per_weight : bool
+        Whether it is a body force.
+    """
+
+    force: Array
+    blocks: tuple[int, ...]
+    point: Array | None = None
+    per_weight: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the ranges, and make the arrays read-only."""
+        object.__setattr__(self, "force", frozen(self.force, (2,)))
+        require_all(FACTOR if self.per_weight else FORCE, "force", self.force)
+        if self.point is not None:
+            object.__setattr__(self, "point", frozen(self.point, (2,)))
+            require_all(COORDINATE, "point", self.point)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Move:
+    """How a support moves as supports spread or settle.
+
+    Parameters
+    ----------
+    support : int
+    direction : (2,) float
+        Way of the support over the parameter, which is in metres.
+    turn : float
+        Rotation over the parameter [rad/m], counter-clockwise.
+    about : (2,) float
+        Point of the support about which it turns [m].
+    """
+
+    support: int
+    direction: Array
+    turn: float = 0.0
+    about: Array = field(default_factory=lambda: np.zeros(2))
+
+    def __post_init__(self) -> None:
+        """Check the ranges, and make the arrays read-only."""
+        object.__setattr__(self, "direction", frozen(self.direction, (2,)))
+        object.__setattr__(self, "about", frozen(self.about, (2,)))
+        FACTOR.require("turn", self.turn)
+        require_all(FACTOR, "direction", self.direction)
+        require_all(COORDINATE, "about", self.about)
