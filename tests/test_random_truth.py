@@ -158,7 +158,7 @@ def test_blocks_that_turn_as_one_keep_their_contacts() -> None:
 
 
 def test_what_gives_way_and_swings_about_another_place_is_said_to() -> None:
-    """Statics prove that an arch cannot rest as built; moved by 1 in 1,700 it can."""
+    """Statics prove that an arch cannot rest as built; moved by 1 in 1,300 it can."""
     problem = drawn(random_truth.case(5177)).problem
     assert certificate(problem).stands is False
     found = check(problem, method="direct")
@@ -167,13 +167,14 @@ def test_what_gives_way_and_swings_about_another_place_is_said_to() -> None:
     world = Blocks(problem, ENGINE.rule(problem.assembly))
     built = world.poses()
     world.hold(1)
-    moved, speed = list[float](), list[float]()
+    moved = list[float]()
     for _ in range(40):
         world.advance(100)
         moved.append(float(np.abs(world.poses() - built).max()))
-        speed.append(float(np.abs(world.velocities).max()))
-    assert 1e-4 < moved[-1] < 0.8 * max(moved) < 1e-3
-    assert speed[-1] < 1e-2 * max(speed)
+    # No joint that is open closes, so nothing is lost: it comes back to where it was built.
+    assert 1e-3 < max(moved) < 2e-3
+    assert min(moved[4:]) < 1e-5
+    assert max(moved[20:]) == pytest.approx(max(moved[:20]), rel=0.01)
 
 
 def test_a_load_that_nothing_limits_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
