@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib as _importlib
+from typing import Any as _Any
+from typing import cast as _cast
 
 from blocksim.common import interrupts
 from blocksim.common import shown as _shown
@@ -13,7 +15,7 @@ if interrupts.is_program():
     interrupts.install()
 
 # The package is above all its rooms, and names who shows things of theirs in a notebook.
-_shown.show_by(lambda: _importlib.import_module("blocksim.notebook"))
+_shown.show_by(lambda: _cast(_Any, _importlib.import_module("blocksim.notebook")))
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -118,10 +118,12 @@ def choose(
     return rung
 
 
-def _named(method: str | Engine) -> Method:
-    """Return the method of a name, or the engine that is given itself."""
+def _named(method: str | Method) -> Method:
+    """Return the method of a name, or the one that is given itself."""
     if isinstance(method, Engine):
         return make_known(method, method.name)
+    if isinstance(method, Method):
+        return method
     if method in METHODS:
         return METHODS[method]
     if ":" in method:

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,12 +195,12 @@ def least_met(
         if not np.isfinite(short):
             continue
         side = "right" if way < 0 else "left"
-        bound: Any = np.searchsorted(rate_j, -rate_i, side)
+        bound = cast("Any", np.searchsorted(rate_j, -rate_i, side))
         rest_i, rest_j = level_i - short * rate_i, level_j - short * rate_j
         # The least from each joint on to the end, or up to it; none beyond the last.
         least = np.append(np.minimum.accumulate(rest_j[::way])[::way], np.inf)
         rest = rest_i + least[bound if way < 0 else bound - 1]
-        i = int(rest.argmin())
+        i = int(np.argmin(rest))
         if rest[i] < 0:
             at = int(bound[i])
             j = at + int(rest_j[at:].argmin()) if way < 0 else int(rest_j[:at].argmin())
