@@ -325,6 +325,9 @@ PUBLISHED = {
         22 * np.arctan2(4, 4**2 / 6 - 1.5) * ((25 / 6 + 0.45) ** 2 - (25 / 6) ** 2) / 2,
         rel=1e-9,
     ),
+    "one_way": pytest.approx(0.3705, abs=5e-5),
+    # The centre of a trapezoid, 4 m high, 1 m and 0.5 m wide, is 16/9 m above its base.
+    "own_maker": pytest.approx(np.degrees(np.arctan(0.5 / (16 / 9))), rel=0.005),
     "tilted_wall": pytest.approx(0.40369, abs=1e-5),
     "drawing": pytest.approx(np.degrees(np.arctan(0.4)), rel=1e-3),
     "sweep_to_table": pytest.approx(0.4208869, abs=5e-8),
