@@ -106,8 +106,9 @@ def _brackets(method: str, arches: tuple[tuple[float, float], ...], tol: float) 
             )
         )
         seconds.append(took)
-        exact = found.eta_theory if method == "theory" else found.eta_limit
-        errors.append(abs((found.centre or math.inf) / (exact or math.nan) - 1))
+        known = found.arch
+        exact = known.eta_theory if method == "theory" else known.eta_limit
+        errors.append(abs((known.centre or math.inf) / (exact or math.nan) - 1))
     return Cost(method, f"bracket to {tol:g}", median(seconds), max(seconds), max(errors))
 
 

@@ -69,13 +69,13 @@ class Row:
     @property
     def same(self) -> bool:
         """Whether both brackets are the same, to a hundredth of their width."""
-        few, every = self.reduced.centre, self.whole and self.whole.centre
+        few, every = self.reduced.arch.centre, self.whole and self.whole.arch.centre
         return bool(few and every) and abs(few / every - 1) < self.reduced.tol / 100
 
     @property
     def error(self) -> float:
         """Distance of the reduced bracket's centre from the exact value, relative."""
-        exact, centre = self.reduced.eta_limit, self.reduced.centre
+        exact, centre = self.reduced.arch.eta_limit, self.reduced.arch.centre
         return math.nan if exact is None or centre is None else centre / exact - 1
 
 
@@ -131,7 +131,7 @@ def ask(row: tuple[str, float, float, Weight, int]) -> Row | None:
         return found, time.process_time() - started
 
     reduced, reduced_s = timed(reduce=True)
-    if reduced.eta_limit is None:
+    if reduced.arch.eta_limit is None:
         return None
     whole, whole_s = None, math.nan
     if voussoirs <= LARGEST[engine]:
@@ -214,7 +214,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
         compared=sum(row.whole is not None for row in rows),
         same=sum(row.same for row in rows),
         confirmed=sum(bool(row.reduced.confirmed) for row in rows),
-        same_mode=sum(row.reduced.mode is row.reduced.mode_limit for row in rows),
+        same_mode=sum(row.reduced.arch.mode is row.reduced.arch.mode_limit for row in rows),
         random=len(pairs),
         false=sum(whole.verdict is not reduced.verdict for _, whole, reduced in pairs),
         most_splits=max(reduced.splits for *_, reduced in pairs),
@@ -232,9 +232,13 @@ HEAD = (
 
 
 def _line(row: Row) -> str:
-    mode: Mode | None = row.reduced.mode
-    centre = row.whole.centre if row.whole else None
-    whole = "-" if centre is None else f"{centre / (row.reduced.eta_limit or math.nan) - 1:.1e}"
+    mode: Mode | None = row.reduced.arch.mode
+    centre = row.whole.arch.centre if row.whole else None
+    whole = (
+        "-"
+        if centre is None
+        else f"{centre / (row.reduced.arch.eta_limit or math.nan) - 1:.1e}"
+    )
     cells = (
         row.engine,
         row.voussoirs,
