@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from blocksim.ask.families import Family
 
 if TYPE_CHECKING:
-    from blocksim.ask.bracket import Search
+    from blocksim.ask.searches import Search
 
 Within = tuple[float, float]
 Ask = Callable[[float, Within, bool], "Search"]

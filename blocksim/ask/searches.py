@@ -1,0 +1,282 @@
+"""Searches for the change from standing to falling: by statics, motion, the onset test."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from blocksim.ask.ends import Within
+from blocksim.ask.families import Family
+from blocksim.ask.options import Taken
+from blocksim.ask.search import Answer, Bisection
+from blocksim.common.progress import Progress, silent
+from blocksim.evidence.verdict import Verdict
+from blocksim.limit import equilibrium
+
+if TYPE_CHECKING:
+    from blocksim.ask.spread import Spreading
+    from blocksim.engines.base import Engine
+    from blocksim.evidence.observation import Held, Observation
+
+SURE = (1e-8, 1e-7, 1e-6)
+"""How far to both sides of its value limit analysis is asked again, the first that tells,
+relative."""
+FARTHEST = 1e3
+"""How far from its first value a search goes, as a ratio."""
+FINEST_SPREAD = 1e-4
+"""Narrowest bracket over the motion of supports by `direct`, relative."""
+ALIKE = 0.005
+"""How far beyond the ends that `direct` finds limit analysis still agrees with it, relative."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Search:
+    """What a search for the change from standing to falling came to.
+
+    Parameters
+    ----------
+    falls, stands : float or None
+        The nearest values that collapsed and that stood; None where there were none.
+    confirmed : bool or None
+        Whether moving runs, or a second linear programme, agree at the ends found; None
+        where none were made.
+    runs, undecided : int
+        Values tried, and those without an answer.
+    reason : str
+        What the answer rests on.
+    blocks, splits : int or None
+        Most blocks simulated at any value, and how many joints in all a reduction merged
+        and had to split again; None for static methods.
+    collapse : Observation or None
+        By an engine, what was seen at the value that collapsed.
+    """
+
+    falls: float | None = None
+    stands: float | None = None
+    confirmed: bool | None = None
+    runs: int = 0
+    undecided: int = 0
+    reason: str = ""
+    blocks: int | None = None
+    splits: int | None = None
+    collapse: Observation | None = None
+
+
+def followed(family: Family, spreading: Spreading, exact: float | None) -> Search:
+    """Follow the blocks until they fall, or as far as they can be followed."""
+    if exact is not None and math.isfinite(exact) and exact > 0:
+        return by_programmes(family, exact, rises=False)
+    if spreading.path.ends == "collapse":
+        return Search(falls=0.0, runs=1, reason="no forces of equilibrium exist as built")
+    return Search(
+        stands=spreading.path.value,
+        runs=1,
+        reason=f"followed on the displaced blocks up to {spreading.path.value:.6g} m",
+    )
+
+
+def slowly(
+    spreading: Spreading, tol: float, highest: float, exact: float | None, progress: Progress
+) -> Search:
+    """Move the supports slowly in `direct`, and stop them."""
+    seen = spreading.slowly(max(tol, FINEST_SPREAD), highest, progress)
+    way = "" if seen.solved else "; a step was not solved"
+    low, high = seen.low or 0.0, math.inf if seen.high is None else seen.high
+    agree = exact is None or (1 - ALIKE) * low <= exact <= (1 + ALIKE) * high
+    if not agree:
+        way += f"; limit analysis says {exact:.6g}: which of both is right is open"
+    return Search(
+        falls=seen.high,
+        stands=seen.low,
+        confirmed=seen.solved and agree,
+        runs=seen.runs,
+        reason=f"supports moved slowly and stopped {seen.runs} times: up to one value blocks "
+        "stay, from the other on they move by themselves (whether something catches them "
+        f"again was not asked){way}",
+    )
+
+
+def shaken(
+    family: Family,
+    engine: Engine,
+    start: float,
+    within: Within,
+    given: Taken,
+) -> Search:
+    """Search for the change by shaking the blocks, each time until they lie still."""
+    from blocksim.evidence.shaken import shake
+
+    least, most = max(within[0], start / FARTHEST), min(within[1], start * FARTHEST)
+
+    def judge(value: float) -> Answer:
+        # Nothing leads from how it falls to where it stands: the bracket is halved.
+        return Answer(shake(family.at(value), engine, settings=given.settings).verdict, 0.0)
+
+    search, falls, stands = _sought(
+        judge,
+        start,
+        (least, most),
+        given.tol,
+        name=family.name,
+        more_is_safer=family.stands == "high",
+        progress=given.progress,
+    )
+    return Search(
+        falls=falls,
+        stands=stands,
+        runs=search.runs,
+        undecided=search.undecided,
+        reason=f"shaken at {search.runs} values, each time until all lay still; this is one "
+        "change from standing to falling, and beyond it blocks may stand again",
+    )
+
+
+def by_programmes(family: Family, exact: float | None, *, rises: bool) -> Search:
+    """Ask a linear programme a little to both sides of its own value."""
+    if exact is None:
+        return Search(reason="no forces of equilibrium exist at any value")
+    if math.isinf(exact):
+        return Search(reason="forces of equilibrium exist at all values")
+    if exact < family.low:
+        least = family.low
+        reason = f"forces of equilibrium exist down to {least:.6g}"
+        return Search(stands=least, runs=1, reason=reason)
+    falls = stands = exact
+    confirmed, runs = False, 0
+    for sure in SURE:
+        ends = exact * (1 - sure), exact * (1 + sure)
+        falls, stands = ends if rises else ends[::-1]
+        runs += 2
+        confirmed = (
+            equilibrium(family.at(stands)).exists and not equilibrium(family.at(falls)).exists
+        )
+        if confirmed:
+            break
+    words = "confirmed" if confirmed else "not confirmed"
+    return Search(
+        falls=falls,
+        stands=stands,
+        confirmed=confirmed,
+        runs=runs,
+        reason=f"limit analysis: a linear programme, {words} by two others at the ends",
+    )
+
+
+def by_engine(
+    held_at: Callable[[float], Held],
+    start: float,
+    within: tuple[float, float],
+    tol: float,
+    *,
+    name: str,
+    more_is_safer: bool,
+    confirm: bool = True,
+    progress: Progress = silent,
+) -> Search:
+    """Search with the onset test, then, if asked for, let the blocks go at both ends.
+
+    Parameters
+    ----------
+    held_at : callable
+        Value to blocks after the onset test.
+    start : float
+        Where to begin.
+    within : tuple of float
+        Values beyond which the search is given up.
+    tol : float
+        Relative width at which to end.
+    name : str
+        What the value is.
+    more_is_safer : bool
+        Whether it stands above the change.
+    confirm : bool
+        Let the blocks go at both ends.
+    progress : Progress, optional
+    """
+    from blocksim.evidence.observation import conclude
+
+    ends: dict[Verdict, tuple[float, Held]] = {}
+    blocks = splits = both = 0
+
+    def judge(value: float) -> Answer:
+        nonlocal blocks, splits, both
+        held = held_at(value)
+        blocks, splits = max(blocks, held.simulation.blocks), splits + held.splits
+        both += held.onset.may_rest
+        # Every answer narrows the bracket: the last of each kind is that of its end.
+        ends[held.onset.verdict] = value, held
+        return Answer(held.onset.verdict, held.onset.acceleration)
+
+    search, falls, stands = _sought(
+        judge,
+        start,
+        within,
+        tol,
+        name=name,
+        more_is_safer=more_is_safer,
+        progress=progress,
+    )
+    agreed: list[bool] = []
+    collapse = None
+    for expected in (Verdict.COLLAPSES, Verdict.STANDS):
+        # The end that falls tells how it falls, too.
+        if expected in ends and (confirm or expected is Verdict.COLLAPSES):
+            value, held = ends[expected]
+            if confirm:
+                progress(0.95, f"moving run at {name} {value:.6g}")
+            ended = conclude(held, moving=confirm)
+            agreed.append(ended.verdict is expected)
+            if ended.verdict is Verdict.COLLAPSES:
+                collapse = ended
+    confirmed = all(agreed) if confirm and agreed else None
+    words = {True: "confirmed", False: "not confirmed", None: "not tried"}[confirmed]
+    reason = f"onset test at {search.runs} values, ends {words} by moving runs"
+    if both:
+        reason += f"; friction allows both rest and motion at {both} of them"
+    return Search(
+        falls=falls,
+        stands=stands,
+        confirmed=confirmed,
+        runs=search.runs,
+        undecided=search.undecided,
+        reason=reason,
+        blocks=blocks,
+        splits=splits,
+        collapse=collapse,
+    )
+
+
+def _sought(
+    judge: Callable[[float], Answer],
+    start: float,
+    within: tuple[float, float],
+    tol: float,
+    *,
+    name: str,
+    more_is_safer: bool,
+    progress: Progress,
+) -> tuple[Bisection, float | None, float | None]:
+    """Search, and return the nearest values that fell and that stood.
+
+    A bisection knows values only of which more is safer: of others it is given the inverse.
+    """
+    low, high = within
+
+    def turned(value: float) -> float:
+        # The inverse of an inverse is rounded, and no value beyond the range is asked.
+        return value if more_is_safer else min(max(1 / value, low), high)
+
+    floor, ceiling = (low, high) if more_is_safer else (1 / high, 1 / low)
+    search = Bisection(
+        lambda strength: judge(turned(strength)),
+        progress,
+        floor=floor,
+        ceiling=ceiling,
+        name=name,
+    )
+    search.expand(start if more_is_safer else 1 / start)
+    search.bisect(tol)
+    falls, stands = (None if end is None else turned(end) for end in (search.low, search.high))
+    return search, falls, stands
