@@ -40,10 +40,10 @@ from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.ask.simulate import simulate
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines import ENGINES
-from blocksim.evidence.observation import hold
 from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.files import structure_of
 from blocksim.report.tables import processor
+from blocksim.simulation.observation import hold
 from blocksim.view.film import Film
 
 TIMINGS = Path(__file__).parent / "timings"

@@ -30,8 +30,8 @@ from analysis.command import run
 from analysis.drawing import Draw, draws, plot_by_mode
 from blocksim import Mode, Verdict, bracket
 from blocksim.common.processes import crew
-from blocksim.evidence.observation import observe
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.observation import observe
 from blocksim.view.style import FONT, QUIET
 
 SEED = 2024

@@ -29,8 +29,8 @@ from analysis.command import run
 from analysis.drawing import Draw, draws
 from analysis.saved_answers import Row, answers
 from blocksim import Verdict
-from blocksim.evidence.observation import hold
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.observation import hold
 
 SEED = 2026
 ARCHES = 48

@@ -31,8 +31,8 @@ from blocksim.arch.circular import GRAVITY, Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.joints import JointState
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Label
 from blocksim.view.drawing import words_of
 from blocksim.view.film import BEFORE, FOOT, HEAD, TALL, Film, ViewName

@@ -35,8 +35,8 @@ from blocksim.ask.simulate import simulate
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.engines.ground import ground_level
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.known import load_known
+from blocksim.simulation.recording import Recording
 from blocksim.view.arrows import draw_forces, draw_loads
 from blocksim.view.drawing import clipped, save_figure
 from blocksim.view.film import Film

@@ -30,8 +30,8 @@ from analysis.command import run
 from analysis.drawing import Draw, draws
 from analysis.saved_answers import Row, answers
 from blocksim import Verdict
-from blocksim.evidence.observation import conclude, hold
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.observation import conclude, hold
 from blocksim.view.style import FONT, MISS, QUIET, VERDICTS
 
 SEED = 2025

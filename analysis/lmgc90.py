@@ -42,9 +42,9 @@ from blocksim.arch.circular import GRAVITY, Arch
 from blocksim.ask.search import Answer, Bisection
 from blocksim.blocks.assembly import SUPPORT, Array, Block
 from blocksim.blocks.problem import Problem
-from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
 from blocksim.report.chart import write_points
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.chart import LONG, REPEATS, START, ChartArch, Point, cases
 
 REMEDY = "LMGC90 is missing: pip install compas_lmgc90"

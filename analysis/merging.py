@@ -1,6 +1,6 @@
 """Structures of which an engine gets few bodies, against all their blocks: answers, and time.
 
-Question: what does it save to merge blocks that do not part (`blocksim.evidence.merging`), and
+Question: what does it save to merge blocks that do not part (`blocksim.simulation.merging`), and
 does it ever change an answer? The structures are those of which answers are known
 (`structure_cases.py`), and walls in running bond (`WALLS`), pushed by a share of their weight,
 whose load factor the linear programme knows. Each is asked 1 % to either side, held at rest
@@ -26,10 +26,10 @@ from analysis.saved_answers import Row, answers
 from analysis.structure_cases import COARSE, questions
 from blocksim import Verdict
 from blocksim.blocks.problem import Load, Problem
-from blocksim.evidence.merging import LEAST, Merging
-from blocksim.evidence.observation import Observation, observe
 from blocksim.kinds.files import structure_of
 from blocksim.limit import collapse
+from blocksim.simulation.merging import LEAST, Merging
+from blocksim.simulation.observation import Observation, observe
 from tests.structure_cases import names
 
 WALLS = ((1.6, 7), (2.4, 10), (3.6, 14))

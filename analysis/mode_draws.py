@@ -29,8 +29,8 @@ from blocksim.arch.theory.map import divide_friction
 from blocksim.arch.theory.regions import at_inner_sliding
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.assembly import Array
-from blocksim.many import Case
-from blocksim.many.case import ARCH
+from blocksim.sweeps import Case
+from blocksim.sweeps.case import ARCH
 
 SEED = 2024
 TOL = {"pymunk": 1e-3, "direct": 1e-8, "pybullet": 4e-3}

@@ -49,9 +49,9 @@ from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.regions import first_sliding
-from blocksim.evidence.verdict import Verdict
-from blocksim.many import read_rows, sweep
-from blocksim.many.answers import version_of
+from blocksim.simulation.verdict import Verdict
+from blocksim.sweeps import read_rows, sweep
+from blocksim.sweeps.answers import version_of
 from blocksim.view.mapregions import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 

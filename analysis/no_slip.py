@@ -30,9 +30,9 @@ from analysis.rows import write_rows
 from analysis.saved_answers import Row, answers
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.limit import least_thickness
-from blocksim.evidence.observation import observe
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.observation import observe
+from blocksim.simulation.verdict import Verdict
 
 SEED = 14
 ARCHES = 1700

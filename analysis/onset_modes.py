@@ -44,9 +44,9 @@ from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness as theory_of
 from blocksim.arch.theory.regions import landmarks
 from blocksim.ask.search import ETA_MAX
-from blocksim.evidence.observation import observe
 from blocksim.kinds.circular import arch_problem
-from blocksim.many.answers import version_of
+from blocksim.simulation.observation import observe
+from blocksim.sweeps.answers import version_of
 from blocksim.view.mapregions import draw_regions
 from blocksim.view.style import FONT, INK, MISS, MODES, UNNAMED
 

@@ -36,8 +36,8 @@ from blocksim import Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.engines import bulletblocks, bulletspace
-from blocksim.evidence.simulation import Simulation
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.simulated import Simulation
 from blocksim.view.style import FONT
 
 ARCHES = {"semicircle": (90.0, 0.35, 27), "thin": (45.0, 0.9, 13)}

@@ -38,10 +38,10 @@ from analysis.command import run
 from analysis.saved_answers import Row, answers
 from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
-from blocksim.evidence.observation import observe
-from blocksim.evidence.verdict import Verdict
 from blocksim.limit import collapse, equilibrium
 from blocksim.limit.programme import Collapse
+from blocksim.simulation.observation import observe
+from blocksim.simulation.verdict import Verdict
 from blocksim.view.style import FONT, QUIET, VERDICTS
 
 SEED = 2026

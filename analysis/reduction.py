@@ -32,9 +32,9 @@ from analysis.drawing import Draw, draws
 from blocksim import Arch, Bracket, Mode, bracket
 from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
-from blocksim.evidence.observation import Observation, observe
-from blocksim.evidence.onset import PROBE, Onset
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.observation import Observation, observe
+from blocksim.simulation.onset import PROBE, Onset
 from blocksim.view.style import FONT, INK, METHODS
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (154, 2.6))

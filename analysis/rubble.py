@@ -46,10 +46,10 @@ from blocksim.blocks.problem import Load, Problem
 from blocksim.engines import ENGINES
 from blocksim.engines.energy import energy
 from blocksim.engines.solids import Solids, width
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import structure_of
 from blocksim.limit import collapse
+from blocksim.simulation.recording import Recording
 from blocksim.view.style import FONT
 
 SEED = 16

@@ -34,10 +34,10 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.families import family_of
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.shaking import Shaking
-from blocksim.evidence.shaken import rocking_of
-from blocksim.evidence.simulation import Simulation
 from blocksim.kinds.files import structure_of
-from blocksim.many import load_design, read_rows, sweep
+from blocksim.simulation.shaken import rocking_of
+from blocksim.simulation.simulated import Simulation
+from blocksim.sweeps import load_design, read_rows, sweep
 from blocksim.view.style import FONT
 from tests.structure_cases import case, scenes, tipped
 

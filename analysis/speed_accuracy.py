@@ -27,9 +27,9 @@ from blocksim import Arch
 from blocksim.arch import limit
 from blocksim.ask.search import Answer, Bisection
 from blocksim.engines import ENGINES
-from blocksim.evidence.simulation import Simulation
 from blocksim.kinds.circular import arch_problem
 from blocksim.report.chart import write_chart
+from blocksim.simulation.simulated import Simulation
 from blocksim.studies.chart import START, ChartArch, cases, gain, measure
 from blocksim.studies.refinement import STEP, TOL, let_go
 

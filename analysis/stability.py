@@ -45,13 +45,13 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES, get_engine
 from blocksim.engines.base import Engine
-from blocksim.evidence.motion import moving_run
-from blocksim.evidence.observation import observe
-from blocksim.evidence.onset import onset
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.motion import moving_run
+from blocksim.simulation.observation import observe
+from blocksim.simulation.onset import onset
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 RATIOS = (0.98, 0.995, 1.005, 1.02)
 COLLAPSING, WATCHED = 0.9, 1.5

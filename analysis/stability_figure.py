@@ -14,8 +14,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from blocksim.engines.base import Settings
-from blocksim.evidence.simulation import FEWER, LONGER
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.simulated import FEWER, LONGER
+from blocksim.simulation.verdict import Verdict
 from blocksim.view.style import FONT, INK, METHODS, MISS, QUIET, UNNAMED, VERDICTS
 
 if TYPE_CHECKING:

@@ -31,8 +31,8 @@ from blocksim.ask.methods import choose
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
-from blocksim.evidence.observation import observe
 from blocksim.limit import collapse, equilibrium
+from blocksim.simulation.observation import observe
 from tests.structure_cases import case, names, scenes
 
 MOST, OTHERS = 120, 70

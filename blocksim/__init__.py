@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from blocksim.blocks.maker import Maker, Table, count, metres, parameter
     from blocksim.blocks.problem import Load, Problem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
-    from blocksim.evidence.recording import Recording
-    from blocksim.evidence.verdict import Evidence, Verdict
     from blocksim.kinds.arcade import Arcade
     from blocksim.kinds.basket import BasketHandleArch
     from blocksim.kinds.catenary import CatenaryArch
@@ -53,7 +51,9 @@ if TYPE_CHECKING:
     from blocksim.kinds.stack import Stack
     from blocksim.kinds.wall import Wall
     from blocksim.limit import collapse, equilibrium
-    from blocksim.many.run import sweep
+    from blocksim.simulation.recording import Recording
+    from blocksim.simulation.verdict import Evidence, Verdict
+    from blocksim.sweeps.run import sweep
 
 __all__ = [
     "Arcade",

@@ -25,12 +25,12 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
 from blocksim.common.files import json_text
 from blocksim.common.words import printable
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem, plain_arch
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
 from blocksim.report.problems import arch_size_lines, described, size_lines, size_record
 from blocksim.report.recordings import recording_lines, recording_record
+from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

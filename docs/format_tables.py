@@ -11,8 +11,8 @@ from pydantic import TypeAdapter
 
 from blocksim.arch.scenario import ScenarioFile
 from blocksim.blocks.entries import Around, StructureFile
-from blocksim.many.design import How
-from blocksim.many.load import BY_ANGLE, USUAL_ARCH, DesignFile
+from blocksim.sweeps.design import How
+from blocksim.sweeps.load import BY_ANGLE, USUAL_ARCH, DesignFile
 
 
 def of_format(which: str) -> str:

@@ -13,9 +13,9 @@ from blocksim.ask.bracket import Bracket, bracket
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Engine
-from blocksim.evidence.onset import onset
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch
+from blocksim.simulation.onset import onset
+from blocksim.simulation.verdict import Verdict
 
 
 def arch_at(

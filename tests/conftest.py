@@ -15,7 +15,7 @@ from hypothesis import settings
 from sweeps import SIMULATED, Rows, design_of, rows_of
 from windows import Windows
 
-from blocksim.many import run, sweep
+from blocksim.sweeps import run, sweep
 
 # Compiled once, not in every run and by every process that tests start.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

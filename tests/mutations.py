@@ -138,28 +138,28 @@ MUTATIONS = (
     ),
     Mutation(
         "joints may close in a mechanism",
-        "evidence/onset.py",
+        "simulation/onset.py",
         "overlap_share(assembly, mechanism) < settings.closing and (",
         "True and (",
         "test_onset.py test_pymunk.py test_pybullet.py",
     ),
     Mutation(
         "what lacks friction falls",
-        "evidence/onset.py",
+        "simulation/onset.py",
         "if falls and rougher is not None and _may_hold(rougher, seen.mechanism):",
         "if False:",
         "test_capped_friction.py",
     ),
     Mutation(
         "a fall where rest was found is believed",
-        "evidence/motion.py",
+        "simulation/motion.py",
         "motion.overlap > OVERLAP or (rests and motion.verdict is Verdict.COLLAPSES)",
         "motion.overlap > OVERLAP",
         "test_motion.py",
     ),
     Mutation(
         "a changed recording is read",
-        "evidence/recording.py",
+        "simulation/recording.py",
         'if header.get("state_hash") != recording.state_hash:',
         "if False:",
         "test_recording.py",
@@ -193,7 +193,7 @@ MUTATIONS = (
         "for strategy in (DUAL, PRIMAL):", "for strategy in (DUAL,):", "test_random_truth.py",
     ),
     Mutation(
-        "looks too few", "evidence/motion.py",
+        "looks too few", "simulation/motion.py",
         "< EARLY * min(moved[-2:]) ** ahead", "< 9 * EARLY * min(moved[-2:]) ** ahead",
         "test_motion.py",
     ),
@@ -269,7 +269,7 @@ MUTATIONS = (
         "SIGTERM: 1", "test_interrupts.py test_processes.py",
     ),
     Mutation(
-        "rows that are there are asked again", "many/run.py",
+        "rows that are there are asked again", "sweeps/run.py",
         "if identity in self._done:", "if False:", "test_sweep.py",
     ),
     Mutation(
@@ -278,7 +278,7 @@ MUTATIONS = (
         "test_strange_input.py",
     ),
     Mutation(
-        "arrays are taken at their word", "evidence/recording.py",
+        "arrays are taken at their word", "simulation/recording.py",
         "honest = min(shape, default=0) >= 0 and", "honest = True or",
         "test_strange_input.py",
     ),

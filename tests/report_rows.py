@@ -10,9 +10,9 @@ import numpy as np
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
 from blocksim.engines.base import Settings
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Validation
 
 ARCH = Arch(half_angle=math.pi / 2, eta=0.105, voussoirs=8)

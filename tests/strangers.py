@@ -23,8 +23,8 @@ from hypothesis import strategies as st
 from blocksim.arch.circular import Arch
 from blocksim.blocks.record import to_record
 from blocksim.engines.base import Settings
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.recording import Recording
 from blocksim.view.explorer.results import Result
 
 

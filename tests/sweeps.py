@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from blocksim.many import Design, load_design, read_rows
+from blocksim.sweeps import Design, load_design, read_rows
 
 GRID = """
 half_angle_deg = { low = 60, high = 150, steps = 4 }

@@ -24,8 +24,8 @@ import blocksim
 from blocksim import Arch
 from blocksim.arch import limit, theory
 from blocksim.engines.base import Quality
-from blocksim.evidence.simulation import Simulation
 from blocksim.report.chart import read_points
+from blocksim.simulation.simulated import Simulation
 from blocksim.studies.chart import cases
 from blocksim.view.style import LIVE, MECHANISM, STONE, THRUST
 

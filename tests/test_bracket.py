@@ -19,9 +19,9 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.search import ETA_MAX, Answer, Bisection
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
-from blocksim.evidence.observation import Held, hold
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, plain_arch
+from blocksim.simulation.observation import Held, hold
+from blocksim.simulation.verdict import Verdict
 
 tolerances = st.floats(1e-4, 0.3)
 thresholds = st.floats(1e-3, 1.99)
@@ -205,7 +205,7 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
         held.append(arch.eta)
         return hold(problem, engine, **asked)
 
-    monkeypatch.setattr(sys.modules["blocksim.evidence.observation"], "hold", counted)
+    monkeypatch.setattr(sys.modules["blocksim.simulation.observation"], "hold", counted)
     arch = CircularArch(half_angle=math.pi / 2, friction=0.7, voussoirs=9, weight="centreline")
     found = bracket(arch, method="pymunk", confirm=confirm)
     assert found.runs == len(held) == len(set(held))

@@ -16,7 +16,7 @@ from analysis.random_problems import drawn
 from blocksim.ask.check import check
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 
 LACKING = "with less friction than asked for it starts"
 WALL = 8511

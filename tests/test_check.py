@@ -15,8 +15,8 @@ from blocksim.ask.check import check
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.errors import InputError
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.verdict import Verdict
 
 
 @given(

@@ -15,8 +15,8 @@ import pytest
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.engines import ENGINES
-from blocksim.evidence.observation import observe
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.observation import observe
+from blocksim.simulation.verdict import Verdict
 
 FLOOR = np.array([(-20.0, -1.0), (20.0, -1.0), (20.0, 0.0), (-20.0, 0.0)])
 

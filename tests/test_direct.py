@@ -14,12 +14,12 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.evidence.observation import observe
-from blocksim.evidence.onset import onset
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.recorded import load_recording
+from blocksim.simulation.observation import observe
+from blocksim.simulation.onset import onset
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 CASES = [
     (90, 0.9, 27, "centreline"),

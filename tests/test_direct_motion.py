@@ -14,10 +14,10 @@ from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level, piers
-from blocksim.evidence.motion import moving_run
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.motion import moving_run
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 
 def world_of(assembly, mu, step):

@@ -23,10 +23,10 @@ from blocksim.engines.contact.geometry import Geometry
 from blocksim.engines.contact.step import Answer, Step
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level
-from blocksim.evidence.observation import observe
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.files import structure_of as structure_of_kind
 from blocksim.limit import equilibrium
+from blocksim.simulation.observation import observe
+from blocksim.simulation.verdict import Verdict
 
 MOVED = [
     "box2d_arch",

@@ -18,9 +18,9 @@ from blocksim.ask.check import check
 from blocksim.ask.families import families_of, family_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import structure_of
+from blocksim.simulation.verdict import Verdict
 
 MU = {"semicircle_40_mu315": 0.315, "semicircle_40_mu35": 0.35}
 

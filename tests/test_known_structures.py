@@ -20,12 +20,12 @@ from blocksim.ask.families import families_of
 from blocksim.blocks.joints import JointState
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import load_structure, shipped_structures
 from blocksim.kinds.known import load_known
 from blocksim.report.page import report_page
 from blocksim.report.tables import write_results
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.questions import StructureRow, answer
 from blocksim.studies.structures import (
     structures,

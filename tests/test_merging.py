@@ -26,12 +26,12 @@ from blocksim.blocks.shaking import Shaking
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
-from blocksim.evidence.merging import Merging
-from blocksim.evidence.observation import hold, observe
-from blocksim.evidence.onset import onset
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium, nearest_mechanism
+from blocksim.simulation.merging import Merging
+from blocksim.simulation.observation import hold, observe
+from blocksim.simulation.onset import onset
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 LOADED = ("oppenheim_28", "ferris_tinloi_1", "two_spans_load_b9")
 """Structures whose largest load factor is known."""

@@ -19,8 +19,8 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.blocks.joints import JointState
 from blocksim.cli import app
-from blocksim.evidence.observation import observe
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.observation import observe
 from blocksim.studies.validate import validate_one
 from blocksim.view.archfigure import picture_of_arch
 

@@ -13,11 +13,11 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.engines.base import Quality, Settings
-from blocksim.evidence.motion import EARLY, FINER, MOVED, QUIET, moving_run
-from blocksim.evidence.observation import hold, observe
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
+from blocksim.simulation.observation import hold, observe
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 SWEEPS = 10
 FASTEST = 1e-3

@@ -15,9 +15,9 @@ from rocking import G, rocks
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.evidence.shaken import shake
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.files import structure_of
+from blocksim.simulation.shaken import shake
+from blocksim.simulation.verdict import Verdict
 
 LONG = pytest.mark.long
 

@@ -28,12 +28,12 @@ from blocksim.engines import get_engine
 from blocksim.engines.base import TakesForces
 from blocksim.engines.mujocoblocks import library
 from blocksim.engines.mujocostep import coulomb_step
-from blocksim.evidence.observation import hold, observe
-from blocksim.evidence.onset import onset
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.limit import equilibrium, least_motion
+from blocksim.simulation.observation import hold, observe
+from blocksim.simulation.onset import onset
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.validate import installed
 
 pytest.importorskip("mujoco", exc_type=ImportError)

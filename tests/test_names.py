@@ -23,9 +23,9 @@ from blocksim.common.files import json_text
 from blocksim.engines import get_engine
 from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import load_structure
-from blocksim.many import load_design
 from blocksim.report.answerwords import signed
 from blocksim.studies.validate import unasked
+from blocksim.sweeps import load_design
 
 
 def test_paths_may_be_texts_and_the_header_is_strict_json(tmp_path: Path) -> None:

@@ -21,10 +21,10 @@ from blocksim.arch.theory.map import divide_friction
 from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
 from blocksim.engines.contact import ContactProblem, Solution
-from blocksim.evidence.observation import hold, observe
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
 from blocksim.limit import equilibrium
+from blocksim.simulation.observation import hold, observe
+from blocksim.simulation.verdict import Verdict
 
 TWO_ANSWERS = [
     (125.023, 0.8594, 10, "centreline"),

@@ -27,9 +27,9 @@ from blocksim import verify as verify_module
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.limit.proof import proof_record
+from blocksim.simulation.verdict import Verdict
 from blocksim.verify import checked, seal, verify
 
 Table = dict[str, Any]

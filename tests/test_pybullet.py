@@ -30,11 +30,11 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Engine
-from blocksim.evidence.motion import lie_still
-from blocksim.evidence.observation import hold, observe
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.kinds.recorded import load_recording
+from blocksim.simulation.motion import lie_still
+from blocksim.simulation.observation import hold, observe
+from blocksim.simulation.verdict import Verdict
 
 pytest.importorskip("pybullet", exc_type=ImportError)
 

@@ -32,13 +32,13 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.engines import get_engine
 from blocksim.engines.base import Settings
-from blocksim.evidence.motion import SOONEST, moving_run
-from blocksim.evidence.observation import observe
-from blocksim.evidence.onset import onset
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
 from blocksim.limit import least_motion
+from blocksim.simulation.motion import SOONEST, moving_run
+from blocksim.simulation.observation import observe
+from blocksim.simulation.onset import onset
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 ARCHES = [
     (90, 0.7, 27, "centreline", Mode.RRR),

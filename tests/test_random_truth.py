@@ -21,8 +21,8 @@ from analysis.random_problems import GROUPS, Case, Question, drawn, mirrored, re
 from blocksim import Problem, collapse, structure_of
 from blocksim.ask.check import check
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
+from blocksim.simulation.verdict import Verdict
 
 CHANGES = ("", "mirrored", "renumbered")
 

@@ -18,9 +18,9 @@ from blocksim.blocks.record import to_record
 from blocksim.common.errors import InputError, MachineError
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines.base import Settings
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem, plain_arch
 from blocksim.kinds.recorded import load_recording
+from blocksim.simulation.recording import Recording
 
 ARCH = Arch(half_angle=1.2, eta=0.15, voussoirs=5, weight="sector", radius=4.0, depth=0.5)
 
@@ -231,7 +231,7 @@ def test_small_files_do_not_fill_the_memory(
     refused(path)
     replace(recording(), poses=np.zeros((4, 5, 3))).save(path)
     load_recording(path)
-    monkeypatch.setattr("blocksim.evidence.recording.LARGEST_INSIDE", 4 * 5 * 3 * 8)
+    monkeypatch.setattr("blocksim.simulation.recording.LARGEST_INSIDE", 4 * 5 * 3 * 8)
     refused(path)
 
 
@@ -245,9 +245,9 @@ def test_header_that_is_no_table(tmp_path: Path) -> None:
 def test_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "run.npz"
     recording().save(path)
-    monkeypatch.setattr("blocksim.evidence.recording.LARGEST_FILE", path.stat().st_size - 1)
+    monkeypatch.setattr("blocksim.simulation.recording.LARGEST_FILE", path.stat().st_size - 1)
     assert "bytes" in refused(path)
-    monkeypatch.setattr("blocksim.evidence.recording.LARGEST_FILE", path.stat().st_size)
+    monkeypatch.setattr("blocksim.simulation.recording.LARGEST_FILE", path.stat().st_size)
     load_recording(path)
 
 

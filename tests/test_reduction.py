@@ -28,11 +28,11 @@ from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES, get_engine
-from blocksim.evidence.observation import hold, observe
-from blocksim.evidence.onset import onset
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.observation import hold, observe
+from blocksim.simulation.onset import onset
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 CASES = [
     (90, 0.7, 27, "centreline"),

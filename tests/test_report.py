@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from report_rows import ARCH, ROW, rows, sliding
 
-from blocksim.evidence.verdict import Verdict
 from blocksim.report.motion import KEYS, SHOWN, UNIT, drawing
 from blocksim.report.page import report_page, summary
 from blocksim.report.tables import write_results
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import numbered
 from blocksim.view import style
 

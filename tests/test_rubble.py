@@ -16,8 +16,8 @@ from blocksim.engines import ENGINES
 from blocksim.engines.energy import Balance, energy
 from blocksim.engines.ground import ground_level
 from blocksim.engines.solids import prisms
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.recording import Recording
 
 CASES = {case.number: case for case in rubble.cases(rubble.COUNT)}
 ARCH, STACK = CASES[12], CASES[14]

@@ -13,7 +13,7 @@ from blocksim.arch import limit, theory
 from blocksim.arch.modes import Mode
 from blocksim.arch.scenario import LARGEST_FILE, load_scenario, shipped
 from blocksim.common.errors import InputError
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.validate import scenarios
 
 GOOD = """\

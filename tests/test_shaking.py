@@ -26,12 +26,12 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table, table_of
 from blocksim.blocks.structure import structure_record
 from blocksim.common.errors import InputError
-from blocksim.evidence.recording import read_recording
-from blocksim.evidence.shaken import Shaken, rocking_of, shake
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.files import structure_of
 from blocksim.kinds.known import load_known
-from blocksim.many import load_design, read_rows, sweep
+from blocksim.simulation.recording import read_recording
+from blocksim.simulation.shaken import Shaken, rocking_of, shake
+from blocksim.simulation.verdict import Verdict
+from blocksim.sweeps import load_design, read_rows, sweep
 
 G = 9.81
 

@@ -22,9 +22,9 @@ from blocksim.blocks.structure import structure_record
 from blocksim.common.errors import InputError
 from blocksim.engines.direct import ENGINE
 from blocksim.engines.moving import OnMovingSupports
-from blocksim.evidence.recording import read_recording
 from blocksim.kinds.files import structure_of
 from blocksim.limit.spreading import follow
+from blocksim.simulation.recording import read_recording
 
 SPREAD = ("spread_90_12_20", "spread_90_15_20", "spread_90_20_20")
 OF_SPAN = (0.01668, 0.05393, 0.15252)

@@ -16,12 +16,12 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import overlap_share
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import Quality
-from blocksim.evidence import motion
-from blocksim.evidence.motion import Motion, moving_run
-from blocksim.evidence.observation import Held, conclude
-from blocksim.evidence.onset import Onset, onset
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation import motion
+from blocksim.simulation.motion import Motion, moving_run
+from blocksim.simulation.observation import Held, conclude
+from blocksim.simulation.onset import Onset, onset
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 SIDES = [(0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)]
 

@@ -17,10 +17,10 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import Shaking
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
-from blocksim.evidence.shaken import shake
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import structure_of
 from blocksim.limit import collapse
+from blocksim.simulation.shaken import shake
 
 MOVES, FAR, SECONDS = 1e-4, 0.1, 3.0
 LONG = pytest.mark.long

@@ -27,10 +27,10 @@ from blocksim.blocks.problem import Load, Move
 from blocksim.common.checks import FACTOR, FRICTION, LENGTH, Range
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_of, read_file, toml_of
-from blocksim.evidence import recording as recordings
 from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import load_structure
 from blocksim.kinds.recorded import load_recording
+from blocksim.simulation import recording as recordings
 from blocksim.view import video
 from blocksim.view.explorer import read_results
 from blocksim.view.video import write_film

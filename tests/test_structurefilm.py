@@ -21,7 +21,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.engines.base import Settings
-from blocksim.evidence.recording import Recording
+from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import stone_tones
 from blocksim.view.film import Film
 from blocksim.view.planar import PlanarView

@@ -20,10 +20,10 @@ from blocksim import Arch, Problem, bracket, check
 from blocksim import sweep as public_sweep
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.kinds.circular import CircularArch
-from blocksim.many import Case, answers, read_rows, run, sweep, write_csv, write_parquet
-from blocksim.many import table as tables
-from blocksim.many.answers import Answered, Asked, answer
-from blocksim.many.shards import identities
+from blocksim.sweeps import Case, answers, read_rows, run, sweep, write_csv, write_parquet
+from blocksim.sweeps import table as tables
+from blocksim.sweeps.answers import Answered, Asked, answer
+from blocksim.sweeps.shards import identities
 
 DIRECT = 'half_angle_deg = 90\nmu = 0.7\nratio = 0.999\nmethod = "direct"\n[settings]\n'
 CASE = Case(

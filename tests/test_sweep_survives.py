@@ -16,8 +16,8 @@ from running import alive, blocksim, children, inside, started, until
 from sweeps import GRID, SIMULATED, Rows, design_of, rows_of, written
 
 from blocksim.common.errors import InputError
-from blocksim.many import sweep
-from blocksim.many.shards import LOCK, locked
+from blocksim.sweeps import sweep
+from blocksim.sweeps.shards import LOCK, locked
 
 
 def test_a_write_that_was_interrupted_loses_nothing(
@@ -53,7 +53,7 @@ def test_a_folder_is_for_one_sweep_at_a_time(tmp_path: Path) -> None:
 
 def test_a_lock_left_by_a_killed_sweep_holds_nobody_up(tmp_path: Path) -> None:
     holder = [
-        "from blocksim.many.shards import locked",
+        "from blocksim.sweeps.shards import locked",
         "from pathlib import Path",
         f"with locked(Path({str(tmp_path)!r})): print('held', flush=True); input()",
     ]

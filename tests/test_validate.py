@@ -13,8 +13,8 @@ import pytest
 from blocksim.arch.modes import Mode
 from blocksim.arch.scenario import load_scenario
 from blocksim.common.errors import InputError
-from blocksim.evidence.verdict import Verdict
 from blocksim.report.tables import write_results
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import disagreements
 from blocksim.studies.validate import scenarios, validate, validate_one
 from tests.report_rows import ROW

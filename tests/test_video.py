@@ -28,9 +28,9 @@ from blocksim.blocks.joints import JointState, classify, joint_motion
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.recorded import load_recording
+from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
 from blocksim.view.film import Film
 from blocksim.view.order import painting_order

@@ -17,12 +17,12 @@ from blocksim.ask.methods import METHODS
 from blocksim.cli.tables import chart_table
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
-from blocksim.evidence.motion import QUIET
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
 from blocksim.report import chart
 from blocksim.report.chart import read_points, write_chart, write_points
+from blocksim.simulation.motion import QUIET
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies import refinement
 from blocksim.studies.chart import ChartArch, Point, front, gain, measure, on_front
 from blocksim.studies.refinement import REFINEMENTS, let_go, look

@@ -10,7 +10,7 @@ from blocksim.arch.circular import Arch, Weight
 if TYPE_CHECKING:
     from blocksim.arch.dimensions import Line
     from blocksim.arch.modes import Mode
-    from blocksim.evidence.verdict import Verdict
+    from blocksim.simulation.verdict import Verdict
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,11 +35,11 @@ from blocksim.arch.limit import weakest_joints
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.bodies import about, carried_poses, carried_rates
 from blocksim.engines.base import Quality, TakesForces, TellsForces, World
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
     from blocksim.blocks.problem import Problem
-    from blocksim.evidence.onset import Onset
+    from blocksim.simulation.onset import Onset
 
 UNTURNED = 1e18
 """Factor on the inertia of half a keystone."""

@@ -23,7 +23,7 @@ from blocksim.blocks.entries import Density, Length, allowed_words
 from blocksim.common.checks import ETA, FRICTION, VOUSSOIRS, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath, read_file, shipped_files, toml_of
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 
 LARGEST_FILE = 64 * 1024
 """Bytes; a larger file is not read."""

@@ -24,16 +24,16 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.shown import Shown
-from blocksim.evidence.simulation import Overrides, given_words
-from blocksim.evidence.verdict import Evidence, aside, reason_of
 from blocksim.kinds.offers import Threshold, offers_of
+from blocksim.simulation.simulated import Overrides, given_words
+from blocksim.simulation.verdict import Evidence, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchBracket
     from blocksim.ask.spread import Happening
     from blocksim.engines.base import Engine, Method
-    from blocksim.evidence.observation import Held
-    from blocksim.evidence.simulation import Reduced
+    from blocksim.simulation.observation import Held
+    from blocksim.simulation.simulated import Reduced
 
 USUAL = "thickness"
 """What is bracketed over where nothing is said."""
@@ -204,7 +204,7 @@ def _thinned(
         )
         evidence = (Evidence("search", found.reason),)
         if reduced and found.blocks is not None and found.splits is not None:
-            from blocksim.evidence.observation import reduced_words
+            from blocksim.simulation.observation import reduced_words
 
             by, most = threshold.reduced_by, threshold.blocks
             words = reduced_words(by, found.blocks, most, found.splits)
@@ -245,7 +245,7 @@ class _Reduced:
 
     def held_at(self, value: float) -> Held:
         """Ask the onset test at a value."""
-        from blocksim.evidence.observation import hold
+        from blocksim.simulation.observation import hold
 
         reduction = self._threshold.reduction(value, self._last) if self._reduce else None
         problem = self._threshold.problem(value)
@@ -309,8 +309,8 @@ def _of_family(
     evidence = (Evidence("search", found.reason), *aside("limit analysis", remark))
     most = len(probe.assembly.blocks)
     if reduced and found.blocks is not None and found.blocks < most:
-        from blocksim.evidence.merging import Merging
-        from blocksim.evidence.observation import reduced_words
+        from blocksim.simulation.merging import Merging
+        from blocksim.simulation.observation import reduced_words
 
         words = reduced_words(Merging.by, found.blocks, most, found.splits or 0)
         evidence += (Evidence("reduction", words),)
@@ -343,8 +343,8 @@ def _asking(
 ) -> Ask:
     """Return what asks an engine around a value of limit analysis."""
     # What moves blocks is loaded where it is asked for.
-    from blocksim.evidence.merging import Merging
-    from blocksim.evidence.observation import hold
+    from blocksim.simulation.merging import Merging
+    from blocksim.simulation.observation import hold
 
     low, high = within
 

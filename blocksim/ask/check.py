@@ -17,19 +17,19 @@ from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.shown import Shown
-from blocksim.evidence.verdict import Evidence, Verdict, aside, reason_of
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
 from blocksim.limit.programme import NEAR
 from blocksim.limit.proof import proof_of_rest
+from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer
     from blocksim.engines.base import Method
-    from blocksim.evidence.observation import Observation
-    from blocksim.evidence.shaken import Shaken
     from blocksim.limit.proof import Proof
+    from blocksim.simulation.observation import Observation
+    from blocksim.simulation.shaken import Shaken
 
 SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
@@ -257,7 +257,7 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
         )
         return _Found(answer, offered.stands, moved=False)
     # What moves blocks is loaded where it is asked for.
-    from blocksim.evidence.observation import observe
+    from blocksim.simulation.observation import observe
 
     reduced = reduces(chosen, given.reduce, is_planar=problem.is_planar)
     seen = observe(
@@ -295,8 +295,8 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
             wall_s=0.0,
         )
         return _Found(answer, exists, moved=False, static=static)
-    from blocksim.evidence.merging import Merging
-    from blocksim.evidence.observation import observe
+    from blocksim.simulation.merging import Merging
+    from blocksim.simulation.observation import observe
 
     seen = observe(
         problem,
@@ -331,7 +331,7 @@ def _of_seen(problem: Problem, chosen: Method, seen: Observation) -> Check:
 def _by_shaking(problem: Problem, chosen: Method, given: Taken) -> _Found:
     """Answer what became of blocks on ground that shakes."""
     # What moves blocks is loaded where it is asked for.
-    from blocksim.evidence.shaken import shake
+    from blocksim.simulation.shaken import shake
 
     seen = shake(problem, engine_of(chosen), settings=given.settings, progress=given.progress)
     answer = Check(
@@ -354,7 +354,7 @@ def _observed(problem: Problem, rates: Array | None) -> tuple[ObservedJoint, ...
     assembly = problem.assembly
     if rates is None:
         return closed_joints(assembly.joint_angles)
-    from blocksim.evidence.onset import PROBE
+    from blocksim.simulation.onset import PROBE
 
     rates = _unit(rates, problem)
     return classify(assembly, assembly.built[:-1] + PROBE * rates[:, :3])

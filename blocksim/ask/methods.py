@@ -18,8 +18,8 @@ from blocksim.common.errors import InputError, MissingPart
 from blocksim.common.later import Later
 from blocksim.engines import ENGINES, NAMES, engine_named, make_known
 from blocksim.engines.base import Engine, Method
-from blocksim.evidence.simulation import BY_RULE, Overrides, require_setting
 from blocksim.kinds.offers import offers_of
+from blocksim.simulation.simulated import BY_RULE, Overrides, require_setting
 
 _STATICS = (
     Method(

@@ -10,7 +10,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.checks import is_number, require
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Method
-from blocksim.evidence.simulation import BY_RULE, Overrides
+from blocksim.simulation.simulated import BY_RULE, Overrides
 
 Asked = Problem | Maker
 """What is asked about; of a maker its problem."""
@@ -26,10 +26,10 @@ class Options(TypedDict, total=False):
         its name or as an object.
     settings : mapping of str to float
         Settings that replace those of the engine's rule;
-        `blocksim.evidence.simulation.SETTINGS` has their names.
+        `blocksim.simulation.simulated.SETTINGS` has their names.
     reduce : bool
         Simulate no more blocks than it takes: blocks that do not part as one
-        (`blocksim.evidence.merging`), half of a symmetric arch (`blocksim.arch.reduction`). By
+        (`blocksim.simulation.merging`), half of a symmetric arch (`blocksim.arch.reduction`). By
         default the engine decides, and only where gravity lies in the plane and the ground is
         at rest.
     progress : Progress

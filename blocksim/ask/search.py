@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 
 ETA_MAX = 2.0
 FIRST_STEP = 0.01

@@ -12,13 +12,13 @@ from blocksim.ask.families import Family
 from blocksim.ask.options import Taken
 from blocksim.ask.search import Answer, Bisection
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium
+from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
     from blocksim.ask.spread import Spreading
     from blocksim.engines.base import Engine
-    from blocksim.evidence.observation import Held, Observation
+    from blocksim.simulation.observation import Held, Observation
 
 SURE = (1e-8, 1e-7, 1e-6)
 """How far to both sides of its value limit analysis is asked again, the first that tells,
@@ -106,7 +106,7 @@ def shaken(
     given: Taken,
 ) -> Search:
     """Search for the change by shaking the blocks, each time until they lie still."""
-    from blocksim.evidence.shaken import shake
+    from blocksim.simulation.shaken import shake
 
     least, most = max(within[0], start / FARTHEST), min(within[1], start * FARTHEST)
 
@@ -195,7 +195,7 @@ def by_engine(
         Let the blocks go at both ends.
     progress : Progress, optional
     """
-    from blocksim.evidence.observation import conclude
+    from blocksim.simulation.observation import conclude
 
     ends: dict[Verdict, tuple[float, Held]] = {}
     blocks = splits = both = 0

@@ -8,7 +8,7 @@ from blocksim.ask.methods import choose, engine_of
 from blocksim.ask.options import Asked, Options, problem_of, taken
 
 if TYPE_CHECKING:
-    from blocksim.evidence.recording import Recording
+    from blocksim.simulation.recording import Recording
 
 
 def simulate(
@@ -37,8 +37,8 @@ def simulate(
         If the engine's library is not installed.
     """
     # What moves blocks is loaded where it is asked for.
-    from blocksim.evidence.observation import hold
-    from blocksim.evidence.shaken import shake
+    from blocksim.simulation.observation import hold
+    from blocksim.simulation.shaken import shake
 
     given, problem = taken(options, "reduce", "tol", "confirm"), problem_of(asked)
     chosen = choose(given.method, problem=problem, moving=True, settings=given.settings)

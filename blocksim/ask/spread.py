@@ -17,9 +17,9 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines.direct import ENGINE, rule
 from blocksim.engines.moving import DEEP, OnMovingSupports
 from blocksim.engines.stepping import UNSOLVED
-from blocksim.evidence.motion import FRAME
-from blocksim.evidence.recording import Recording
 from blocksim.limit.spreading import Path, follow, lying
+from blocksim.simulation.motion import FRAME
+from blocksim.simulation.recording import Recording
 
 SIDES = (-1.0, 1.0)
 """Ways of the left and the right support where a file does not say them."""

@@ -43,9 +43,9 @@ from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import is_number, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import plain_arch
 from blocksim.report.recordings import recording_lines
+from blocksim.simulation.recording import Recording
 
 FILMS = ("mp4", "gif")
 LONGEST_RECORDING = 600.0

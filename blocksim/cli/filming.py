@@ -19,14 +19,14 @@ from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
 from blocksim.engines import NAMES
-from blocksim.evidence.motion import MOVED
-from blocksim.evidence.observation import conclude, hold
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import plain_arch
 from blocksim.kinds.recorded import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.problems import tilt_and_lean
+from blocksim.simulation.motion import MOVED
+from blocksim.simulation.observation import conclude, hold
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.verdict import Verdict
 
 FALL = 20.0
 """Time recorded of a scenario at most: it ends when the rubble lies still [sqrt(r/g)]."""

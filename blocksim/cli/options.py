@@ -17,8 +17,8 @@ from blocksim.cli.arguments import Argument, Option
 from blocksim.common.checks import require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import json_of
-from blocksim.evidence.simulation import SETTINGS
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.simulated import SETTINGS
+from blocksim.simulation.verdict import Verdict
 
 Scene = Annotated[
     str | None,

@@ -11,10 +11,10 @@ from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.options import Json, require_given
 from blocksim.cli.output import answer_with, progress
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
-from blocksim.many import Summary, load_design, write_parquet
-from blocksim.many import sweep as ask_sweep
-from blocksim.many.cluster import cluster
-from blocksim.many.table import require_parquet, write_csv
+from blocksim.sweeps import Summary, load_design, write_parquet
+from blocksim.sweeps import sweep as ask_sweep
+from blocksim.sweeps.cluster import cluster
+from blocksim.sweeps.table import require_parquet, write_csv
 
 
 def sweep(

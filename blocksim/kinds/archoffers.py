@@ -17,15 +17,15 @@ from blocksim.arch.theory import Critical
 from blocksim.arch.theory.equations import ETA_MAX
 from blocksim.blocks.joints import JointState, ObservedJoint, closed_joints
 from blocksim.blocks.problem import Problem
-from blocksim.evidence.simulation import Reduced
-from blocksim.evidence.verdict import Evidence, Verdict
 from blocksim.kinds.offers import Offers, Static, Threshold
 from blocksim.limit.carried import Carried
+from blocksim.simulation.simulated import Reduced
+from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
     from blocksim.arch.limit.mechanism import Mechanism
-    from blocksim.evidence.observation import Observation
     from blocksim.kinds.circular import CircularArch
+    from blocksim.simulation.observation import Observation
 
 THINNEST = 1e-6
 """Search below this ratio is given up."""

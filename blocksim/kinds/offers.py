@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from blocksim.blocks.joints import ObservedJoint
 from blocksim.blocks.problem import Problem
-from blocksim.evidence.simulation import Reduced
-from blocksim.evidence.verdict import Evidence, Verdict
 from blocksim.limit.carried import Carried
+from blocksim.simulation.simulated import Reduced
+from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
-    from blocksim.evidence.observation import Observation
+    from blocksim.simulation.observation import Observation
 
 
 @dataclass(frozen=True, kw_only=True)

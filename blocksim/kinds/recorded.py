@@ -12,9 +12,9 @@ from blocksim.blocks.maker import Maker, kind_of
 from blocksim.blocks.record import to_record
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
-from blocksim.evidence.recording import FORMAT, Recording, read_recording
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.recording import FORMAT, Recording, read_recording
 
 
 def load_recording(path: AnyPath) -> Recording:

@@ -6,7 +6,7 @@ least acceleration, a problem of nonnegative least squares (Lawson and Hanson 19
 forces of equilibrium exist they leave none. Where none do, and nothing slides, it is the motion
 with which blocks start; joints that slide would dilate, as in `programme`.
 
-An engine that searches for contact forces may begin with these (`blocksim.evidence.onset`).
+An engine that searches for contact forces may begin with these (`blocksim.simulation.onset`).
 """
 
 from __future__ import annotations

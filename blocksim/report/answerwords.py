@@ -222,7 +222,7 @@ def _modes(of: ArchAnswer, whose: str) -> list[str]:
     if of.mode:
         lines.append(f"  mode    {of.mode.value}, {of.mode.description}, {whose}")
     if of.mode_in_motion and of.mode_in_motion is not of.mode:
-        from blocksim.evidence.motion import EARLY
+        from blocksim.simulation.motion import EARLY
 
         later = of.mode_in_motion
         lines.append(

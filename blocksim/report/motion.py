@@ -15,8 +15,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState, classify
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import plain_arch
+from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import HINGES, state_of_any
 from blocksim.view.stage import Stage
 

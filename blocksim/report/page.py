@@ -13,13 +13,13 @@ from blocksim.ask.methods import STATIC
 from blocksim.blocks.joints import JointState
 from blocksim.common.dates import made_at
 from blocksim.engines import engine_named
-from blocksim.evidence.verdict import Verdict
 from blocksim.report.answerwords import ratio
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
 from blocksim.report.motion import ArchDrawing, drawing
 from blocksim.report.structurepart import shown_structures
 from blocksim.report.structurewords import summary_of_structures
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
 from blocksim.studies.validate import ASIDE, ERROR_BOUND

@@ -14,7 +14,7 @@ from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.files import json_text
 from blocksim.common.sheets import write_sheet
 from blocksim.common.version import __version__
-from blocksim.evidence.recording import Recording
+from blocksim.simulation.recording import Recording
 
 VERSION = 1
 """Of the JSON's fields: grows when one changes its meaning or goes."""

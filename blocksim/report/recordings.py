@@ -7,8 +7,8 @@ import math
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.blocks.record import to_record
 from blocksim.common.words import counted
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.shaken import rocking_of
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.shaken import rocking_of
 
 LEAST_ROTATION = 1e-3
 """Rotation of a block from which on a recording is said to have turned one [rad]."""

@@ -12,7 +12,6 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem, plain_arch
 from blocksim.limit import equilibrium
 from blocksim.report.environment import environment
@@ -31,6 +30,7 @@ from blocksim.report.sheetfacts import (
     reaction_table,
     thrust_facts,
 )
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.questions import Drawn
 from blocksim.view import style
 from blocksim.view.drawing import save_figure, state_of_any, words_of

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from blocksim.evidence.verdict import Verdict
 from blocksim.report.mechanism import mechanism_drawing
 from blocksim.report.motion import Drawing
 from blocksim.report.structurewords import error_of, found_of, question_of
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.questions import StructureRow
 
 QUANTITIES = {"load": "load factor", "mu": "friction", "pier_width": "pier width"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from blocksim.engines import engine_named
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.questions import StructureRow
 
 QUESTIONS = {

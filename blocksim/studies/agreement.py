@@ -10,8 +10,8 @@ from typing import TypeVar
 from blocksim.arch.modes import Mode
 from blocksim.common.processes import crew
 from blocksim.common.progress import Progress
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.verdict import Verdict
 
 Job = TypeVar("Job")
 Found = TypeVar("Found")

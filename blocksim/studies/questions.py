@@ -18,8 +18,8 @@ from blocksim.blocks.entries import ExpectEntry
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.engines import engine_named
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.known import Known
+from blocksim.simulation.verdict import Verdict
 
 """How far inside and beyond the value expected each engine is asked, relative."""
 SHAKEN = 0.01

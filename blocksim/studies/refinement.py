@@ -19,11 +19,11 @@ from blocksim.ask.methods import METHODS
 from blocksim.blocks.assembly import displacement
 from blocksim.engines import ENGINES
 from blocksim.engines.base import trusted
-from blocksim.evidence.motion import FRAME, MOVED, QUIET
-from blocksim.evidence.observation import observe
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import arch_problem
+from blocksim.simulation.motion import FRAME, MOVED, QUIET
+from blocksim.simulation.observation import observe
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 STEP = 1 / 60
 """Usual time step, at which sweeps are varied [sqrt(r/g)]."""

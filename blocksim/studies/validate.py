@@ -18,9 +18,9 @@ from blocksim.ask.methods import missing
 from blocksim.ask.search import ETA_MAX
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
-from blocksim.evidence.observation import observe
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.simulation.observation import observe
+from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, agree, answered
 
 ERROR_BOUND = 0.002

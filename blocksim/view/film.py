@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.joints import JointState
 from blocksim.common.words import counted, printable
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import plain_arch
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.drawing import (
     ARCH_WORDS,

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from blocksim.arch import limit
-from blocksim.evidence.motion import MOVED, UNMOVED
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.shaken import outcome
-from blocksim.evidence.verdict import Verdict
 from blocksim.kinds.circular import plain_arch
+from blocksim.simulation.motion import MOVED, UNMOVED
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.shaken import outcome
+from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import width_of
 from blocksim.view.drawing import loading_words
 

@@ -20,7 +20,7 @@ from blocksim.blocks.outlines import following
 from blocksim.blocks.problem import STANDARD_GRAVITY
 from blocksim.common.version import __version__
 from blocksim.common.words import printable
-from blocksim.evidence.recording import Recording
+from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import colour, stone_tones
 from blocksim.view.placing import centres_at, quaternions
 from blocksim.view.stage import Stage

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from blocksim.blocks.assembly import SPATIAL, Array
-from blocksim.evidence.recording import Recording
+from blocksim.simulation.recording import Recording
 
 
 class Placing:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from blocksim.ask.bracket import Bracket
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 from blocksim.view.style import FONT, INK, VERDICTS
 
 BEYOND = 3.0

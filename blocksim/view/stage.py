@@ -16,9 +16,9 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Joint, displacement
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
-from blocksim.evidence.motion import AT_REST, FRAME, UNMOVED, UNSEEN
-from blocksim.evidence.recording import Recording
 from blocksim.kinds.circular import plain_arch
+from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
+from blocksim.simulation.recording import Recording
 from blocksim.view.archfigure import lines_of, picture_of_arch
 from blocksim.view.drawing import Part, clipped, outer_parts
 from blocksim.view.placing import Placing, depth_of

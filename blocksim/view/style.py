@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from blocksim.arch.modes import Mode
 from blocksim.ask.methods import METHODS
 from blocksim.blocks.joints import JointState
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.verdict import Verdict
 
 
 class Style(NamedTuple):

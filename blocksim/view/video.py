@@ -18,7 +18,7 @@ from blocksim.common.checks import require
 from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.progress import Progress, silent
-from blocksim.evidence.recording import Recording
+from blocksim.simulation.recording import Recording
 from blocksim.view.film import TALL, Film, ViewName
 from blocksim.view.style import GROUND, INK, JOINTS, PAPER, QUIET, THRUST
 

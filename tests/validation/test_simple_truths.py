@@ -20,9 +20,9 @@ from scipy.optimize import brentq, linprog
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines import ENGINES, get_engine
-from blocksim.evidence.motion import LONGEST, MOVED, QUIET
-from blocksim.evidence.onset import onset
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.motion import LONGEST, MOVED, QUIET
+from blocksim.simulation.onset import onset
+from blocksim.simulation.verdict import Verdict
 
 BELOW, ABOVE = 0.99, 1.01
 SLOPES = [5.0, 20.0, 40.0]

@@ -12,10 +12,10 @@ from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, TellsForces, World
-from blocksim.evidence.motion import Motion, moving_run
-from blocksim.evidence.onset import Onset, onset
-from blocksim.evidence.simulation import BY_RULE, Overrides, Reduced, Simulation, given_words
-from blocksim.evidence.verdict import Evidence, Verdict, aside, reason_of
+from blocksim.simulation.motion import Motion, moving_run
+from blocksim.simulation.onset import Onset, onset
+from blocksim.simulation.simulated import BY_RULE, Overrides, Reduced, Simulation, given_words
+from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -48,16 +48,16 @@ from blocksim.blocks.bodies import (
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import Library
 from blocksim.engines.base import Quality, TakesForces, TellsForces, World
-from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium, nearest_mechanism
 from blocksim.limit.cones import Cones
 from blocksim.limit.programme import most_common
+from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
     from scipy import sparse
     from scipy.sparse import csgraph
 
-    from blocksim.evidence.onset import Onset
+    from blocksim.simulation.onset import Onset
 else:
     sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
 

@@ -18,8 +18,8 @@ from blocksim.ask.check import Check, check
 from blocksim.ask.methods import STATIC
 from blocksim.common.errors import MissingPart
 from blocksim.engines import NAMES, get_engine
-from blocksim.many.case import Case, Pace, Row, written
-from blocksim.many.statics import by_statics
+from blocksim.sweeps.case import Case, Pace, Row, written
+from blocksim.sweeps.statics import by_statics
 
 _ENCODER = json.JSONEncoder(allow_nan=False, check_circular=False)
 

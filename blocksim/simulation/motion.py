@@ -35,10 +35,10 @@ from blocksim.blocks.assembly import Array, Assembly, displacement
 from blocksim.blocks.joints import overlap_share
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Quality, Settings, World, trusted
-from blocksim.evidence.onset import UNFOUND
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.simulation import Simulation
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.onset import UNFOUND
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.verdict import Verdict
 
 MOVED = 2e-3
 QUIET, SOONEST = 5.0, 1.0

@@ -15,8 +15,8 @@ from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.ask.methods import STATIC
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.assembly import Array
-from blocksim.evidence.verdict import Verdict
-from blocksim.many.case import Case, Row
+from blocksim.simulation.verdict import Verdict
+from blocksim.sweeps.case import Case, Row
 
 
 def by_statics(cases: Sequence[Case], rows: list[Row]) -> list[int]:

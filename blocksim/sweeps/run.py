@@ -23,7 +23,7 @@ from blocksim.common.errors import MissingPart
 from blocksim.common.files import AnyPath, make_folder
 from blocksim.common.processes import Crew, processes
 from blocksim.common.progress import Progress, silent
-from blocksim.many.answers import (
+from blocksim.sweeps.answers import (
     Answered,
     Asked,
     Tally,
@@ -32,9 +32,9 @@ from blocksim.many.answers import (
     reason_of,
     version_of,
 )
-from blocksim.many.case import Case, Pace, Questions
-from blocksim.many.load import design_of, load_design
-from blocksim.many.shards import identities, locked, write_shard
+from blocksim.sweeps.case import Case, Pace, Questions
+from blocksim.sweeps.load import design_of, load_design
+from blocksim.sweeps.shards import identities, locked, write_shard
 
 SHARE = 0.05
 """Time a chunk is meant to take, as a share of that gone by: what a kill loses is small."""

@@ -13,7 +13,7 @@ from filelock import FileLock, Timeout
 
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, refused, write_whole
-from blocksim.many.case import EMPTY
+from blocksim.sweeps.case import EMPTY
 
 HEAD = b'{"id": "'
 ID_LENGTH = 24

@@ -22,11 +22,11 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, trusted
 from blocksim.engines.contact.geometry import Geometry, turns_of
-from blocksim.evidence.motion import FRAME, distrust, lie_still
-from blocksim.evidence.observation import hold
-from blocksim.evidence.recording import Recording
-from blocksim.evidence.simulation import BY_RULE, Overrides, given_words
-from blocksim.evidence.verdict import Verdict
+from blocksim.simulation.motion import FRAME, distrust, lie_still
+from blocksim.simulation.observation import hold
+from blocksim.simulation.recording import Recording
+from blocksim.simulation.simulated import BY_RULE, Overrides, given_words
+from blocksim.simulation.verdict import Verdict
 
 SUNK = 0.5
 """How far a block's centre has sunk that will not come back [size]."""

@@ -16,10 +16,10 @@ from blocksim.blocks.maker import Parameter, parameters_of
 from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.later import require_library
 from blocksim.common.sheets import write_sheet
-from blocksim.evidence.simulation import SETTINGS
 from blocksim.kinds import KINDS
-from blocksim.many.case import COLUMNS
-from blocksim.many.shards import read_rows
+from blocksim.simulation.simulated import SETTINGS
+from blocksim.sweeps.case import COLUMNS
+from blocksim.sweeps.shards import read_rows
 
 ROWS_AT_ONCE = 50_000
 """Rows held in memory, a row group of the table."""

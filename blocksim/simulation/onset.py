@@ -58,8 +58,8 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.common.words import counted
 from blocksim.engines.base import Engine, Settings, TakesForces, World, trusted
-from blocksim.evidence.verdict import Verdict
 from blocksim.limit import equilibrium, least_motion
+from blocksim.simulation.verdict import Verdict
 
 WORK = 0.99
 PROBE = 1e-6

@@ -16,9 +16,9 @@ from blocksim.ask.methods import METHODS, STATIC
 from blocksim.blocks.maker import Parameter
 from blocksim.common.checks import Range
 from blocksim.engines import NAMES
-from blocksim.evidence.simulation import SETTINGS, setting_of
-from blocksim.many.axis import DRAWN_AT_ONCE, Axis, AxisField, Number
-from blocksim.many.case import Case, Value, is_plain
+from blocksim.simulation.simulated import SETTINGS, setting_of
+from blocksim.sweeps.axis import DRAWN_AT_ONCE, Axis, AxisField, Number
+from blocksim.sweeps.case import Case, Value, is_plain
 
 AUTO_BAND = 0.001
 """Share of the least thickness within which `auto` simulates."""

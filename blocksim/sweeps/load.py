@@ -23,12 +23,12 @@ from blocksim.common.checks import (
 )
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath
-from blocksim.evidence.simulation import require_setting
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import MEASURES, CircularArch
-from blocksim.many.axis import Axis, AxisField, require_axis
-from blocksim.many.case import ACTING, PLAIN, Value
-from blocksim.many.design import Design, How, Values, Words
+from blocksim.simulation.simulated import require_setting
+from blocksim.sweeps.axis import Axis, AxisField, require_axis
+from blocksim.sweeps.case import ACTING, PLAIN, Value
+from blocksim.sweeps.design import Design, How, Values, Words
 
 LARGEST_DESIGN = 20_000_000
 """Cases of one sweep: their identities are held in memory, about 0.1 kB each."""

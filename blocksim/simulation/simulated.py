@@ -14,10 +14,10 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.checks import is_number, require
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
-from blocksim.evidence.recording import Recording
+from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
-    from blocksim.evidence.onset import Onset
+    from blocksim.simulation.onset import Onset
 
 Overrides = Mapping[str, float]
 """Fields of an engine's `Settings` by name, given instead of what its rule says."""
