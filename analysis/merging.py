@@ -1,7 +1,7 @@
 """Structures of which an engine gets few bodies, against all their blocks: answers, and time.
 
-Question: what does it save to merge blocks that do not part (`blocksim.simulation.merging`), and
-does it ever change an answer? The structures are those of which answers are known
+Question: what does it save to merge blocks that do not part (`blocksim.simulation.merging`),
+and does it ever change an answer? The structures are those of which answers are known
 (`structure_cases.py`), and walls in running bond (`WALLS`), pushed by a share of their weight,
 whose load factor the linear programme knows. Each is asked 1 % to either side, held at rest
 and, unless `--held`, let go, with all blocks and merged, one after the other. Rows are kept as

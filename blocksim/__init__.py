@@ -127,8 +127,8 @@ _PLACES = {
     "blocks.maker": ("Maker", "Table", "count", "metres", "parameter"),
     "blocks.problem": ("Load", "Problem"),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
-    "evidence.recording": ("Recording",),
-    "evidence.verdict": ("Evidence", "Verdict"),
+    "simulation.recording": ("Recording",),
+    "simulation.verdict": ("Evidence", "Verdict"),
     "kinds.arcade": ("Arcade",),
     "kinds.basket": ("BasketHandleArch",),
     "kinds.catenary": ("CatenaryArch",),
@@ -147,7 +147,7 @@ _PLACES = {
     "kinds.stack": ("Stack",),
     "kinds.wall": ("Wall",),
     "limit": ("collapse", "equilibrium"),
-    "many.run": ("sweep",),
+    "sweeps.run": ("sweep",),
 }
 """Where the public names are; each is loaded when it is first used."""
 
