@@ -30,8 +30,8 @@ class Options(TypedDict, total=False):
     reduce : bool
         Simulate no more blocks than it takes: blocks that do not part as one
         (`blocksim.simulation.merging`), half of a symmetric arch (`blocksim.arch.reduction`).
-        By default the engine decides, and only where gravity lies in the plane and the ground is
-        at rest.
+        By default the engine decides, and only where gravity lies in the plane and the
+        ground is at rest.
     progress : Progress
         What is told how far it is.
     tol : float
