@@ -51,10 +51,9 @@ def score(
     head, said = read_answers(answers, {name: each.scene for name, each in asked.items()})
     found = scored(head, said, asked)
     record = found.record()
-    if out is not None:
-        paths = write_score(found, out)
+    paths = [] if out is None else write_score(found, out)
     answer_with(record, score_lines(record, known_scores()), as_json=as_json)
-    if out is not None and not as_json:
+    if paths and not as_json:
         say("wrote " + ", ".join(map(str, paths)))
     lost = () if before is None else worse(record, before)
     for sentence in lost:

@@ -75,7 +75,8 @@ def read_answers(path: AnyPath, scenes: Mapping[str, Scene]) -> tuple[Head, dict
     with opened(path, "answers", "a file of JSON lines", LARGEST) as file:
         lines = enumerate(file, 1)
         try:
-            head = _head(*next(_tables(lines), (1, {})))
+            nothing: dict[str, Any] = {}
+            head = _head(*next(_tables(lines), (1, nothing)))
             for number, table in _tables(lines):
                 where = f"line {number}"
                 name = table.get("scene", MISSING)
@@ -135,7 +136,7 @@ def _answer(where: str, table: dict[str, Any], scene: Scene) -> Answer:
     _require_keys(where, table, KEYS)
     seconds = table.get("seconds", MISSING)
     allowed = "the time it took in s, 0 or more"
-    require(is_number(seconds, 0.0, LONGEST_RUN), f"{where}: seconds", seconds, allowed)
+    require(is_number(seconds, -1e-300, LONGEST_RUN), f"{where}: seconds", seconds, allowed)
     verdict, poses = table.get("verdict"), table.get("poses")
     if (verdict is None) == (poses is None):
         value = MISSING if poses is None else "given beside poses"

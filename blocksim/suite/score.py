@@ -164,8 +164,8 @@ def scored(
 ) -> Score:
     """Hold answers to the truth.
 
-    Scenes that were not answered are open, but those of the plane, or of space, where none of
-    them was answered: engines may know one of the two.
+    Scenes that were not answered are open. Where none was answered of those in the plane, in
+    space, or that ask for motion, these are left out: engines may know only others.
 
     Parameters
     ----------
@@ -174,13 +174,15 @@ def scored(
     asked : mapping of str to Question or Motion
         All scenes.
     """
-    dimensions = {asked[name].scene.dimensions for name in answers}
+    known = {_sort(asked[name]) for name in answers}
     rows = [
-        _row(each, answers.get(name))
-        for name, each in asked.items()
-        if each.scene.dimensions in dimensions
+        _row(each, answers.get(name)) for name, each in asked.items() if _sort(each) in known
     ]
     return Score(head=head, rows=tuple(rows))
+
+
+def _sort(asked: Question | Motion) -> tuple[int, bool]:
+    return asked.scene.dimensions, isinstance(asked, Motion)
 
 
 def _row(asked: Question | Motion, answer: Answer | None) -> Row:

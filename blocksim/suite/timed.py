@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -206,7 +207,7 @@ class _Rocking:
             pull = 3 * G / (4 * self.radius) * math.sin(ALPHA - state[0])
             return np.array([state[1], -pull])
 
-        found = solve_ivp(
+        found: Any = solve_ivp(
             rates, (0.0, until), (lean, speed), "DOP853", rtol=1e-12, atol=1e-13,
             dense_output=True,
         )  # fmt: skip
