@@ -79,7 +79,16 @@ def test_options_override_the_scenario() -> None:
     assert answer["arch"]["mode_theory"] == "srr"
 
 
-REPEATED = {"--with", "--point-load", "--patch-load", "--set", "--figure", "cite --method"}
+REPEATED = {
+    "--level",
+    "--group",
+    "--with",
+    "--point-load",
+    "--patch-load",
+    "--set",
+    "--figure",
+    "cite --method",
+}
 """Options that may be given twice, and are taken as often."""
 
 
@@ -92,7 +101,7 @@ def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
                 continue
             ways = [*option.opts, *option.secondary_opts]
             value = [] if option.is_flag else ["1"] * option.nargs
-            done = blocksim(name, ways[0], *value, ways[-1], *value)
+            done = blocksim(*name.split(), ways[0], *value, ways[-1], *value)
             if option.multiple:
                 assert REPEATED & {ways[0], f"{name} {ways[0]}"}
                 continue
