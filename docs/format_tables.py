@@ -33,7 +33,7 @@ def _by_angle() -> str:
     rows = [
         [
             f"`{name}`",
-            known.allowed(known.low, known.high, known.above),
+            known.allowed,
             f"`{USUAL_ARCH[name]}`" if name in USUAL_ARCH else "-",
             known.about,
         ]
@@ -132,6 +132,10 @@ def _number(part: dict[str, Any], *, many: bool) -> str:
     noun += "s" if many else ""
     above, below = part.get("exclusiveMinimum"), part.get("exclusiveMaximum")
     low, high = part.get("minimum"), part.get("maximum")
+    after = None if high is None else math.nextafter(high, math.inf)
+    if below is None and after is not None and after.is_integer() and high != round(high):
+        # The last number below a round one.
+        below = after
     said = list[str]()
     if above is not None:
         said.append(f"above {above:g}")

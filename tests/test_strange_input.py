@@ -71,7 +71,14 @@ def test_a_range_says_what_else_it_has() -> None:
     assert (FACTOR.words, FACTOR.has(-1e9), FACTOR.has(0), FACTOR.has(-2e9)) == (
         "-1e+09 to 1e+09", True, True, False,
     )  # fmt: skip
-    assert Range(low=1, high=2, zero=True).words == "1 to 2 (or 0)"
+    above = Range(low=0, high=math.nextafter(180, 0), unit="deg", above=True)
+    assert (above.words, above.has(0), above.has(180)) == (
+        "above 0 and below 180 deg", False, False,
+    )  # fmt: skip
+    whole = Range(low=1, high=3, whole=True)
+    assert [whole.has(each) for each in (1, 2.0, 2.5, 4, True, math.nan, "2")] == [
+        True, True, False, False, False, False, False,
+    ]  # fmt: skip
 
 
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]

@@ -187,13 +187,6 @@ def require_measured(line: Line, thickness: float | None) -> None:
     require(thickness <= radius, "thickness", thickness, thick)
 
 
-def require_friction_angle(field: str, angle: object) -> None:
-    """Raise `InputError` unless a value is an angle of friction in degrees."""
-    require(
-        is_number(angle, 0, 90), field, angle, "above 0 and at most 90 deg (90: no sliding)"
-    )
-
-
 def require_unit_weight(field: str, value: float) -> None:
     """Raise `InputError` unless a value is a unit weight in kN/m^3."""
     lightest = PER_VOLUME.low / 1000

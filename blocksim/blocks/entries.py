@@ -13,46 +13,27 @@ from blocksim.blocks.shaking import MOST_ROWS
 from blocksim.blocks.shapes import MOST_CORNERS
 from blocksim.common.checks import (
     COORDINATE,
-    ETA,
     FACTOR,
     FORCE,
-    FRICTION,
     INERTIA,
     LENGTH,
     PER_VOLUME,
+    SMOOTH_OR_ROUGH,
     TURN,
     WEIGHT,
+    Range,
 )
 from blocksim.common.errors import MISSING, InputError
 
-FARTHEST = 1e15
-"""Largest number in a file that has no unit of its own."""
-
-Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST, allow_inf_nan=False, strict=True)]
-Coordinate = Annotated[
-    float,
-    Field(ge=-COORDINATE.high, le=COORDINATE.high, allow_inf_nan=False, strict=True),
-]
-Newtons = Annotated[
-    float, Field(ge=-FORCE.high, le=FORCE.high, allow_inf_nan=False, strict=True)
-]
-Times = Annotated[
-    float, Field(ge=-FACTOR.high, le=FACTOR.high, allow_inf_nan=False, strict=True)
-]
-Degrees = Annotated[float, Field(ge=-TURN.high, le=TURN.high, allow_inf_nan=False, strict=True)]
-Length = Annotated[
-    float, Field(ge=LENGTH.low, le=LENGTH.high, allow_inf_nan=False, strict=True)
-]
-Step = Annotated[float, Field(ge=0, le=LENGTH.high, allow_inf_nan=False, strict=True)]
-Weight = Annotated[
-    float, Field(ge=WEIGHT.low, le=WEIGHT.high, allow_inf_nan=False, strict=True)
-]
-Inertia = Annotated[
-    float, Field(ge=INERTIA.low, le=INERTIA.high, allow_inf_nan=False, strict=True)
-]
-Density = Annotated[
-    float, Field(ge=PER_VOLUME.low, le=PER_VOLUME.high, allow_inf_nan=False, strict=True)
-]
+Number = Annotated[float, Range(low=-1e15, high=1e15)]
+"""One in a file that has no unit of its own."""
+Coordinate = Annotated[float, COORDINATE]
+Newtons = Annotated[float, FORCE]
+Times = Annotated[float, FACTOR]
+Length = Annotated[float, LENGTH]
+Step = Annotated[float, Range(low=0, high=LENGTH.high, unit="m")]
+Density = Annotated[float, PER_VOLUME]
+Friction = Annotated[float, SMOOTH_OR_ROUGH]
 Point = tuple[Coordinate, Coordinate]
 Force = tuple[Newtons, Newtons]
 Way = tuple[Times, Times]
@@ -61,10 +42,6 @@ Name = Annotated[str, Field(min_length=1, max_length=100, strict=True)]
 Id = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
 Note = Annotated[str, Field(max_length=2000, strict=True)]
 MOST_NOTES = 20
-Friction = (
-    Annotated[float, Field(ge=0, le=FRICTION.high, allow_inf_nan=False, strict=True)]
-    | Literal["inf"]
-)
 _FORBID: dict[str, str] = {"extra": "forbid"}
 
 
@@ -100,9 +77,9 @@ class BlockEntry:
         None
     )
     fixed: Annotated[bool, Field(strict=True)] = False
-    weight: Weight | None = None
+    weight: Annotated[float, WEIGHT] | None = None
     centre: Point | None = None
-    inertia: Inertia | None = None
+    inertia: Annotated[float, INERTIA] | None = None
     depth: Length = 1.0
 
 
@@ -118,7 +95,7 @@ class JointEntry:
         Both ends of the joint [m], or the corner that rests on a face.
     normal : point
         Direction from `a` into `b`, where there is one end.
-    friction : float or "inf"
+    friction : float
         Of this joint, instead of that of the file; 0 allowed.
     faces : pair of faces
         Faces of `a` and `b` that meet in it, two points each [m], where they are known.
@@ -184,7 +161,7 @@ class MoveEntry:
 
     block: Id
     direction: Way | None = None
-    turn_deg: Degrees = 0.0
+    turn_deg: Annotated[float, TURN] = 0.0
     about: Point | None = None
 
 
@@ -250,7 +227,7 @@ class Around:
 
     Parameters
     ----------
-    friction : float or "inf"
+    friction : float
         Friction coefficient of every joint.
     title : str
         Said with each answer.
@@ -330,6 +307,8 @@ class StructureFile(Around):
     rounding: Step | None = None
 
 
+SHOULD = "Input should be "
+"""With which pydantic's complaints begin."""
 _TABLES = (
     StructureFile,
     BlockEntry,
@@ -340,38 +319,11 @@ _TABLES = (
     ExpectEntry,
 )
 _KEYS = {field.name for table in _TABLES for field in fields(table)}
-_ALLOWED = {
-    "friction": '0 to 1e+06, or "inf"',
-    "a": "the id of a block",
-    "b": "the id of a block",
-    "block": "the id of a block",
+_NAMED = {
+    **dict.fromkeys(("a", "b", "block"), "the id of a block"),
     "id": "a whole number or a name of up to 100 characters",
 }
 """What is said of keys that may have several types."""
-_OF_POINTS = (
-    "vertices",
-    "polygons",
-    "centre",
-    "ends",
-    "faces",
-    "point",
-    "patch",
-    "about",
-)
-_RANGES = {
-    **dict.fromkeys(_OF_POINTS, COORDINATE),
-    **dict.fromkeys(("normal", "body", "direction", "load"), FACTOR),
-    **dict.fromkeys(("depth", "size", "radius"), LENGTH),
-    **dict.fromkeys(("span_m", "rise_m", "thickness_m"), LENGTH),
-    **dict.fromkeys(("density", "specific_weight"), PER_VOLUME),
-    "force": FORCE,
-    "weight": WEIGHT,
-    "inertia": INERTIA,
-    "turn_deg": TURN,
-    "eta": ETA,
-    "mu": FRICTION,
-}
-"""What is said of numbers out of range."""
 
 
 def entries_of(table: dict[str, Any]) -> StructureFile:
@@ -435,19 +387,5 @@ def _first_of(error: ValidationError) -> InputError:
     if first["type"] in {"missing", "missing_argument"}:
         return InputError(field, MISSING, "given")
     last = field.rpartition(".")[2].partition("[")[0]
-    said = allowed_words(last, first["type"], first["msg"])
-    return InputError(field, first["input"], _ALLOWED.get(last, said))
-
-
-def allowed_words(key: str, kind: str, message: str) -> str:
-    """Say what would be accepted of a key: both ends of its range where a number is beyond it.
-
-    Parameters
-    ----------
-    key : str
-    kind, message : str
-        Of pydantic's complaint.
-    """
-    if key in _RANGES and kind in {"greater_than_equal", "less_than_equal"}:
-        return _RANGES[key].words
-    return message.removeprefix("Input should be ")
+    said = first["msg"].removeprefix(SHOULD)
+    return InputError(field, first["input"], _NAMED.get(last, said))

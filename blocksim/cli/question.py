@@ -131,16 +131,13 @@ def instead_of(friction: float | None, **thickness: float | None) -> str:
 
 def _require_ranges(given: Given) -> None:
     """Raise `InputError` where an option is out of range or beside one that says the same."""
-    alpha, lean = given.alpha, given.lean
+    alpha = given.alpha
     if alpha is not None:
         ok = is_number(alpha, 0, math.nextafter(180, 0))
         require(ok, "--alpha", alpha, "above 0 and below 180 deg")
         flat = f"in degrees: {alpha:g} deg is nearly flat, in radians it would be "
         flat += f"{math.degrees(alpha):.4g} deg (a flat arch: --span and --rise)"
         require(alpha > math.pi, "--alpha", alpha, flat)
-    if lean is not None:
-        ok = is_number(lean, -90, math.nextafter(90, 0))
-        require(ok, "--lean", lean, "above -90 and below 90 deg")
     if given.unit_weight is not None:
         require_unit_weight("--unit-weight", given.unit_weight)
     both = given.eta is not None and given.ratio is not None
@@ -192,8 +189,6 @@ def maker_of(asked: Scenario, ratio: float | None) -> CircularArch:
     with named_options():
         if asked.eta is not None and ratio is None:
             return _made(asked, asked.eta)
-        if ratio is not None:
-            require(is_number(ratio, 0, 100), "--ratio", ratio, "above 0 and at most 100")
         FRICTION.require("mu", asked.mu)
         # Checked by the arch before anything is made of them.
         asked.arch(1.0)

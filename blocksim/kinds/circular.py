@@ -10,12 +10,21 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from blocksim.arch.circular import Arch, Weight
-from blocksim.arch.dimensions import At, Dimensions, Line
+from blocksim.arch.dimensions import LINES, At, Dimensions, Line
 from blocksim.blocks.made import Built
-from blocksim.blocks.maker import Parameter, metres, parameter, parameters_of
+from blocksim.blocks.maker import metres, parameter
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, LENGTH, VOUSSOIRS, Range, require
+from blocksim.common.checks import (
+    ETA,
+    FRICTION,
+    HALF_ANGLE,
+    HALF_ANGLE_DEG,
+    LENGTH,
+    VOUSSOIRS,
+    require,
+)
 from blocksim.common.errors import MISSING
+from blocksim.common.fields import Field, fields_of
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve
 from blocksim.kinds.strips import Voussoirs
@@ -23,34 +32,17 @@ from blocksim.kinds.strips import Voussoirs
 if TYPE_CHECKING:
     from blocksim.kinds.archoffers import ArchOffers
 
-HALF_ANGLE_DEG = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
 ROUND = 360.0
 
 
-SIZES: dict[str, Any] = {"low": LENGTH.low, "high": LENGTH.high, "above": False}
 MEASURES = {
-    "half_angle_deg": Parameter(
-        about="crown to springing, in place of left_deg and right_deg",
-        unit="deg",
-        low=HALF_ANGLE_DEG.low,
-        high=HALF_ANGLE_DEG.high,
-        above=False,
+    "half_angle_deg": Field(
+        about="crown to springing, in place of left_deg and right_deg", range=HALF_ANGLE_DEG
     ),
-    "eta": Parameter(
-        about="thickness over radius, in place of thickness",
-        low=ETA.low,
-        high=ETA.high,
-        above=False,
-    ),
-    "span": Parameter(
-        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
-    ),
-    "rise": Parameter(
-        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
-    ),
-    "at": Parameter(
-        about="line that span and rise are of", choices=("intrados", "centreline", "extrados")
-    ),
+    "eta": Field(about="thickness over radius, in place of thickness", range=ETA),
+    "span": Field(about="of the line at", range=LENGTH),
+    "rise": Field(about="of the line at", range=LENGTH),
+    "at": Field(about="line that span and rise are of", choices=LINES),
 }
 """What an arch can be made by in place of parameters of its kind."""
 SPRINGINGS = "left_deg", "right_deg"
@@ -185,7 +177,7 @@ class CircularArch(CurvedArch):
                 given = {name: value for name, value in given.items() if name not in left}
         for name, value in changes.items():
             known = name in type(self).__dataclass_fields__
-            require(known, name, value, f"one of {', '.join(parameters_of(type(self)))}")
+            require(known, name, value, f"one of {', '.join(fields_of(type(self)))}")
         return type(self)(**{**given, **changes})
 
     @property
@@ -219,7 +211,7 @@ class CircularArch(CurvedArch):
 
     def between_supports(self) -> CircularArch:
         """Return the same by the angles to its springings: with supports that can move."""
-        given = {name: getattr(self, name) for name in parameters_of(type(self))}
+        given = {name: getattr(self, name) for name in fields_of(type(self))}
         return CircularArch(**given, friction=self.friction, density=self.density)
 
     def problem(self) -> Problem:

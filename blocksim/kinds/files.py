@@ -254,8 +254,7 @@ def problem_of(kind: Maker, around: Around) -> Problem:
     Problem
         Dead loads begin with the weight of fill.
     """
-    friction = math.inf if around.friction == "inf" else around.friction
-    kind = replace(kind, density=around.density, friction=friction)
+    kind = replace(kind, density=around.density, friction=around.friction)
     built = kind.built if around.size is None else kind.built_of(around.size)
     problem = structure.problem_of(around, built.bodies, built.assembly, built.notes)
     return replace(

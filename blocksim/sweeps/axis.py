@@ -8,8 +8,7 @@ from typing import Annotated, ClassVar, cast
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from blocksim.arch.scenario import infinite
-from blocksim.common.checks import require
+from blocksim.common.checks import infinite, require
 from blocksim.common.errors import MISSING
 
 DRAWN_AT_ONCE = 4096
