@@ -9,10 +9,10 @@ from typing import Any
 from markdown_table import table
 from pydantic import TypeAdapter
 
-from blocksim.arch.scenario import ScenarioFile
 from blocksim.blocks.entries import Around, StructureFile
+from blocksim.kinds.scenario import ScenarioFile
 from blocksim.sweeps.design import How
-from blocksim.sweeps.load import BY_ANGLE, USUAL_ARCH, DesignFile
+from blocksim.sweeps.load import DesignFile
 
 
 def of_format(which: str) -> str:
@@ -25,22 +25,7 @@ def of_format(which: str) -> str:
         for name, part in parts.items()
         if "properties" in part
     ]
-    return "\n\n".join([*tables, _by_angle()] if which == "design" else tables)
-
-
-def _by_angle() -> str:
-    """Table of the axes of arches by their half-angle."""
-    rows = [
-        [
-            f"`{name}`",
-            known.allowed,
-            f"`{USUAL_ARCH[name]}`" if name in USUAL_ARCH else "-",
-            known.about,
-        ]
-        for name, known in BY_ANGLE.items()
-    ]
-    said = "**circular-arch**: axes of arches by their half-angle, or by what can be measured."
-    return f"{said}\n\n" + table(["key", "may be", "if left out", "what it is"], rows)
+    return "\n\n".join(tables)
 
 
 def _word(name: str) -> str:

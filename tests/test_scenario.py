@@ -11,8 +11,8 @@ import pytest
 
 from blocksim.arch import limit, theory
 from blocksim.arch.modes import Mode
-from blocksim.arch.scenario import LARGEST_FILE, load_scenario, shipped
 from blocksim.common.errors import InputError
+from blocksim.kinds.scenario import LARGEST_FILE, load_scenario, shipped
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.validate import scenarios
 
@@ -53,11 +53,12 @@ def test_leaning_scenarios_claim_what_statics_says(name: str) -> None:
     """A rigid body on its springings overturns as the weight leaves their depth."""
     scenario = load_scenario(name)
     assert scenario.expected_modes == ()
-    blocks = scenario.arch(scenario.eta).assembly().blocks
-    height = np.mean([block.centre[1] for block in blocks]) - scenario.radius * math.cos(
-        scenario.half_angle
-    )
-    overturns = math.tan(scenario.lean) > scenario.depth / 2 / height
+    arch = scenario.maker.shape
+    assert arch is not None
+    blocks = arch.assembly().blocks
+    height = np.mean([block.centre[1] for block in blocks])
+    height -= arch.radius * math.cos(arch.half_angle)
+    overturns = math.tan(scenario.lean) > arch.depth / 2 / height
     assert scenario.mu > math.tan(scenario.lean)
     expected = Verdict.COLLAPSES if overturns else Verdict.STANDS
     assert scenario.expected_verdict is expected
@@ -69,7 +70,8 @@ def test_shipped_scenarios_agree_with_theory(name: str) -> None:
     assert scenario.name == name
     assert scenario.title
     assert scenario.source
-    found = theory.least_thickness(scenario.half_angle, scenario.mu, scenario.weight)
+    arch = scenario.arch(1.0)
+    found = theory.least_thickness(arch.half_angle, scenario.mu, arch.weight)
     if scenario.expected_eta is None:
         assert found.eta is None
     else:
@@ -83,9 +85,8 @@ def test_shipped_scenarios_agree_with_theory(name: str) -> None:
 @pytest.mark.parametrize("name", sorted({*shipped()} - {*LEANING}))
 def test_shipped_voussoirs_show_a_published_mode(name: str) -> None:
     scenario = load_scenario(name)
-    built = limit.least_thickness(
-        scenario.half_angle, scenario.mu, scenario.voussoirs, scenario.weight
-    )
+    arch = scenario.arch(1.0)
+    built = limit.least_thickness(arch.half_angle, scenario.mu, arch.voussoirs, arch.weight)
     assert built.mode in {*scenario.expected_modes, *ACROSS_THE_LINE.get(name, ())}
     assert (built.eta is None) <= (Mode.SS in scenario.expected_modes)
 
@@ -93,8 +94,9 @@ def test_shipped_voussoirs_show_a_published_mode(name: str) -> None:
 def test_scenarios_cover_the_map() -> None:
     every = scenarios(quick=False)
     assert {mode for scenario in every for mode in scenario.expected_modes} == set(Mode)
-    assert {scenario.weight for scenario in every} == {"centreline", "sector"}
-    assert {scenario.voussoirs % 2 for scenario in every} == {0, 1}
+    arches = [scenario.arch(1.0) for scenario in every]
+    assert {arch.weight for arch in arches} == {"centreline", "sector"}
+    assert {arch.voussoirs % 2 for arch in arches} == {0, 1}
     quick = scenarios(quick=True)
     assert 0 < len(quick) < len(every)
     assert {scenario.name for scenario in quick} < {scenario.name for scenario in every}
@@ -103,8 +105,9 @@ def test_scenarios_cover_the_map() -> None:
 def test_a_file_becomes_an_arch(tmp_path: Path) -> None:
     scenario = load_scenario(written(tmp_path, GOOD))
     assert scenario.name == "scene"
-    assert scenario.half_angle == math.pi / 2
-    arch = scenario.arch(scenario.eta)
+    arch = scenario.maker.shape
+    assert arch is not None
+    assert arch.half_angle == math.pi / 2
     assert (arch.eta, arch.voussoirs, arch.weight) == (0.12, 27, "centreline")
     assert (arch.radius, arch.depth, arch.specific_weight) == (1.0, 1.0, 20_000.0)
     assert scenario.expected_modes == (Mode.RRR,)
@@ -189,7 +192,7 @@ def test_file_that_is_not_there_or_too_large(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"an existing \.toml file"):
             load_scenario(name)
     padding = "#" * (LARGEST_FILE - len(GOOD))
-    assert load_scenario(written(tmp_path, GOOD + padding)).voussoirs == 27
+    assert load_scenario(written(tmp_path, GOOD + padding)).given["voussoirs"] == 27
     with pytest.raises(InputError, match="at most 65536 bytes"):
         load_scenario(written(tmp_path, GOOD + padding + "#"))
 

@@ -27,7 +27,7 @@ from blocksim.blocks.problem import Load, Move
 from blocksim.common.checks import FACTOR, FRICTION, LENGTH, Range
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_of, read_file, toml_of
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure
 from blocksim.kinds.recorded import load_recording
 from blocksim.simulation import recording as recordings
@@ -99,9 +99,16 @@ def test_blocks_in_python_have_sizes_of_real_things(field: str, value: float) ->
         (lambda: Load(force=np.array([1e200, 0]), blocks=(0,)), "force"),
         (lambda: Load(force=np.array([1, 0]), blocks=(0,), point=np.array([0, 1e99])), "point"),
         (lambda: Move(support=0, direction=np.array([math.nan, 0])), "direction"),
-        (lambda: arch_problem(Arch(half_angle=1, eta=0.1, voussoirs=9), 1e-300), "mu"),
         (
-            lambda: arch_problem(Arch(half_angle=1, eta=0.1, voussoirs=9), 0.7).with_load(1e99),
+            lambda: CircularArch.of(Arch(half_angle=1, eta=0.1, voussoirs=9), 1e-300).problem(),
+            "mu",
+        ),
+        (
+            lambda: (
+                CircularArch.of(Arch(half_angle=1, eta=0.1, voussoirs=9), 0.7)
+                .problem()
+                .with_load(1e99)
+            ),
             "load",
         ),
     ],

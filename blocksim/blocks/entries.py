@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cache
-from typing import Annotated, Any, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field
 
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shaking import MOST_ROWS
@@ -23,7 +22,7 @@ from blocksim.common.checks import (
     WEIGHT,
     Range,
 )
-from blocksim.common.errors import MISSING, InputError
+from blocksim.common.tables import Words, Written, as_said
 
 Number = Annotated[float, Range(low=-1e15, high=1e15)]
 """One in a file that has no unit of its own."""
@@ -39,14 +38,15 @@ Force = tuple[Newtons, Newtons]
 Way = tuple[Times, Times]
 Corners = Annotated[list[Point], Field(min_length=3, max_length=MOST_CORNERS)]
 Name = Annotated[str, Field(min_length=1, max_length=100, strict=True)]
-Id = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
+_Any = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
+Id = Annotated[_Any, Words("the id of a block")]
+NewId = Annotated[_Any, Words("a whole number or a name of up to 100 characters")]
 Note = Annotated[str, Field(max_length=2000, strict=True)]
 MOST_NOTES = 20
-_FORBID: dict[str, str] = {"extra": "forbid"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class BlockEntry:
+class BlockEntry(Written):
     """Entry of `blocks`: `vertices`, or `polygons` that move as one; see `Body`.
 
     Parameters
@@ -69,9 +69,7 @@ class BlockEntry:
         Length out of the plane [m].
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
-    id: Id
+    id: NewId
     vertices: Corners | None = None
     polygons: Annotated[list[Corners], Field(min_length=1, max_length=MOST_CORNERS)] | None = (
         None
@@ -84,7 +82,7 @@ class BlockEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointEntry:
+class JointEntry(Written):
     """Entry of `joints`: two ends, or one and a `normal` from `a` into `b`.
 
     Parameters
@@ -101,8 +99,6 @@ class JointEntry:
         Faces of `a` and `b` that meet in it, two points each [m], where they are known.
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     a: Id
     b: Id
     ends: Annotated[list[Point], Field(min_length=1, max_length=2)]
@@ -112,7 +108,7 @@ class JointEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LoadEntry:
+class LoadEntry(Written):
     """Entry of `dead` or `live`: a `body` force, or a `force` on a block or along a `patch`.
 
     Parameters
@@ -131,8 +127,6 @@ class LoadEntry:
         From one x to another [m]: what lies uppermost there bears the force, evenly.
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     body: Annotated[list[Times], Field(min_length=2, max_length=3)] | None = None
     blocks: Annotated[list[Id], Field(min_length=1, max_length=MOST_BLOCKS)] | None = None
     block: Id | None = None
@@ -142,7 +136,7 @@ class LoadEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class MoveEntry:
+class MoveEntry(Written):
     """Entry of `move`: how a fixed block moves as the parameter [m] grows.
 
     Parameters
@@ -157,8 +151,6 @@ class MoveEntry:
         What it turns about [m]; by default the middle of its corners.
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     block: Id
     direction: Way | None = None
     turn_deg: Annotated[float, TURN] = 0.0
@@ -166,7 +158,7 @@ class MoveEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShakeEntry:
+class ShakeEntry(Written):
     """`shake`: a shape, how strong [g] and how long [s]; or accelerations [g] over time [s].
 
     Parameters
@@ -183,8 +175,6 @@ class ShakeEntry:
         The acceleration across at each of them [g].
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     shape: str | None = None
     amplitude_g: Number | None = None
     duration_s: Number | None = None
@@ -193,7 +183,7 @@ class ShakeEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExpectEntry:
+class ExpectEntry(Written):
     """Entry of `expect`: what the source says, for `validate`.
 
     Either a `verdict` on the structure as it is, or the `value` of `over`.
@@ -212,8 +202,6 @@ class ExpectEntry:
         `stands` or `collapses`, of the structure as it is.
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     over: Name | None = None
     value: Number | None = None
     published: Annotated[str, Field(pattern=r"^-?\d+(\.\d+)?$", strict=True)] | None = None
@@ -222,7 +210,7 @@ class ExpectEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Around:
+class Around(Written):
     """What a structure file says besides its blocks: friction, weight and loads.
 
     Parameters
@@ -255,8 +243,6 @@ class Around:
     quick : bool
         Whether `validate --quick` asks it.
     """
-
-    __pydantic_config__: ClassVar = _FORBID
 
     friction: Friction
     title: Annotated[str, Field(max_length=200, strict=True)] = ""
@@ -307,25 +293,6 @@ class StructureFile(Around):
     rounding: Step | None = None
 
 
-SHOULD = "Input should be "
-"""With which pydantic's complaints begin."""
-_TABLES = (
-    StructureFile,
-    BlockEntry,
-    JointEntry,
-    LoadEntry,
-    MoveEntry,
-    ShakeEntry,
-    ExpectEntry,
-)
-_KEYS = {field.name for table in _TABLES for field in fields(table)}
-_NAMED = {
-    **dict.fromkeys(("a", "b", "block"), "the id of a block"),
-    "id": "a whole number or a name of up to 100 characters",
-}
-"""What is said of keys that may have several types."""
-
-
 def entries_of(table: dict[str, Any]) -> StructureFile:
     """Check the keys, types and ranges of a structure file of blocks.
 
@@ -334,7 +301,7 @@ def entries_of(table: dict[str, Any]) -> StructureFile:
     InputError
         In one line: the first entry that is wrong.
     """
-    return _checked(_of_blocks(), table)
+    return as_said(StructureFile, table)
 
 
 def around_of(table: dict[str, Any]) -> Around:
@@ -345,47 +312,4 @@ def around_of(table: dict[str, Any]) -> Around:
     InputError
         In one line: the first entry that is wrong.
     """
-    return _checked(_of_others(), table)
-
-
-Checked = TypeVar("Checked")
-
-
-def _checked(schema: TypeAdapter[Checked], table: dict[str, Any]) -> Checked:
-    try:
-        return schema.validate_python(table)
-    except ValidationError as error:
-        raise _first_of(error) from None
-
-
-@cache
-def _of_blocks() -> TypeAdapter[StructureFile]:
-    return TypeAdapter(StructureFile)
-
-
-@cache
-def _of_others() -> TypeAdapter[Around]:
-    return TypeAdapter(Around)
-
-
-def _first_of(error: ValidationError) -> InputError:
-    """Turn the first of pydantic's complaints into one line."""
-    errors = error.errors(include_url=False, include_context=False)
-    # A misspelt key shows twice, as unknown and as missing: the first says more.
-    same = [each for each in errors if each["loc"][:-1] == errors[0]["loc"][:-1]]
-    first = min(same, key=lambda each: each["type"] != "unexpected_keyword_argument")
-    unknown = first["type"] == "unexpected_keyword_argument"
-    path = first["loc"]
-    field = ""
-    for at, part in enumerate(path):
-        if isinstance(part, int):
-            field += f"[{part}]"
-        elif part in _KEYS or (unknown and at == len(path) - 1):
-            field += f".{part}" if field else part
-    if unknown:
-        return InputError(field, first["input"], "left out: there is no such key")
-    if first["type"] in {"missing", "missing_argument"}:
-        return InputError(field, MISSING, "given")
-    last = field.rpartition(".")[2].partition("[")[0]
-    said = first["msg"].removeprefix(SHOULD)
-    return InputError(field, first["input"], _NAMED.get(last, said))
+    return as_said(Around, table)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from blocksim.arch.scenario import load_scenario, shipped
 from blocksim.cli.arguments import Argument
 from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
+from blocksim.kinds.scenario import load_scenario, shipped
 from blocksim.studies.structures import structures
 
 NUMBERS = {"alpha", "mu", "n", "eta"}
@@ -25,8 +25,9 @@ def list_scenarios() -> None:
         table.add_column(heading, justify="right" if heading in NUMBERS else "left")
     for name in shipped():
         each = load_scenario(name)
-        eta = "-" if each.eta is None else f"{each.eta:g}"
-        numbers = f"{math.degrees(each.half_angle):g}", f"{each.mu:.4g}", str(each.voussoirs)
+        arch = each.arch(1.0)
+        eta = f"{each.maker.eta:g}" if each.has_thickness else "-"
+        numbers = f"{math.degrees(arch.half_angle):g}", f"{each.mu:.4g}", str(arch.voussoirs)
         table.add_row(name, *numbers, eta, each.title, each.source)
     show(table)
     say("")

@@ -298,7 +298,7 @@ def require_given(instead: str = "", /, **options: object) -> None:
 
 def option_of(field: str) -> str:
     """Return the option of a field."""
-    return "--with" if field == "parameters" else f"--{field.replace('_', '-')}"
+    return NAMED.get(field) or f"--{field.replace('_', '-')}"
 
 
 def parameters_of(given: list[str] | None) -> dict[str, object]:
@@ -331,7 +331,11 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
     return settings
 
 
+NAMED = {"parameters": "--with", "half_angle_deg": "--alpha", "friction": "--mu"}
+"""Options that are not called as their fields."""
 OPTIONS = {
+    *NAMED,
+    "ratio",
     "span",
     "rise",
     "thickness",

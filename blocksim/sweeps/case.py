@@ -12,7 +12,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION
 from blocksim.common.checks import FACTOR, TILT_DEG
 from blocksim.common.fields import Field
-from blocksim.kinds.circular import MEASURES, CircularArch
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of
 
 ARCH = CircularArch.name
@@ -154,10 +154,7 @@ class Case(NamedTuple):
             given["eta"] = 1.0 if eta is None else eta
             return CircularArch(**given, friction=mu).problem()
         acting = {name: given.pop(name) for name in ACTING if name in given}
-        measures = MEASURES if self.kind == ARCH else ()
-        measured = {name: given.pop(name) for name in measures if name in given}
         problem = structure_of(self._table(given, mu, acting))
-        problem = problem.but(**measured) if measured else problem
         return problem.tilted(math.radians(acting.get("tilt_deg", 0.0)))
 
     def _table(

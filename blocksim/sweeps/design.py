@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, cast
+from typing import Annotated, Any, cast
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -15,6 +15,7 @@ from pydantic import Field as Said
 
 from blocksim.ask.methods import METHODS, STATIC
 from blocksim.common.fields import Field
+from blocksim.common.tables import Written
 from blocksim.engines import NAMES
 from blocksim.simulation.simulated import SETTINGS, setting_of
 from blocksim.sweeps.axis import DRAWN_AT_ONCE, Axis, AxisField, Number
@@ -34,7 +35,7 @@ Values = Axis | tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class RandomTable:
+class RandomTable(Written):
     """Table `[random]`: draw structures instead of taking every combination.
 
     Parameters
@@ -45,14 +46,12 @@ class RandomTable:
         The same seed draws the same structures.
     """
 
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
-
     count: Annotated[int, Said(ge=1, strict=True)]
     seed: Annotated[int, Said(ge=0, strict=True)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettingsTable:
+class SettingsTable(Written):
     """Table `[settings]`: of engines, instead of what their rules say; see `Settings`.
 
     Parameters
@@ -68,8 +67,6 @@ class SettingsTable:
     rest : Axis
         Displacement that counts as rest, over the radius.
     """
-
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     step: AxisField | None = None
     sweeps: AxisField | None = None

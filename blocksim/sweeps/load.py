@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import Any
 
 from blocksim.arch.circular import WEIGHTS
-from blocksim.arch.scenario import RENAMED, as_said, written_in
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES, METHODS
 from blocksim.blocks.maker import Maker
 from blocksim.blocks.shaking import SHAPES
 from blocksim.common.checks import (
     FRICTION,
-    RATIO,
     SMOOTH_OR_ROUGH,
     VOUSSOIRS,
     WIDTH,
@@ -25,8 +23,10 @@ from blocksim.common.checks import (
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field, fields_of
 from blocksim.common.files import AnyPath
+from blocksim.common.tables import Written, as_said
 from blocksim.kinds import KINDS
-from blocksim.kinds.circular import MEASURES, CircularArch
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.scenario import RENAMED, written_in
 from blocksim.simulation.simulated import require_setting
 from blocksim.sweeps.axis import Axis, AxisField, require_axis
 from blocksim.sweeps.case import ACTING, PLAIN, Value
@@ -38,20 +38,15 @@ LARGEST_DESIGN = 20_000_000
 COMMON = ("live", "dead", "move", "density", "shake")
 """Keys of structure files that all cases have in common."""
 BY_ANGLE: dict[str, Field] = {
-    **MEASURES,
     "voussoirs": Field(about="how many", range=VOUSSOIRS),
     "weight": Field(about="where a voussoir's weight acts", choices=WEIGHTS),
-    "ratio": Field(
-        about="thickness over the least of the voussoirs as built",
-        range=RATIO,
-    ),
 }
-"""Axes of arches by their half-angle."""
+"""What arches by their half-angle have otherwise than others."""
 USUAL_ARCH = {"voussoirs": 27, "weight": "centreline"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class DesignFile(How):
+class DesignFile(How, Written):
     """What a design file says besides the parameters of its kind.
 
     Parameters
@@ -69,8 +64,6 @@ class DesignFile(How):
     live, dead, move, density, shake : as in structure files
         What all structures have in common.
     """
-
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     mu: AxisField
     kind: str = CircularArch.name
@@ -124,8 +117,8 @@ def design_of(table: Mapping[str, Any]) -> Design:
     kind = _kind({"kind": CircularArch.name, **table}, "kind")
     parameters = fields_of(kind)
     by_angle = kind is CircularArch and ("half_angle_deg" in table or "kind" not in table)
-    if kind is CircularArch:
-        parameters = parameters | (BY_ANGLE if by_angle else MEASURES)
+    if by_angle:
+        parameters = parameters | BY_ANGLE
     _require_known(table, (*KEYS, *parameters), "")
     if by_angle:
         require("half_angle_deg" in table, "half_angle_deg", MISSING, "given (or kind)")
@@ -257,8 +250,7 @@ def _require_asked(design: Design, kind: type[Maker]) -> None:
     if over is not None:
         names = (*FAMILIES, *_bracketed(kind, design.rest))
         require(over in names, "over", over, f"one of {', '.join(names)}")
-    measured = bool({*axes} & {*MEASURES})
-    choices = [each for each in CHOICES if measured or each != "theory"]
+    choices = [each for each in CHOICES if kind is CircularArch or each != "theory"]
     for word in design.method:
         # A file may name engines that are installed, but no module to be imported.
         own = word in METHODS and word not in METHODS.shipped
