@@ -10,7 +10,7 @@ from markdown_table import table
 from pydantic import TypeAdapter
 
 from blocksim.blocks.entries import Around, StructureFile
-from blocksim.kinds.scenario import ScenarioFile
+from blocksim.kinds.scenarios import ScenarioFile
 from blocksim.sweeps.design import How
 from blocksim.sweeps.load import DesignFile
 

@@ -11,7 +11,7 @@ from markdown_table import table
 
 from blocksim.arch import theory
 from blocksim.arch.limit import least_thickness
-from blocksim.kinds.scenario import load_scenario, shipped
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.questions import StructureRow
 from blocksim.studies.structures import structures, validate_structures
 

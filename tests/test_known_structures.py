@@ -22,7 +22,7 @@ from blocksim.engines import ENGINES
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import load_structure, shipped_structures
 from blocksim.kinds.known import load_known
-from blocksim.kinds.scenario import shipped
+from blocksim.kinds.scenarios import shipped
 from blocksim.report.page import report_page
 from blocksim.report.tables import write_results
 from blocksim.simulation.verdict import Verdict

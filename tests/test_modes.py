@@ -19,7 +19,7 @@ from blocksim.ask.check import check
 from blocksim.blocks.joints import JointState
 from blocksim.cli import app
 from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.scenario import load_scenario
+from blocksim.kinds.scenarios import load_scenario
 from blocksim.simulation.observation import observe
 from blocksim.studies.validate import validate_one
 from blocksim.view.archfigure import picture_of_arch

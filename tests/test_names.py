@@ -22,7 +22,7 @@ from blocksim.common.files import json_text
 from blocksim.engines import get_engine
 from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure
-from blocksim.kinds.scenario import load_scenario, shipped
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.report.answerwords import signed
 from blocksim.studies.validate import unasked
 from blocksim.sweeps import load_design
@@ -176,7 +176,7 @@ def test_every_scenario_can_be_checked(name: str) -> None:
     scenario = load_scenario(name)
     assert answer["problem"]["lean_deg"] == pytest.approx(math.degrees(scenario.lean))
     assert answer["verdict"] == (scenario.expected_verdict or "collapses")
-    assert ("no thickness was given" in answer["reason"]) == (scenario.eta is None)
+    assert ("no thickness was given" in answer["reason"]) == (not scenario.has_thickness)
 
 
 def test_what_was_not_asked_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

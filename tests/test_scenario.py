@@ -12,7 +12,7 @@ import pytest
 from blocksim.arch import limit, theory
 from blocksim.arch.modes import Mode
 from blocksim.common.errors import InputError
-from blocksim.kinds.scenario import LARGEST_FILE, load_scenario, shipped
+from blocksim.kinds.scenarios import LARGEST_FILE, load_scenario, shipped
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.validate import scenarios
 
@@ -165,7 +165,7 @@ def test_a_file_becomes_an_arch(tmp_path: Path) -> None:
         ("mu = 0.7", "mu = true", "contact.mu", "True", "1e-06 to"),
         ("mu = 0.7", "friction = 0.7", "contact.friction", "0.7", "no such key"),
         ('["rrr"]', "[]", "expect.modes", "[]", "at least 1"),
-        ('["rrr"]', '["rrq"]', "expect.modes.0", "'rrq'", "'rrr'"),
+        ('["rrr"]', '["rrq"]', "expect.modes[0]", "'rrq'", "'rrr'"),
         ("eta = 0.1\n", "eta = 3\n", "expect.eta", "3", "2"),
         ('title = "A semicircle"', 'title = ""', "title", "''", "1"),
         ('title = "A semicircle"', 'title = "A"\nquick = 1', "quick", "1", "boolean"),

@@ -93,7 +93,7 @@ def test_an_identity_is_what_is_asked_and_by_what_version() -> None:
         (("steps = 4", "steps = 1"), "half_angle_deg.steps = 1"),
         (("low = 60,", ""), "half_angle_deg.low is missing"),
         (("[0.5, 0.9, inf]", "[]"), "mu = []"),
-        (("[0.5, 0.9, inf]", '["rough"]'), "mu.values.0 = 'rough'"),
+        (("[0.5, 0.9, inf]", '["rough"]'), "mu[0] = 'rough'"),
         (("[0.5, 0.9, inf]", "nan"), "mu = nan"),
         (("[9, 12]", "[9.5]"), "voussoirs = 9.5: must be a whole number from 3 to 10000"),
         (("[9, 12]", "2"), "voussoirs = 2.0"),

@@ -12,7 +12,7 @@ import pytest
 
 from blocksim.arch.modes import Mode
 from blocksim.common.errors import InputError
-from blocksim.kinds.scenario import load_scenario
+from blocksim.kinds.scenarios import load_scenario
 from blocksim.report.tables import write_results
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import disagreements

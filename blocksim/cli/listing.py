@@ -11,7 +11,7 @@ from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
-from blocksim.kinds.scenario import load_scenario, shipped
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.structures import structures
 
 NUMBERS = {"alpha", "mu", "n", "eta"}

@@ -72,7 +72,7 @@ def question(
 def _scenario(scene: str) -> Scenario:
     # Files are read with libraries that options do not need.
     from blocksim.kinds.files import shipped_structures
-    from blocksim.kinds.scenario import load_scenario, shipped
+    from blocksim.kinds.scenarios import load_scenario, shipped
 
     try:
         return load_scenario(scene)

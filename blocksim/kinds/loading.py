@@ -9,7 +9,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.files import AnyPath, read_file, toml_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.files import LARGEST_FILES, load_structure
-from blocksim.kinds.scenario import load_scenario, shipped
+from blocksim.kinds.scenarios import load_scenario, shipped
 
 
 def load(name: AnyPath, *, friction: float | None = None) -> Problem:

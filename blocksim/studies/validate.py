@@ -17,7 +17,8 @@ from blocksim.ask.search import ETA_MAX
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
 from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.scenario import Scenario, load_scenario, shipped
+from blocksim.kinds.scenario import Scenario
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.simulation.observation import observe
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, agree, answered

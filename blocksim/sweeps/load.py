@@ -26,7 +26,7 @@ from blocksim.common.files import AnyPath
 from blocksim.common.tables import Written, as_said
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import CircularArch
-from blocksim.kinds.scenario import RENAMED, written_in
+from blocksim.kinds.scenarios import RENAMED, written_in
 from blocksim.simulation.simulated import require_setting
 from blocksim.sweeps.axis import Axis, AxisField, require_axis
 from blocksim.sweeps.case import ACTING, PLAIN, Value
