@@ -16,6 +16,7 @@ from running import inside
 from scipy.special import ellipe
 from structure_cases import case, of_each_kind, scenes
 
+import blocksim
 from blocksim.arch.circular import Arch
 from blocksim.blocks import structure
 from blocksim.blocks.assembly import Block
@@ -27,6 +28,7 @@ from blocksim.common.errors import InputError
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.archkind import ArchKind, CurvedArch
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure, structure_of
 from blocksim.kinds.recorded import maker_of
 from blocksim.limit import collapse, equilibrium
@@ -565,3 +567,31 @@ def test_every_kind_is_asked_by_its_name_alone(name: str) -> None:
     asked = inside("check", name, "--mu", "0.7", "--json")
     assert asked.returncode in {0, 1}, asked.stderr
     assert json.loads(asked.stdout)["problem"]["title"] == name
+
+
+@pytest.mark.parametrize("thickness", [0.09, 0.15])
+def test_an_arch_between_springings_is_known_as_well_as_one_by_its_half_angle(
+    thickness: float,
+) -> None:
+    """The same voussoirs made in two ways: the same answers by every method, up to rounding."""
+    one = CircularArch(left_deg=70, right_deg=70, thickness=thickness, friction=0.7)
+    other = CircularArch(half_angle_deg=70, eta=thickness, friction=0.7)
+    for method in ("limit", "theory", "direct"):
+        first, second = (blocksim.check(each, method=method) for each in (one, other))
+        assert (first.verdict, first.blocks) == (second.verdict, second.blocks)
+        assert (first.arch.mode, first.arch.eta_limit) == (
+            second.arch.mode, second.arch.eta_limit,
+        )  # fmt: skip
+    least = [blocksim.bracket(each, method="limit").high for each in (one, other)]
+    assert least[0] == pytest.approx(least[1], rel=1e-14)
+
+
+def test_a_ratio_is_of_the_least_thickness_that_stands() -> None:
+    arch = CircularArch(half_angle_deg=70, ratio=1.25, friction=0.7)
+    assert blocksim.check(arch, method="limit").arch.eta_limit * 1.25 == arch.eta
+    table = {"kind": "circular-arch", "half_angle_deg": 70, "ratio": 1.25, "friction": 0.7}
+    assert structure_of(table).maker == arch
+    with pytest.raises(InputError, match="friction is missing: must be given beside ratio"):
+        CircularArch(half_angle_deg=70, ratio=1.25)
+    with pytest.raises(InputError, match=r"ratio = 1\.25: must be left out: it is of"):
+        CircularArch(left_deg=70, right_deg=60, ratio=1.25, friction=0.7)

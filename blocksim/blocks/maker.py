@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, ClassVar, Self, cast
 
 from blocksim.blocks.made import Built, Made
@@ -264,7 +265,12 @@ def _plain(value: object) -> object:
     return value
 
 
-def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Maker]], path: str = "") -> Maker:
+def kind_of(
+    written: Mapping[str, Any],
+    kinds: Sequence[type[Maker]],
+    path: str = "",
+    forces: Mapping[str, float | None] = MappingProxyType({}),
+) -> Maker:
     """Read a kind from a table.
 
     Parameters
@@ -275,6 +281,8 @@ def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Maker]], path: str 
         Those there are.
     path : str
         What leads to the table, for messages: `arch.`.
+    forces : mapping of str to float
+        Friction and density, which stand beside the parameters.
 
     Raises
     ------
@@ -289,7 +297,7 @@ def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Maker]], path: str 
         raise InputError(f"{path}kind", named, allowed + near)
     chosen = known[named]
     given = {key: value for key, value in written.items() if key != "kind"}
-    return cast(Maker, _table_of(chosen, given, kinds, path, f"a {named} has"))
+    return cast(Maker, _table_of(chosen, given, kinds, path, f"a {named} has", forces))
 
 
 def _table_of(
@@ -298,6 +306,7 @@ def _table_of(
     kinds: Sequence[type[Maker]],
     path: str,
     has: str,
+    forces: Mapping[str, float | None] = MappingProxyType({}),
 ) -> Table:
     parameters = fields_of(chosen)
     given: dict[str, Any] = {}
@@ -323,6 +332,6 @@ def _table_of(
                 tables.append(_table_of(row, each, kinds, f"{where}[{at}].", "it has"))
             given[key] = tuple(tables)
     try:
-        return chosen(**given)
+        return chosen(**given, **forces)
     except InputError as error:
         raise InputError(f"{path}{error.field}", error.value, error.allowed) from None

@@ -17,6 +17,7 @@ from blocksim.kinds.files import (
     shipped_structures,
     structure_of,
     weighed,
+    with_friction,
 )
 
 LARGEST_PEEK = 1 << 20
@@ -61,15 +62,13 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
             allowed = "left out: a kind of structure has no gaps"
             require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
             require_given(mu=given.friction)
-            # Friction is put on with the loads.
-            table = changed({"kind": scene, "friction": 0.0}, changes)
+            table = changed(with_friction({"kind": scene}, given.friction or 0.0), changes)
             built = structure_of(table if density is None else weighed(table, density))
         else:
             if is_drawing(scene):
                 require_given(mu=given.friction)
-            friction = None if given.friction is None else 0.0
             built = load_structure(
-                scene, changes, density, friction=friction, tolerance=given.tolerance
+                scene, changes, density, friction=given.friction, tolerance=given.tolerance
             )
     except InputError as error:
         name = error.field.partition("[")[0]

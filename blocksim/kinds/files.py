@@ -233,8 +233,10 @@ def structure_of(data: object) -> Problem:
         return structure.structure_of(cast("object", data))
     table = cast("dict[str, Any]", data)
     require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
-    kind = kind_of({key: table[key] for key in table if key not in AROUND}, ALL)
-    return problem_of(kind, around_of({key: table[key] for key in table if key in AROUND}))
+    around = around_of({key: table[key] for key in table if key in AROUND})
+    own = {key: table[key] for key in table if key not in AROUND}
+    forces = {"friction": around.friction, "density": around.density}
+    return problem_of(kind_of(own, ALL, forces=forces), around)
 
 
 ALL = tuple(KINDS.values())
@@ -254,7 +256,6 @@ def problem_of(kind: Maker, around: Around) -> Problem:
     Problem
         Dead loads begin with the weight of fill.
     """
-    kind = replace(kind, density=around.density, friction=around.friction)
     built = kind.built if around.size is None else kind.built_of(around.size)
     problem = structure.problem_of(around, built.bodies, built.assembly, built.notes)
     return replace(
