@@ -595,3 +595,39 @@ def test_a_ratio_is_of_the_least_thickness_that_stands() -> None:
         CircularArch(half_angle_deg=70, ratio=1.25)
     with pytest.raises(InputError, match=r"ratio = 1\.25: must be left out: it is of"):
         CircularArch(left_deg=70, right_deg=60, ratio=1.25, friction=0.7)
+
+
+OWN_KIND = """\
+from dataclasses import dataclass
+from blocksim import Maker
+from blocksim.blocks.given import Body
+from blocksim.blocks.made import Made
+from blocksim.blocks.maker import metres
+
+@dataclass(frozen=True, kw_only=True)
+class Cube(Maker):
+    name = "cube"
+    side: float = metres(1.0, "side of the cube")
+
+    def made(self, density):
+        a = self.side
+        bed = [[-a, -a], [2 * a, -a], [2 * a, 0], [-a, 0]]
+        cube = [[0, 0], [a, 0], [a, a], [0, a]]
+        return Made(bodies=(Body(polygons=(bed,), fixed=True), Body(polygons=(cube,))))
+"""
+
+
+def test_a_kind_of_ones_own_reaches_the_command_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A block on a slope slides where its tangent is the friction."""
+    (tmp_path / "cubes_of_mine.py").write_text(OWN_KIND)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    own = ("cubes_of_mine:Cube", "--mu", "0.5", "--with", "side=2")
+    told = json.loads(inside("bracket", *own, "--over", "tilt", "--json").stdout)
+    assert told["limit"] == pytest.approx(math.degrees(math.atan(0.5)), rel=1e-9)
+    for place in ("cubes_of_mine:Ball", "os:getcwd"):
+        done = inside("check", place, "--mu", "0.5")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert f"blocksim: kind = {place!r}: must be" in done.stderr

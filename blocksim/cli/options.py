@@ -24,7 +24,7 @@ Scene = Annotated[
     str | None,
     Argument(
         about="Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
-        ".json or .toml, or the name of a kind (blocksim kinds)."
+        ".json or .toml, or a kind: its name (blocksim kinds), or module:CLASS of your own."
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}

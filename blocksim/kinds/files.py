@@ -216,13 +216,15 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return table
 
 
-def structure_of(data: object) -> Problem:
+def structure_of(data: object, *own: type[Maker]) -> Problem:
     """Make a problem of what a structure file says.
 
     Parameters
     ----------
     data : object
         A dict: with `blocks`, or with `kind` and its parameters, and the keys of `Around`.
+    *own : type
+        Kinds of one's own.
 
     Raises
     ------
@@ -234,9 +236,9 @@ def structure_of(data: object) -> Problem:
     table = cast("dict[str, Any]", data)
     require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
     around = around_of({key: table[key] for key in table if key in AROUND})
-    own = {key: table[key] for key in table if key not in AROUND}
+    said = {key: table[key] for key in table if key not in AROUND}
     forces = {"friction": around.friction, "density": around.density}
-    return problem_of(kind_of(own, ALL, forces=forces), around)
+    return problem_of(kind_of(said, (*ALL, *own), forces=forces), around)
 
 
 ALL = tuple(KINDS.values())
