@@ -19,7 +19,6 @@ from blocksim.common.checks import require
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
 from blocksim.engines import NAMES
-from blocksim.kinds.circular import plain_arch
 from blocksim.kinds.recorded import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.problems import tilt_and_lean
@@ -165,9 +164,7 @@ def export(out: Path, kind: str, recording: Recording) -> None:
     else:
         write = write_recording_csv if kind == "csv" else write_recording_json
         write_whole(out, lambda file: write(recording, file))
-    # A radius of 1 stands for none given.
-    no_radius = recording.assembly.size == 1 and plain_arch(recording.problem)
-    radius = " if r = 1 m" if no_radius else ""
+    radius = "" if recording.problem.has_size else " if r = 1 m"
     say(
         f"wrote {out}: {counted(len(recording.assembly.blocks), 'block')}, "
         f"{counted(len(recording.times), 'frame')}, "
@@ -178,8 +175,7 @@ def export(out: Path, kind: str, recording: Recording) -> None:
 def _motionless(recording: Recording) -> str:
     """Say that nothing is seen to move in a recording, and what to do where it falls."""
     moved = float(recording.displacement.max())
-    built = plain_arch(recording.problem)
-    arch = f"eta {built.eta:g}, {recording.engine}" if built else recording.engine
+    arch = ", ".join([*recording.problem.measures, recording.engine])
     if moved > MOVED:
         return (
             f"nothing is seen to move in one recording ({arch}): it ends when it has "

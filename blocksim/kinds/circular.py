@@ -265,6 +265,21 @@ class CircularArch(CurvedArch):
         """What the unit of length of engines is called."""
         return "r" if self.is_plain else "L"
 
+    @property
+    def has_size(self) -> bool:
+        """Whether a line of it was measured, or its radius given: 1 stands for none."""
+        return not self.is_plain or self.radius != 1 or self.line is not None
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Half-angle and thickness-to-radius ratio of a symmetric ring, and how it weighs."""
+        if self.shape is None or not self.is_plain:
+            return ()
+        angle = f"\N{GREEK SMALL LETTER ALPHA} = {math.degrees(self.shape.half_angle):.4g}°"
+        ratio = f"\N{GREEK SMALL LETTER ETA} = {self.shape.eta:.4g}"
+        own = self.shape.weight != "centreline"
+        return (angle, ratio, f"weight {self.shape.weight}") if own else (angle, ratio)
+
     def origin(self) -> dict[str, object]:
         """Return what a recording keeps of it."""
         if self.is_plain and self.shape is not None:
