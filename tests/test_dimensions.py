@@ -19,7 +19,6 @@ from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import LINES, At, Dimensions, Line, dimensions_of
 from blocksim.arch.scenario import load_scenario
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import plain_arch
 
 EXACT = 1e-14
 SIZE = ("--span", "8", "--rise", "3", "--thickness", "0.45")
@@ -295,7 +294,7 @@ def test_arches_in_metres_are_let_go_and_drawn(tmp_path: Path) -> None:
     options = (*SIZE[:4], "--thickness", "0.2", "--mu", "0.7", "--depth", "2")
     done = inside("simulate", *options, "--seconds", "0.05", "--out", str(run))
     assert done.returncode == 0, done.stderr
-    arch = plain_arch(load_recording(run).problem)
+    arch = load_recording(run).problem.maker.shape
     assert arch is not None
     assert (arch.radius, arch.depth) == (pytest.approx(25 / 6 + 0.1), 2)
     picture = tmp_path / "arch.svg"

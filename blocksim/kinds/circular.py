@@ -353,24 +353,12 @@ def arch_problem(arch: Arch, mu: float, lean: float = 0.0) -> Problem:
     return upright.leaning(lean) if lean else upright
 
 
-def plain_arch(problem: Problem) -> Arch | None:
-    """Return the arch of a problem in whose radius it is measured; None of any other."""
-    maker = problem.maker
-    return maker.shape if isinstance(maker, CircularArch) and maker.is_plain else None
-
-
-def is_plain_arch(problem: Problem) -> bool:
-    """Whether a problem is an arch under its own weight, upright, its joints all alike."""
-    upright = not problem.gravity[0] and not problem.gravity[2]
-    alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
-    return plain_arch(problem) is not None and upright and alike and not problem.is_loaded
-
-
 def weighed_arch(problem: Problem) -> Arch | None:
     """Return the symmetric circular arch of a problem, however it was made, else None.
 
     One whose density was not given is none: its weights are ratios.
     """
     maker = problem.maker
-    known = isinstance(maker, CircularArch) and maker.unit_weight >= LEAST_DENSITY
-    return maker.shape if known or plain_arch(problem) else None  # type: ignore[union-attr]
+    if not isinstance(maker, CircularArch):
+        return None
+    return maker.shape if maker.is_plain or maker.unit_weight >= LEAST_DENSITY else None
