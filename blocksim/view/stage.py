@@ -22,7 +22,7 @@ from blocksim.limit.carried import Carried
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import Part, clipped, outer_parts
-from blocksim.view.placing import Placing, depth_of
+from blocksim.view.placing import Placing, depth_of, distance_of
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
 
 FEWEST = 4
@@ -351,7 +351,10 @@ class Stage:
         for frame in self._shown if self.moves else ():
             time = float(self.recording.times[frame])
             seen = classify(self.assembly, self.recording.poses[frame], least=SEEN)
+            faces = self._placing.faces(frame, frame, 0.0)[..., :2]
+            # Turned far, blocks may have left each other though neither end seems open.
             apart = np.array([joint.state is JointState.OPEN for joint in seen])
+            apart |= distance_of(faces[:, 0], faces[:, 1]) > SEEN
             parted = np.minimum(parted, np.where(apart, time, np.inf))
             held = np.zeros(blocks + 1, dtype=bool)
             for side in (before, after):
