@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.arch.answers import ArchBracket
 from blocksim.arch.circular import Arch
@@ -23,7 +23,7 @@ from blocksim.ask.check import Check, check
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
-from blocksim.common.files import json_text
+from blocksim.common.files import AnyPath, json_text
 from blocksim.common.words import printable
 from blocksim.kinds.circular import arch_problem
 from blocksim.report.answers import bracket_record, check_record
@@ -109,6 +109,13 @@ def figure_of(shown: object) -> Figure:
         Recording: _recording_figure,
     }
     return found[type(shown)](shown)
+
+
+def film_of(shown: object, path: AnyPath, **options: Any) -> None:
+    """Write a recording as a film; options are those of `blocksim.view.video.render`."""
+    from blocksim.view.video import render
+
+    render([cast(Recording, shown)], path, **options)
 
 
 @lru_cache(maxsize=1)

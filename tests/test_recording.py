@@ -25,14 +25,14 @@ from blocksim.simulation.recording import Recording
 ARCH = Arch(half_angle=1.2, eta=0.15, voussoirs=5, weight="sector", radius=4.0, depth=0.5)
 
 
-PROBLEM = to_record(arch_problem(ARCH, math.inf))
+PROBLEM = to_record(CircularArch.of(ARCH, math.inf).problem())
 BUILT = PROBLEM["assembly"]
 
 
 def recording(frames: int = 4) -> Recording:
     random = np.random.default_rng(7)
     return Recording(
-        problem=arch_problem(ARCH, math.inf),
+        problem=CircularArch.of(ARCH, math.inf).problem(),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.005, sweeps=250, hold_sweeps=50_000),

@@ -25,7 +25,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure
 from blocksim.kinds.files import structure_of as kind_of
 from blocksim.view.drawing import save_figure
@@ -43,7 +43,7 @@ INNER = (SPAN**2 / 4 + RISE**2) / (2 * RISE)
 
 def arch(count: int, degrees: float, eta: float, mu: float, radius: float = 1.0) -> Problem:
     built = Arch(half_angle=math.radians(degrees), eta=eta, voussoirs=count, radius=radius)
-    return arch_problem(built, mu)
+    return CircularArch.of(built, mu).problem()
 
 
 def engineers() -> Problem:
@@ -55,7 +55,7 @@ def engineers() -> Problem:
         weight="sector",
         radius=radius,
     )
-    return arch_problem(built, math.tan(math.radians(35)))
+    return CircularArch.of(built, math.tan(math.radians(35))).problem()
 
 
 def kind(name: str, **more: Any) -> Problem:
