@@ -25,7 +25,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
 from blocksim.common.files import AnyPath, json_text
 from blocksim.common.words import printable
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
 from blocksim.report.problems import arch_size_lines, described, size_lines, size_record
@@ -175,7 +175,9 @@ def _arch_figure(arch: Arch) -> Figure:
     from blocksim.view.sheet import sheet_of
 
     # An arch alone has no friction to tell.
-    return _drawn(sheet_of(arch_problem(arch, math.inf), facts=[_arch_words(arch)]))
+    return _drawn(
+        sheet_of(CircularArch.of(arch, math.inf).problem(), facts=[_arch_words(arch)])
+    )
 
 
 def _problem_figure(problem: Problem) -> Figure:
@@ -200,7 +202,7 @@ def _arch_bracket_figure(of: ArchBracket, answer: Bracket) -> Figure:
         critical = least_thickness(*shape)
         return arch_figure([picture_of_theory(critical, critical.mode, *shape)])
     eta = ETA_MAX if of.eta_high is None else of.eta_high or THIN
-    return _check_figure(check(arch_problem(replace(arch, eta=eta), mu)))
+    return _check_figure(check(CircularArch.of(replace(arch, eta=eta), mu)))
 
 
 def _bracket_figure(answer: Bracket) -> Figure:

@@ -18,6 +18,7 @@ from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import LINES, At, Dimensions, Line, dimensions_of
 from blocksim.common.errors import InputError
+from blocksim.kinds.scenarios import load_scenario
 
 EXACT = 1e-14
 SIZE = ("--span", "8", "--rise", "3", "--thickness", "0.45")

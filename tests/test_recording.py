@@ -18,7 +18,7 @@ from blocksim.blocks.record import to_record
 from blocksim.common.errors import InputError, MachineError
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines.base import Settings
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.recording import Recording
 

@@ -370,7 +370,7 @@ def test_a_heavy_arch_thrusts_as_much_on_any_depth() -> None:
     said = []
     for depth in (1.0, 3.0):
         built = Arch(half_angle=1.0, eta=0.15, voussoirs=9, radius=4.0, depth=depth)
-        sheet = answer_sheet(check(arch_problem(built, 0.7)))
+        sheet = answer_sheet(check(CircularArch.of(built, 0.7)))
         assert sheet.thrust is not None
         said.append(sheet.thrust[1])
     assert said[0] == said[1]

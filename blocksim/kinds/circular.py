@@ -292,12 +292,12 @@ class CircularArch(CurvedArch):
     @property
     def has_size(self) -> bool:
         """Whether a line of it was measured, or its radius given: 1 stands for none."""
-        return not self.is_plain or self.radius != 1 or self.line is not None
+        return not self.in_radii or self.radius != 1 or self.line is not None
 
     @property
     def measures(self) -> tuple[str, ...]:
         """Half-angle and thickness-to-radius ratio of a symmetric ring, and how it weighs."""
-        if self.shape is None or not self.is_plain:
+        if self.shape is None or not self.in_radii:
             return ()
         angle = f"\N{GREEK SMALL LETTER ALPHA} = {math.degrees(self.shape.half_angle):.4g}°"
         ratio = f"\N{GREEK SMALL LETTER ETA} = {self.shape.eta:.4g}"
@@ -361,22 +361,6 @@ def circle(shift: float, radius: float, start: float, end: float) -> Curve:
     )
 
 
-def arch_problem(arch: Arch, mu: float, lean: float = 0.0) -> Problem:
-    """Return the problem of an arch under its own weight.
-
-    Parameters
-    ----------
-    arch : Arch
-    mu : float
-        Friction coefficient of every joint, 1e-6 to 1e6 or inf.
-    lean : float
-        Angle by which gravity leans out of the plane [rad].
-    """
-    FRICTION.require("mu", mu)
-    upright = CircularArch.of(arch, friction=mu).problem()
-    return upright.leaning(lean) if lean else upright
-
-
 def weighed_arch(problem: Problem) -> Arch | None:
     """Return the symmetric circular arch of a problem, however it was made, else None.
 
@@ -385,4 +369,4 @@ def weighed_arch(problem: Problem) -> Arch | None:
     maker = problem.maker
     if not isinstance(maker, CircularArch):
         return None
-    return maker.shape if maker.is_plain or maker.unit_weight >= LEAST_DENSITY else None
+    return maker.shape if maker.in_radii or maker.unit_weight >= LEAST_DENSITY else None

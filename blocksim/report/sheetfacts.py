@@ -270,8 +270,3 @@ def _percent(share: float) -> str:
 def force_words(unit: ForceUnit) -> str:
     """Say in what forces are told."""
     return f"forces in {unit.name}" + (f"; {unit.note}" if unit.note else "")
-
-
-def _is_known(problem: Problem) -> bool:
-    """Whether an arch stands upright under its own weight, of which its statics know."""
-    return arch_of(problem) is not None and problem.is_planar and bool(offers_of(problem))
