@@ -189,6 +189,21 @@ class Problem(Shown):
         """What the unit of length of engines is called: the radius r, or the size L."""
         return "L" if self.maker is None else self.maker.length_name
 
+    @property
+    def is_arch(self) -> bool:
+        """Whether it is one arch, whose joints follow each other from left to right."""
+        return self.maker is not None and self.maker.is_arch
+
+    @property
+    def has_size(self) -> bool:
+        """Whether lengths are metres, and no multiples of a radius that was not given."""
+        return self.maker is None or self.maker.has_size
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """What its maker is known by, for drawings: half-angle and ratio of an arch."""
+        return () if self.maker is None else self.maker.measures
+
     def with_load(self, load: float) -> Problem:
         """Return the same under another load factor."""
         return replace(self, load=load)
