@@ -20,6 +20,7 @@ from blocksim.common.shown import Shown
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
+from blocksim.limit.exact import Exact
 from blocksim.limit.programme import NEAR
 from blocksim.limit.proof import proof_of_rest
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
@@ -118,7 +119,7 @@ class Check(Shown):
         if offers_of(self.problem) and self.carried is not None:
             # The maker's own statics know forces: no linear programme has to be loaded.
             forces = self.carried.forces
-            found = None if forces is None else proof_of_rest(self.problem, forces)
+            found = None if forces is None else proof_of_rest(Exact(self.problem), forces)
         if found is None and self.static is not None:
             found = self.static.proof
         return found if found is not None and found.claim == self.verdict.value else None
