@@ -97,11 +97,6 @@ class Equilibrium:
     def _cones(self) -> Cones:
         return self.cones or Cones(self.problem)
 
-    @property
-    def decided(self) -> bool:
-        """Whether they stand or fall is known: near the limit a proof has to say so."""
-        return abs(self.margin) > NEAR or self.proof is not None
-
     @cached_property
     def exists(self) -> bool:
         """Whether blocks can rest; where that is open, whether hardly any force lacks."""

@@ -91,7 +91,7 @@ class Bodies:
         self._free.append(free)
 
     def solved(self, weights: Array) -> _Vertex | None:
-        """Find the least that is left, by what blocks carry [N]; None where that is not known."""
+        """Find the least that is left, by what blocks carry [N]; None where it is not known."""
         size, count = self.size, len(self._columns)
         if not 0 < size <= LARGEST:
             return None
