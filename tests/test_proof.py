@@ -274,14 +274,32 @@ def test_spoilt_proofs_are_refused(written: list[Table]) -> None:
 def test_verdicts_at_the_edges_are_proved(index: int) -> None:
     """Unlike sizes and weights, rounding, friction of each joint, loads off centre."""
     row = random_proofs.asked(index)
-    assert row.verified or row.index == 33, row
+    assert row.verified, row
+
+
+@pytest.mark.parametrize("index", [1238, 2098, 3151, 4653, 4991, 5198, 6614, 7055, 8158])
+def test_what_doubles_could_not_prove_is_proved_in_rationals(index: int) -> None:
+    """Blocks of very unlike weights, held shut or by corners: nine of 17 of 10,000 problems."""
+    row = random_proofs.asked(index)
+    assert row.verified, row
+
+
+@pytest.mark.parametrize("index", [5703, 8725])
+def test_what_rounding_alone_would_hold_is_undecided(index: int) -> None:
+    """Forces of 1e13 times the weight would balance: the last digits of corners decide."""
+    _, problem = random_proofs.edge(index)
+    found = check(problem, method="limit")
+    assert found.verdict is Verdict.UNDECIDED
+    assert not found.proved
+    assert found.reason.startswith("neither that it stands nor that it falls is proved")
 
 
 @given(st.integers(10**6, 10**9))
 @settings(max_examples=10)
 def test_no_proof_at_the_edges_is_refused(index: int) -> None:
+    """What is not proved is undecided; every proof holds."""
     row = random_proofs.asked(index)
-    assert row.verified or not row.proved, row
+    assert row.verified or row.verdict == "undecided", row
 
 
 def test_the_commands(tmp_path: Path) -> None:

@@ -24,9 +24,11 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
+from blocksim.limit.bodies import alike, widened
 from blocksim.limit.cones import ROUND_OFF, Cones
+from blocksim.limit.exact import Exact
 from blocksim.limit.linear import LinearProgramme, Optimum
-from blocksim.limit.proof import Proof, proof_of_fall, proof_of_rest
+from blocksim.limit.proof import Proof, proof_in_rationals, proof_of_fall, proof_of_rest
 
 if TYPE_CHECKING:
     from scipy import sparse
@@ -74,24 +76,26 @@ class Equilibrium:
     @cached_property
     def proof(self) -> Proof | None:
         """The proof that blocks stand or fall; None where there is none either way."""
+        exact = Exact(self.problem)
         if self.parts is not None and self.margin > -NEAR:
             for fine in (ROUND_OFF, FINE):
                 parts = self._cones.polished(self.parts, self.problem.pull(), fine)
-                found = proof_of_rest(self.problem, self._cones.forces(parts))
+                found = proof_of_rest(exact, self._cones.forces(parts))
                 if found is not None:
                     return found
-        if self.margin >= NEAR:
-            return None
-        return proof_of_fall(self.problem, self._cones, self.rates)
+        weights, blocks = self._cones.weights, len(self.problem.assembly.blocks)
+        if self.rates is not None and self.margin < NEAR:
+            rates = widened(self.problem, self._cones, self.rates)
+            found = None if rates is None else proof_of_fall(exact, rates)
+            owner = alike(self.problem, self._cones, self.rates)
+            found = found or proof_in_rationals(exact, weights, owner)
+            if found is not None:
+                return found
+        return proof_in_rationals(exact, weights, range(blocks))
 
     @cached_property
     def _cones(self) -> Cones:
         return self.cones or Cones(self.problem)
-
-    @property
-    def decided(self) -> bool:
-        """Whether they stand or fall is known: near the limit a proof has to say so."""
-        return abs(self.margin) > NEAR or self.proof is not None
 
     @cached_property
     def exists(self) -> bool:
@@ -171,7 +175,8 @@ def equilibrium(problem: Problem) -> Equilibrium:
     except Unsolved:
         return Equilibrium(problem=problem, margin=math.nan, parts=None, rates=None)
     if not found.exists:
-        return Equilibrium(problem=problem, margin=-math.inf, parts=None, rates=None)
+        driven = falling(problem)
+        return Equilibrium(problem=problem, margin=-math.inf, parts=None, rates=driven)
     margin = float(found.values[-1])
     return Equilibrium(
         problem=problem,
