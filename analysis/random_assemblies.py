@@ -38,8 +38,7 @@ from analysis.command import run
 from analysis.saved_answers import Row, answers
 from blocksim.blocks.assembly import SUPPORT
 from blocksim.blocks.problem import Problem
-from blocksim.limit import collapse, equilibrium
-from blocksim.limit.programme import Collapse
+from blocksim.limit import Collapse, collapse, equilibrium
 from blocksim.simulation.observation import observe
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.style import FONT, QUIET, VERDICTS
