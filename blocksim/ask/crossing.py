@@ -107,7 +107,7 @@ class Crossing(Shown):
 
     @cached_property
     def mechanism(self) -> Array | None:
-        """Rates x, y [size] and rotation with which it falls at the worst place, (blocks, 3)."""
+        """Rates x, y [size] and rotation of the fall at the worst place, (blocks, 3)."""
         return collapse(self.problem).mechanism
 
     @cached_property
@@ -344,6 +344,6 @@ class _Search:
 def _bernstein(at: float | Array, degree: int) -> Array:
     """Return Bernstein's polynomials of a degree at places between 0 and 1."""
     u = np.asarray(at)[..., None]
-    k = np.arange(degree + 1)
+    k = np.arange(degree + 1.0)
     ways = np.array([float(math.comb(degree, each)) for each in range(degree + 1)])
     return ways * u**k * (1 - u) ** (degree - k)

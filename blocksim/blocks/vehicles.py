@@ -1,4 +1,4 @@
-"""Vehicles: groups of axles that move along a road, as they are known, in a file, or as said."""
+"""Vehicles: axles that move along a road, as they are known, in a file, or as said."""
 
 from __future__ import annotations
 
@@ -125,10 +125,12 @@ def _read(path: Path) -> Vehicle:
         known = key in {"axles", "title", "source"}
         if not known or (key != "axles" and not isinstance(value, str)):
             raise InputError(key, value, "axles, title and source, text both", where=where)
-    axles: Any = table.get("axles")
-    if not isinstance(axles, list) or not all(map(_is_pair, cast("list[object]", axles))):
-        raise InputError("axles", axles, "a list of [place in m, weight in kN]", where=where)
+    axles: object = table.get("axles")
     pairs = cast("list[list[float]]", axles)
+    if not isinstance(axles, list) or not all(map(_is_pair, pairs)):
+        raise InputError(
+            "axles", str(pairs), "a list of [place in m, weight in kN]", where=where
+        )
     try:
         return Vehicle(
             axles=tuple((float(place), 1e3 * float(weight)) for place, weight in pairs),
