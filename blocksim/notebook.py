@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.arch.answers import ArchBracket
 from blocksim.arch.circular import Arch
@@ -23,9 +23,9 @@ from blocksim.ask.check import Check
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
-from blocksim.common.files import json_text
+from blocksim.common.files import AnyPath, json_text
 from blocksim.common.words import printable
-from blocksim.kinds.circular import arch_problem, plain_arch
+from blocksim.kinds.circular import CircularArch, arch_of
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
 from blocksim.report.problems import arch_size_lines, described, size_lines, size_record
@@ -109,6 +109,13 @@ def figure_of(shown: object) -> Figure:
     return found[type(shown)](shown)
 
 
+def film_of(shown: object, path: AnyPath, **options: Any) -> None:
+    """Write a recording as a film; options are those of `blocksim.view.video.render`."""
+    from blocksim.view.video import render
+
+    render([cast(Recording, shown)], path, **options)
+
+
 @lru_cache(maxsize=1)
 def svg_of(shown: object) -> str:
     """Return the drawing of a thing as one SVG element.
@@ -136,7 +143,7 @@ def html_of(shown: object) -> str:
 
 
 def _recording_lines(recording: Recording) -> list[str]:
-    return recording_lines(recording, "L" if plain_arch(recording.problem) is None else "r")
+    return recording_lines(recording, "L" if arch_of(recording.problem) is None else "r")
 
 
 def _arch_words(arch: Arch) -> str:
@@ -159,7 +166,7 @@ def _arch_record(arch: Arch) -> dict[str, object]:
 def _arch_figure(arch: Arch) -> Figure:
     from blocksim.view.structure import problem_figure
 
-    titled = replace(arch_problem(arch, math.inf), title=_arch_words(arch))
+    titled = replace(CircularArch.of(arch, math.inf).problem(), title=_arch_words(arch))
     # An arch alone has no friction to tell.
     return problem_figure(titled, facts=())
 

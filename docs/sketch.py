@@ -15,7 +15,7 @@ from matplotlib.patches import Arc, Polygon
 
 from blocksim import Arch
 from blocksim.arch.carried import carried_by_arch
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.view.style import GROUND, INK, QUIET, STONE, THRUST
 
 HALF, ETA, COUNT = math.radians(66), 0.2, 11
@@ -72,7 +72,7 @@ def figure() -> Figure:
 
 def _thrust(axes: Axes, arch: Arch) -> None:
     """Draw the safest line of thrust of the sketched arch, and the force at its crown."""
-    found = carried_by_arch(arch, arch_problem(arch, 0.7)).resultants
+    found = carried_by_arch(arch, CircularArch.of(arch, 0.7).problem()).resultants
     assert found is not None  # noqa: S101
     axes.plot(*found.point.T, color=THRUST, lw=1.8)
 

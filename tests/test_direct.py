@@ -14,7 +14,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.base import trusted
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.observation import observe
 from blocksim.simulation.onset import onset
@@ -38,7 +38,7 @@ CASES = [
 
 
 def held(arch, mu):
-    return observe(arch_problem(arch, mu), "direct", moving=False).verdict
+    return observe(CircularArch.of(arch, mu).problem(), "direct", moving=False).verdict
 
 
 def world_of(arch, mu, step=0.01):
@@ -136,7 +136,9 @@ def test_it_is_repeatable_bit_by_bit():
 
 
 def test_over_its_residual_the_answer_is_undecided():
-    simulation = Simulation.of(arch_problem(arch_at(0.9, 90, 0.9, 20), 0.9), "direct")
+    simulation = Simulation.of(
+        CircularArch.of(arch_at(0.9, 90, 0.9, 20), 0.9).problem(), "direct"
+    )
     settings = replace(simulation.settings, residual=0.0)
     world = replace(simulation, settings=settings).world()
     assert (
@@ -159,7 +161,7 @@ def test_a_recording_keeps_its_quality(tmp_path):
 
 def test_onset_and_motion_agree_close_to_the_limit():
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
-        seen = observe(arch_problem(arch_at(ratio, 90, 0.9, 12), 0.9), "direct")
+        seen = observe(CircularArch.of(arch_at(ratio, 90, 0.9, 12), 0.9).problem(), "direct")
         assert seen.verdict is expected
         assert seen.motion.verdict is expected
 

@@ -14,7 +14,7 @@ from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level, piers
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.motion import moving_run
 from blocksim.simulation.simulated import Simulation
 from blocksim.simulation.verdict import Verdict
@@ -93,7 +93,9 @@ def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
 
-    simulation = Simulation.of(arch_problem(arch_at(0.9, 90, 0.9, 12), 0.9), "direct")
+    simulation = Simulation.of(
+        CircularArch.of(arch_at(0.9, 90, 0.9, 12), 0.9).problem(), "direct"
+    )
     # Below the round-off of corners at rest nothing could pass.
     strict = replace(simulation, settings=replace(simulation.settings, penetration=-1.0))
     world = strict.world()

@@ -14,12 +14,12 @@ from blocksim.arch.circular import Arch
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
-from blocksim.arch.scenario import load_scenario
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.blocks.joints import JointState
 from blocksim.cli import app
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.scenarios import load_scenario
 from blocksim.simulation.observation import observe
 from blocksim.studies.validate import validate_one
 from blocksim.view.archfigure import picture_of_arch
@@ -46,13 +46,13 @@ def test_direct_confirms_every_mode_close_to_the_limit(
     built = limit.least_thickness(arch.half_angle, mu, count)
     assert mode == built.mode == continuous.mode
     assert mechanism(arch, mu).mode is mode
-    seen = observe(arch_problem(arch, mu), "direct", moving=False)
+    seen = observe(CircularArch.of(arch, mu).problem(), "direct", moving=False)
     assert observed_mode(seen.joints, arch) is mode
 
 
 def test_direct_confirms_pure_sliding_where_nothing_stands() -> None:
     arch = Arch(half_angle=math.pi / 2, eta=2.0, voussoirs=27)
-    seen = observe(arch_problem(arch, 0.3), "direct", moving=False)
+    seen = observe(CircularArch.of(arch, 0.3).problem(), "direct", moving=False)
     assert observed_mode(seen.joints, arch) is Mode.SS
     assert mechanism(arch, 0.3).mode is Mode.SS
 

@@ -21,7 +21,7 @@ from running import inside
 
 import blocksim
 from blocksim import Arch, ask
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure, structure_of
 from blocksim.limit import collapse
 from blocksim.notebook import svg_of
@@ -237,7 +237,7 @@ def test_reprs_are_short_whatever_they_are_of() -> None:
     assert eval(repr(arch), {"Arch": Arch}) == arch  # noqa: S307 - our own
     answer = blocksim.check(CircularArch.of(arch, friction=third))
     assert len(repr(answer)) < 200
-    titled = replace(arch_problem(arch, third), title="a\nb " * 50)
+    titled = replace(CircularArch.of(arch, third).problem(), title="a\nb " * 50)
     assert len(repr(titled)) < 200
     assert "\n" not in repr(titled)
     assert len(repr(replace(ask.check(load_structure("oppenheim_7")), problem=titled))) < 200

@@ -27,7 +27,7 @@ from blocksim import verify as verify_module
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit.proof import proof_record
 from blocksim.simulation.verdict import Verdict
 from blocksim.verify import checked, seal, verify
@@ -204,7 +204,11 @@ def proofs() -> Iterator[Table]:
     """Of arches, walls, kinds, corners and loads; half of them of collapse."""
     for mu in (0.7, math.inf):
         for eta in (0.09, 0.15):
-            yield proof_of(arch_problem(Arch(half_angle=math.pi / 2, eta=eta, voussoirs=7), mu))
+            yield proof_of(
+                CircularArch.of(
+                    Arch(half_angle=math.pi / 2, eta=eta, voussoirs=7), mu
+                ).problem()
+            )
     for tilt in (0, 50):
         yield proof_of(structure_of(wall(2, 2, 10, 8, 0.6)).tilted(math.radians(tilt)))
     for friction in (0.2, 0.6):

@@ -25,7 +25,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure
 from blocksim.kinds.files import structure_of as kind_of
 from blocksim.view.drawing import save_figure
@@ -43,7 +43,7 @@ INNER = (SPAN**2 / 4 + RISE**2) / (2 * RISE)
 
 def arch(count: int, degrees: float, eta: float, mu: float, radius: float = 1.0) -> Problem:
     built = Arch(half_angle=math.radians(degrees), eta=eta, voussoirs=count, radius=radius)
-    return arch_problem(built, mu)
+    return CircularArch.of(built, mu).problem()
 
 
 def engineers() -> Problem:
@@ -55,7 +55,7 @@ def engineers() -> Problem:
         weight="sector",
         radius=radius,
     )
-    return arch_problem(built, math.tan(math.radians(35)))
+    return CircularArch.of(built, math.tan(math.radians(35))).problem()
 
 
 def kind(name: str, **more: Any) -> Problem:
@@ -354,7 +354,7 @@ def test_a_heavy_arch_thrusts_as_much_on_any_depth() -> None:
     said = []
     for depth in (1.0, 3.0):
         built = Arch(half_angle=1.0, eta=0.15, voussoirs=9, radius=4.0, depth=depth)
-        sheet = sheet_of(arch_problem(built, 0.7))
+        sheet = sheet_of(CircularArch.of(built, 0.7).problem())
         assert sheet.thrust is not None
         said.append(sheet.thrust[1])
     assert said[0] == said[1]

@@ -21,7 +21,7 @@ from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import collapse, equilibrium
 from blocksim.view.arrows import force_words
 from blocksim.view.drawing import clipped, loading_words, outer_sides, save_figure
@@ -208,7 +208,7 @@ def test_a_mechanism_is_drawn_as_its_blocks_move() -> None:
 def test_an_arch_keeps_its_words_and_stands_on_strips() -> None:
     """Supports that are not known are drawn behind the springings."""
     arch = Arch(half_angle=1.2, eta=0.2, voussoirs=7)
-    problem = arch_problem(arch, 0.7)
+    problem = CircularArch.of(arch, 0.7).problem()
     states = [JointState.CLOSED] * 8
     states[3] = JointState.HINGE_EXTRADOS
     figure = problem_figure(problem, states=states)

@@ -28,7 +28,7 @@ from blocksim.blocks.joints import JointState, classify, joint_motion
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
@@ -51,7 +51,7 @@ def rest(arch: Arch = ARCH) -> Array:
 def recording(moved: Array, times: Array, arch: Arch = ARCH) -> Recording:
     """Record given displacements, (frames, blocks, 3)."""
     return Recording(
-        problem=arch_problem(arch, 0.7),
+        problem=CircularArch.of(arch, 0.7).problem(),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
@@ -536,7 +536,9 @@ def test_lengths_and_times_have_units_where_a_radius_was_given() -> None:
     assert "t = 0.300 s" in metric
     assert "1 m" in metric
     assert "10 times slower" in metric
-    free = replace(falling(), problem=arch_problem(replace(ARCH, radius=1.0, depth=0.5), 0.7))
+    free = replace(
+        falling(), problem=CircularArch.of(replace(ARCH, radius=1.0, depth=0.5), 0.7).problem()
+    )
     film = Film([free], slow=10)
     words = drawn_words(film, 0.3)
     assert "t = 0.30 √(r/g)" in words

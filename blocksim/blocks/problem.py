@@ -17,11 +17,11 @@ from blocksim.blocks.road import road_of, with_road
 from blocksim.blocks.shaking import Shaking
 from blocksim.common.checks import (
     FACTOR,
+    LEAN,
     SMOOTH_OR_ROUGH,
     is_number,
     require,
     require_all,
-    require_lean,
 )
 from blocksim.common.errors import InputError
 from blocksim.common.shown import Shown, short
@@ -136,7 +136,7 @@ class Problem(Shown):
 
     def leaning(self, lean: float) -> Problem:
         """Return the same with gravity leaning out of the plane by an angle [rad]."""
-        require_lean(lean)
+        LEAN.require("lean", lean)
         x, y, _ = self.gravity
         down = math.cos(lean)
         return replace(self, gravity=np.array([x * down, y * down, math.sin(lean)]))

@@ -81,7 +81,7 @@ def bracket(
     over: Over = None,
     within: Within = None,
     method: MethodOption = "auto",
-    tol: Annotated[float, Option(help="Relative width of the bracket.")] = 0.005,
+    tol: Annotated[float, Option(about="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
     reduce: Reduce = None,
     as_json: Json = False,

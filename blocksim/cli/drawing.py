@@ -33,7 +33,7 @@ def write_still(
     """
     built = is_structure(scene) or loading.given
     asked = None if built else question(scene, given)
-    if asked is None or (not asked.lean and (asked.eta is not None or given.ratio is not None)):
+    if asked is None or (not asked.lean and asked.has_thickness):
         _write_sheet(
             out, kind, problem_asked(scene, given, loading, thick=True), method, height
         )
@@ -50,10 +50,11 @@ def write_still(
     from blocksim.view.archfigure import arch_figure, picture_of_theory
 
     with named_options():
-        critical = least_thickness(asked.half_angle, asked.mu, asked.weight)
+        shape = asked.arch(1.0)
+        arch = shape.half_angle, asked.mu, shape.weight
+        critical = least_thickness(*arch)
         if critical.eta is None:
             raise InputError("eta", MISSING, "given where no thickness stands")
-        arch = asked.half_angle, asked.mu, asked.weight
         pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
     save_picture(arch_figure(pictures), out, kind, height)
 

@@ -17,7 +17,7 @@ LARGEST = 1 << 28
 
 
 def verify(
-    file: Annotated[str, Argument(help="Proof that check --proof has written.")],
+    file: Annotated[str, Argument(about="Proof that check --proof has written.")],
 ) -> None:
     """Check a proof that blocks stand or fall, in rational arithmetic."""
     from blocksim.verify import checked

@@ -15,7 +15,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
 from blocksim.blocks.joints import JointState, classify
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import arch_of
 from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import HINGES, state_of_any
 from blocksim.view.stage import Stage
@@ -157,7 +157,7 @@ def drawing(recording: Recording, gravity: float) -> ArchDrawing:
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
     low[1] = stage.ground - MARGIN / 4
     last = frames[-1]
-    arch = plain_arch(recording.problem)
+    arch = arch_of(recording.problem)
     return ArchDrawing(
         box=box_of(low, high),
         rest=(points(rest),),

@@ -12,7 +12,7 @@ from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
 from blocksim.blocks.shaking import shaking_record
 from blocksim.common.words import counted
-from blocksim.kinds.circular import CircularArch, plain_arch, weighed_arch
+from blocksim.kinds.circular import CircularArch, arch_of, weighed_arch
 
 if TYPE_CHECKING:
     from blocksim.report.schema import ProblemRecord
@@ -155,7 +155,7 @@ def arch_size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -
 
 def unit_lines(problem: Problem) -> list[str]:
     """Return of which size forces are, in words, where an arch is told in radii."""
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     if arch is None or is_metric(arch, at_of(problem)):
         return []
     heavy = arch.specific_weight / 1000
@@ -223,7 +223,7 @@ def described(problem: Problem) -> str:
         )
     if problem.shaking is not None:
         said.append(problem.shaking.words)
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     metric = arch is None or is_metric(arch, at_of(problem))
     said.append(f"L = {assembly.size:g} m" if metric else "L = r")
     return ", ".join(said)

@@ -12,7 +12,8 @@ from blocksim.arch import limit, theory
 from blocksim.ask.check import Check
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
-from blocksim.kinds.circular import is_plain_arch, plain_arch, weighed_arch
+from blocksim.kinds.circular import arch_of, weighed_arch
+from blocksim.kinds.offers import offers_of
 from blocksim.limit import reactions, resultants
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import joint_names, tilt_and_lean
@@ -100,7 +101,7 @@ def _friction(problem: Problem) -> tuple[str, str]:
 def load_words(problem: Problem) -> list[str]:
     """Say what acts."""
     words = ["Own weight acts at each block's centre of mass."]
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     if arch is not None:
         at = {
             "centreline": "at the centroid of the voussoir's part of the centreline",
@@ -152,14 +153,14 @@ def factor_facts(answer: Check, sheet: Sheet) -> list[Fact]:
         at = f"asked at {problem.load:g}; " if problem.load else ""
         value = "∞" if math.isinf(answer.load_factor) else f"{answer.load_factor:.6g}"
         facts.append(Fact("load factor", value, f"{at}largest factor on the live loads"))
-    arch = plain_arch(problem)
-    if arch is not None and is_plain_arch(problem) and carried is not None:
+    arch = arch_of(problem)
+    if arch is not None and _is_known(problem) and carried is not None:
         facts += _least_facts(problem)
     return facts
 
 
 def _margin_facts(problem: Problem, carried: Carried) -> list[Fact]:
-    factor, plain = carried.geometrical_factor, is_plain_arch(problem)
+    factor, plain = carried.geometrical_factor, _is_known(problem)
     said = "nothing suffices" if factor is None else (
         f"more than {LARGEST:g}" if factor > LARGEST else f"{factor:.5g}"
     )  # fmt: skip
@@ -185,7 +186,7 @@ def _margin_facts(problem: Problem, carried: Carried) -> list[Fact]:
 
 
 def _least_facts(problem: Problem) -> list[Fact]:
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     assert arch is not None  # noqa: S101
     built = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight)
     whole = theory.least_thickness(arch.half_angle, problem.mu, arch.weight)
@@ -280,3 +281,8 @@ def _percent(share: float) -> str:
 def force_words(unit: ForceUnit) -> str:
     """Say in what forces are told."""
     return f"forces in {unit.name}" + (f"; {unit.note}" if unit.note else "")
+
+
+def _is_known(problem: Problem) -> bool:
+    """Whether an arch stands upright under its own weight, of which its statics know."""
+    return arch_of(problem) is not None and problem.is_planar and bool(offers_of(problem))

@@ -12,7 +12,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
-from blocksim.kinds.circular import arch_problem, plain_arch
+from blocksim.kinds.circular import CircularArch, arch_of
 from blocksim.limit import equilibrium
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
@@ -144,7 +144,7 @@ def _verdicts(answer: Check, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
 def _active(answer: Check) -> list[Fact]:
     """Joints that take part as it falls."""
     problem = answer.problem
-    is_arch = plain_arch(problem) is not None
+    is_arch = arch_of(problem) is not None
     names = joint_names(problem.assembly)
     return [
         Fact(names[index], words_of(joint.state, is_arch=is_arch)[0], str(index))
@@ -166,13 +166,13 @@ def _fall(answer: Check) -> Fall | None:
     if factor is not None and 0 < factor < float("inf") and not problem.shaking:
         over = problem.with_load(factor * (1 + 1e-3))
         return _asked(over, f"how it would start to fall at load factor {factor:.4g}")
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     if arch is None or problem.is_loaded or not problem.is_planar or problem.shaking:
         return None
     least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
     if not least:
         return None
-    thin = arch_problem(replace(arch, eta=BELOW * least), problem.mu)
+    thin = CircularArch.of(replace(arch, eta=BELOW * least), problem.mu).problem()
     metres = least * arch.radius
     words = f"how it would start to fall at its least thickness as built, {metres:.3f} m"
     return _asked(replace(thin, gravity=problem.gravity), words)

@@ -10,7 +10,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.circular import CircularArch, plain_arch
+from blocksim.kinds.circular import CircularArch, arch_of
 from blocksim.view.units import length_words
 
 OFF, ARC_OFF = 8.0, 6.0
@@ -182,7 +182,7 @@ def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angl
 
 def _top(problem: Problem, crown: Array) -> Array:
     """Highest point of the intrados, which the chord of a keystone is below [m]."""
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     if arch is not None:
         return np.array([0.0, arch.radius - arch.thickness / 2])
     kind = problem.maker
@@ -193,7 +193,7 @@ def _top(problem: Problem, crown: Array) -> Array:
 
 def thickness_of(problem: Problem) -> float | None:
     """Thickness of an arch that is as thick everywhere [m]."""
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     if arch is not None:
         return arch.thickness
     kind = problem.maker
@@ -223,7 +223,7 @@ def _thickness(problem: Problem) -> list[Length | Angle]:
 
 def half_angle_of(problem: Problem) -> float | None:
     """Half-angle of embrace of a symmetric circular arch [rad]."""
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     if arch is not None:
         return arch.half_angle
     kind = problem.maker

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.joints import JointState
 from blocksim.common.words import counted, printable
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import arch_of
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
@@ -269,7 +269,7 @@ class Film:
     def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
         """Say what it is, outcome, loading and engine, above a panel."""
         size, problem = self._size, stage.recording.problem
-        arch, blocks = plain_arch(problem), len(stage.assembly.blocks)
+        arch, blocks = arch_of(problem), len(stage.assembly.blocks)
         count = counted(blocks, "block")
         facts = [verdict, *against(stage.recording)]
         if arch:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from blocksim.arch import limit
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import arch_of
 from blocksim.simulation.motion import MOVED, UNMOVED
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.shaken import outcome
@@ -30,7 +30,7 @@ def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
         return Verdict.COLLAPSES.value
     if moved <= UNMOVED:
         return "at rest"
-    if plain_arch(recording.problem) is None:
+    if arch_of(recording.problem) is None:
         return f"has moved {moved * recording.assembly.size:.1g} m"
     return f"has moved {moved:.1g} r"
 
@@ -48,7 +48,7 @@ def against(recording: Recording) -> list[str]:
     """Say what it is up against: gravity that tilts or leans, loads; an arch its own weight."""
     problem = recording.problem
     words = loading_words(problem)
-    arch = plain_arch(problem)
+    arch = arch_of(problem)
     if words or arch is None:
         return words
     least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta

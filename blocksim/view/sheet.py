@@ -14,7 +14,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.words import printable
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import arch_of
 from blocksim.limit import Reaction, reactions
 from blocksim.limit.carried import Carried
 from blocksim.view.drawing import friction_words, loading_words
@@ -216,14 +216,14 @@ def title_of(problem: Problem) -> str:
         return printable(problem.title)
     if problem.title:
         return problem.title.replace("-", " ").capitalize()
-    if plain_arch(problem) is not None:
+    if arch_of(problem) is not None:
         return "Circular arch"
     return "Structure of blocks"
 
 
 def built_words(problem: Problem) -> list[str]:
     """Say of what it is built, and what acts on it."""
-    arch, count = plain_arch(problem), len(problem.assembly.blocks)
+    arch, count = arch_of(problem), len(problem.assembly.blocks)
     noun = "voussoir" if arch else "block"
     words = [f"{count} {noun}{'s' * (count != 1)}", friction_words(problem.mu)]
     if 0 < problem.mu < math.inf:

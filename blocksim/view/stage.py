@@ -16,7 +16,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Array, Joint, displacement
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import arch_of
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
 from blocksim.view.archfigure import lines_of, picture_of_arch
@@ -96,7 +96,7 @@ class Stage:
         self.assembly = recording.assembly
         size = self.assembly.size
         self.depth = float(self.assembly.depths.max())
-        self.is_arch = plain_arch(recording.problem) is not None
+        self.is_arch = arch_of(recording.problem) is not None
         rest = np.concatenate([block.vertices for block in self.assembly.blocks]) / size
         self._low, self._high = rest.min(axis=0), rest.max(axis=0)
         self.middle = 0.0 if self.is_arch else float(self._low[0] + self._high[0]) / 2
@@ -194,7 +194,7 @@ class Stage:
     @cached_property
     def thrust(self) -> tuple[Array, ...]:
         """Line of thrust of the arch at rest, by limit analysis, (k, 2); none if not whole."""
-        arch = plain_arch(self.recording.problem)
+        arch = arch_of(self.recording.problem)
         if arch is None or not self.recording.problem.is_planar:
             return ()
         line, _ = lines_of(picture_of_arch(arch, self.recording.mu))

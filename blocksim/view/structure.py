@@ -23,7 +23,7 @@ from blocksim.blocks.closing import closed_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.words import counted
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import arch_of
 from blocksim.view.arrows import draw_forces, draw_gravity, draw_loads
 from blocksim.view.drawing import (
     HINGES,
@@ -277,7 +277,7 @@ def draw_mechanism(
 
 def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> None:
     """Colour joints that take part; dots mark the ends that stay closed, bars what slides."""
-    is_arch = plain_arch(problem) is not None
+    is_arch = arch_of(problem) is not None
     for index, (joint, state) in enumerate(zip(problem.assembly.joints, states, strict=True)):
         if state is JointState.CLOSED:
             continue

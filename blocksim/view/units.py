@@ -8,7 +8,7 @@ import numpy as np
 
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.circular import arch_of
 
 KILO = 1e3
 NOT_GIVEN = (0.8, 1.25)
@@ -59,7 +59,7 @@ def unit_weight(problem: Problem) -> float | None:
 
     The median, where blocks differ; None where none was given.
     """
-    arch, kind = plain_arch(problem), problem.maker
+    arch, kind = arch_of(problem), problem.maker
     if arch is not None:
         return arch.specific_weight
     low, high = NOT_GIVEN
