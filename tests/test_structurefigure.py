@@ -22,7 +22,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.kinds.circular import CircularArch
-from blocksim.limit.programme import collapse, equilibrium
+from blocksim.limit import collapse, equilibrium
 from blocksim.view.arrows import force_words
 from blocksim.view.drawing import clipped, loading_words, outer_sides, save_figure
 from blocksim.view.sheet import sheet_of

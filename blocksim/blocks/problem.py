@@ -12,7 +12,8 @@ import numpy as np
 from blocksim.blocks.acting import Load as Load
 from blocksim.blocks.acting import Move as Move
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
-from blocksim.blocks.road import with_road
+from blocksim.blocks.dispersal import Dispersal
+from blocksim.blocks.road import road_of, with_road
 from blocksim.blocks.shaking import Shaking
 from blocksim.common.checks import (
     FACTOR,
@@ -61,6 +62,8 @@ class Problem(Shown):
     road : tuple of (float, float, float)
         Live loads on the road above, which stay where they are as blocks are made otherwise:
         from one x to another [m], and the weight [N].
+    dispersal : Dispersal or None
+        How fill spreads what stands on the road; None where it goes straight down.
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
         forces have a meaning.
@@ -85,6 +88,7 @@ class Problem(Shown):
     source: str = ""
     maker: Maker | None = None
     road: tuple[tuple[float, float, float], ...] = ()
+    dispersal: Dispersal | None = None
     weighed: bool = True
     notes: tuple[str, ...] = ()
 
@@ -182,6 +186,8 @@ class Problem(Shown):
             dead=(*built.fills, *self.dead[before:]),
             maker=maker,
         )
+        if (road := road_of(remade)) is not None and self.dispersal is not None:
+            remade = replace(remade, dispersal=replace(self.dispersal, road=road))
         return with_road(remade, self.road) if self.road else remade
 
     @property

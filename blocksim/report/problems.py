@@ -57,6 +57,7 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
         "weight_kN": weight_of(problem) / 1000,
         "fill_m": None if fill is None else fill.height,
         "fill_weight_kN": None if fill is None else fill.weight / 1000,
+        "dispersal": None if problem.dispersal is None else problem.dispersal.words,
         "live_weight_kN": 0.0 - _live(problem) / 1000,
     }
     if not problem.weighed:
@@ -120,7 +121,8 @@ def size_lines(problem: Problem) -> list[str]:
     if live and any(load.point is not None for load in problem.live):
         said.append(f"live loads {live / 1000:.6g} kN times {problem.load:g}")
     if said:
-        said.append("straight down to the blocks below: fill spreads no load")
+        none = "straight down to the blocks below: fill spreads no load"
+        said.append(none if problem.dispersal is None else problem.dispersal.words)
         lines.append(f"  road    {', '.join(said)}")
     return lines
 
