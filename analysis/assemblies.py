@@ -1,11 +1,11 @@
 """Random assemblies, drawn as polygons: walls, stacks, leaning blocks, arches, rubble.
 
-A `Sketch` is what is drawn: polygons, friction, loads. Its problem is built anew after the
-sketch has been mirrored, turned, scaled or renumbered, joints found again.
+A `Sketch` is what is drawn: polygons, friction, loads.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +17,11 @@ from scipy.spatial import Voronoi
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Load, Problem
+from blocksim.limit import collapse, equilibrium
 
+SEED = 2026
+RANGE = 1e-3, 1e3
+"""Load factors of the assemblies that are drawn."""
 Polygons = list[Array]
 """Of the supports first."""
 
@@ -42,8 +46,6 @@ class Sketch:
         Live: in units of each weight, or [N] on the polygon `on` at `point`.
     on : int or None
     point : (2,) float or None
-    shuffled : int or None
-        Seed by which found joints are put into another order.
     """
 
     kind: str
@@ -55,7 +57,6 @@ class Sketch:
     force: Array
     on: int | None = None
     point: Array | None = None
-    shuffled: int | None = None
 
     def problem(self) -> Problem:
         """Find the joints, and put friction and loads on."""
@@ -64,9 +65,6 @@ class Sketch:
             replace(joint, friction=self.own.get(pair))
             for joint, pair in zip(assembly.joints, pairs(assembly), strict=True)
         ]
-        if self.shuffled is not None:
-            order = np.random.default_rng(self.shuffled).permutation(len(joints))
-            joints = [joints[index] for index in order]
         moving = [index for index in range(len(self.polygons)) if index not in self.fixed]
         on = range(len(moving)) if self.on is None else [moving.index(self.on)]
         live = Load(
@@ -78,45 +76,6 @@ class Sketch:
             gravity=np.append(self.gravity, 0.0),
             live=(live,),
             title=self.kind,
-        )
-
-    def mapped(self, matrix: Array, forces: float = 1.0) -> Sketch:
-        """Map all points by a matrix, and forces [N] with them, times a factor."""
-        unit = matrix / math.sqrt(abs(np.linalg.det(matrix)))
-        factor = 1.0 if self.on is None else forces
-        return replace(
-            self,
-            # In another sense a polygon is turned by the reader.
-            polygons=tuple(polygon @ matrix.T for polygon in self.polygons),
-            gravity=unit @ self.gravity,
-            force=factor * unit @ self.force,
-            point=None if self.point is None else matrix @ self.point,
-        )
-
-    def mirrored(self) -> Sketch:
-        """Exchange left and right."""
-        return self.mapped(np.diag([-1.0, 1.0]))
-
-    def rotated(self, angle: float) -> Sketch:
-        """Turn everything, gravity too."""
-        cos, sin = math.cos(angle), math.sin(angle)
-        return self.mapped(np.array([[cos, -sin], [sin, cos]]))
-
-    def scaled(self, factor: float) -> Sketch:
-        """Make it larger, forces with the weights."""
-        return self.mapped(factor * np.eye(2), factor**2)
-
-    def renumbered(self, seed: int) -> Sketch:
-        """Put blocks and joints into another order."""
-        order = np.random.default_rng(seed).permutation(len(self.polygons)).tolist()
-        place = {old: new for new, old in enumerate(order)}
-        return replace(
-            self,
-            polygons=tuple(self.polygons[old] for old in order),
-            fixed=frozenset(place[old] for old in self.fixed),
-            own={frozenset(place[old] for old in pair): mu for pair, mu in self.own.items()},
-            on=None if self.on is None else place[self.on],
-            shuffled=seed,
         )
 
 
@@ -179,13 +138,6 @@ def _area(polygon: Array) -> float:
 def box(left: float, low: float, right: float, high: float) -> Array:
     """Return the corners of a rectangle."""
     return np.array([[left, low], [right, low], [right, high], [left, high]])
-
-
-def running_bond(courses: int, bricks: int, length: float = 2.0, lap: float = 0.5) -> Polygons:
-    """Draw a wall on a floor, every other course shifted by a share of a brick, ends cut."""
-    width = bricks * length
-    rows = [_breaks(width, length, lap * length * (row % 2)) for row in range(courses)]
-    return [box(-1, -1, width + 1, 0), *_courses(rows)]
 
 
 def _breaks(width: float, length: float, shift: float) -> list[float]:
@@ -410,3 +362,17 @@ KINDS: dict[str, Callable[[Generator], tuple[Polygons, int]]] = {
     "trilithon": trilithon,
     "portal": portal,
 }
+
+
+def drawn(index: int) -> Sketch:
+    """Draw the `index`-th assembly: one that rests, and falls at some load factor."""
+    kind = list(KINDS)[index % len(KINDS)]
+    for attempt in itertools.count():
+        found = sketch(kind, np.random.default_rng((SEED, index, attempt)))
+        problem = found.problem()
+        if not equilibrium(problem).exists:
+            continue
+        factor = collapse(problem).load_factor
+        if factor is not None and RANGE[0] < factor < RANGE[1]:
+            return found
+    raise AssertionError

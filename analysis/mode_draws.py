@@ -1,14 +1,13 @@
-"""The arches of the study of the whole map (`mode_sweep.py`).
+"""Arches over the whole map, for `onset_modes.py`.
 
 Of ten arches five lie anywhere: half-angle even from 30 to 159 deg, friction
 log-uniform from what lets any thickness stand to 4, the right edge of the map. Four have one
 of the mixed modes each (srr, rrs, rsr, rs), which have little room: they are drawn in the same
-way until one comes that has it. All of these stand at some thickness, and are put to
-the engine 0.5 % below and 0.5 % above the least thickness of their voussoirs. The tenth lies on
+way until one comes that has it. All of these stand at some thickness. The tenth lies on
 the line where purely sliding arches are published, and is 1.1 to 3 times as thick as the
-least there: not its thickness is critical but its friction, which is 0.5 % less and 0.5 % more
-than the voussoirs need. Purely overturning arches (r) need boundless friction, of which engines
-take 1000: they are left out. Voussoirs are 20 to 40, weight is on the centreline.
+least there: not its thickness is critical but its friction. Purely overturning arches (r) need
+boundless friction, of which engines take 1000: they are left out. Voussoirs are 20 to 40,
+weight is on the centreline.
 """
 
 from __future__ import annotations
@@ -21,7 +20,6 @@ from functools import cache
 
 import numpy as np
 
-from blocksim.arch.limit import least_thickness
 from blocksim.arch.limit.bulk import which_stand
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.arrays import least_thicknesses
@@ -29,11 +27,8 @@ from blocksim.arch.theory.map import divide_friction
 from blocksim.arch.theory.regions import at_inner_sliding
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.assembly import Array
-from blocksim.sweeps import Case
-from blocksim.sweeps.case import ARCH
 
 SEED = 2024
-TOL = {"pymunk": 1e-3, "direct": 1e-8, "pybullet": 4e-3}
 ANYWHERE = None
 TURNS = (ANYWHERE, Mode.SRR, ANYWHERE, Mode.RRS, ANYWHERE, Mode.RSR, ANYWHERE, Mode.RS)
 TURNS += (ANYWHERE, Mode.SS)
@@ -41,8 +36,6 @@ TURNS += (ANYWHERE, Mode.SS)
 NARROWEST, WIDEST, MOST_FRICTION = 30.0, 159.0, 4.0
 BLOCK = 4096
 """Arches drawn together."""
-ASIDE = 0.005
-"""Share of the critical thickness, or friction, that arches let go have less or more."""
 NEAR = 0.003
 """Share of alpha or mu within which the mode changes, near a line."""
 
@@ -57,53 +50,6 @@ class Drawn:
     published: Mode
     near: bool
     eta: float | None = None
-
-    def cases(self, engine: str) -> list[Case]:
-        """Ask an engine: with less, with more than is critical, and for a bracket."""
-        factors = 1 - ASIDE, 1 + ASIDE
-        if self.eta is not None:
-            less = [self._given(factor) | {"eta": self.eta} for factor in factors]
-        else:
-            less = [self._given() | {"ratio": factor} for factor in factors]
-        made = [Case(ARCH, tuple(each.items()), engine, band=math.inf) for each in less]
-        if self.eta is not None:
-            return made
-        given, tol = tuple(self._given().items()), TOL[engine]
-        return [*made, Case(ARCH, given, engine, "thickness", tol=tol, confirm=False)]
-
-    def _given(self, factor: float = 1.0) -> dict[str, float | str]:
-        return {
-            "half_angle_deg": self.alpha_deg,
-            "mu": self.mu * factor,
-            "voussoirs": self.voussoirs,
-            "weight": "centreline",
-        }
-
-
-@dataclass(frozen=True)
-class Draws:
-    """The cases of a number of arches; more of them begin with the same."""
-
-    arches: int
-    method: tuple[str, ...]
-
-    @property
-    def size(self) -> int:
-        """Number of cases: purely sliding arches are not bracketed."""
-        purely_sliding = self.arches // len(TURNS)
-        return len(self.method) * (3 * self.arches - purely_sliding)
-
-    def cases(self) -> Iterator[Case]:
-        """Draw the arches; those that take fewest sweeps come first."""
-        for drawn in sorted(itertools.islice(draw(), self.arches), key=_sweeps):
-            for engine in self.method:
-                yield from drawn.cases(engine)
-
-
-def _sweeps(drawn: Drawn) -> float:
-    """How many sweeps an onset test takes: like n^2 over the length of a joint."""
-    least = least_thickness(math.radians(drawn.alpha_deg), drawn.mu, drawn.voussoirs).eta
-    return drawn.voussoirs**2 / (drawn.eta or least or ETA_MAX)
 
 
 def draw() -> Iterator[Drawn]:
@@ -140,7 +86,7 @@ def _critical(
 ) -> Iterator[Drawn]:
     """Those that stand at some thickness and have the mode asked for."""
     there = least_thicknesses(np.radians(alpha_deg), mu)
-    wanted = (there.eta < ETA_MAX / (1 + ASIDE)) & ((there.mode == turn) | (turn is ANYWHERE))
+    wanted = (there.eta < ETA_MAX / 1.005) & ((there.mode == turn) | (turn is ANYWHERE))
     for k in np.flatnonzero(wanted):
         mode, half_angle = Mode(str(there.mode[k])), math.radians(alpha_deg[k])
         # As far to either side as the mode may not change.

@@ -1,7 +1,7 @@
 """The mode an arch starts with, over the whole map and where modes are narrow.
 
 Question: does an engine see, close to the least thickness, the mechanism that limit analysis
-finds for the same voussoirs, in all seven modes? Asked about are the arches of `mode_sweep.py`,
+finds for the same voussoirs, in all seven modes? Asked about are the arches of `mode_draws.py`,
 of 20 to 40 voussoirs. A voussoir of these spans the band of rsr, so that limit analysis itself
 calls most draws of rsr another mode: the same half-angles and frictions are asked again with
 120 to 200 voussoirs, and others within 0.2 % of those of S and J, where rsr meets other modes.
@@ -93,7 +93,7 @@ class Result:
 
 
 def drawn(sweep: int, rsr: int, about: int, most: int) -> list[Fine]:
-    """Draw the arches: those of `mode_sweep`, its rsr with more voussoirs, about S and J."""
+    """Draw the arches: those of `mode_draws`, its rsr with more voussoirs, about S and J."""
     counts = np.random.default_rng(SEED)
     every = [
         Fine("map", each.alpha_deg, each.mu, each.voussoirs, each.eta)

@@ -3,8 +3,7 @@
 Question: how far is the least thickness found by an engine from the exact one? Arches are
 drawn over half-angle, friction, number of voussoirs and weight model, as many of each collapse
 mode as there is room for. Each is bracketed by onset tests, and let go at both ends, where the
-lower tells its mode. A few hard ones are added: long, thin, steep. Whether answers hold farther
-from the limit is asked in `islands.py`.
+lower tells its mode. A few hard ones are added: long, thin, steep.
 
 Expected: every centre within half the bracket's width, or else an end is false; every end
 confirmed; modes as limit analysis says. Where Coulomb's law has two answers (`onset.py`)

@@ -2,7 +2,7 @@
 
 A quoted number is followed by a comment that names the file of rows and what it is of them:
 
-    none false of 1,700<!-- no_slip: count(ratio > 0) --> arches
+    10,000<!-- random_truth: len(index) --> random problems
 
 The file is `analysis/figures/NAME.csv`, or that packed, `.csv.gz`; its columns are arrays of
 that name. A number must be what the rows say, rounded to the digits that are quoted. `python

@@ -25,7 +25,6 @@ PAGES = {
     "SECURITY.md": "security.md",
     "RELEASING.md": "releasing.md",
     "analysis/README.md": "studies.md",
-    "analysis/sector.md": "theory/sector.md",
 }
 """Files outside docs/ that are pages of the site."""
 TAG = re.compile(r"\\tag\{([^}]*)\}")

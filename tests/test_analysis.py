@@ -96,25 +96,6 @@ def test_pulses_overturn_a_block_where_housner_says(tmp_path: Path) -> None:
         assert (np.abs(drawn - wanted).max(axis=1) < 0.02).sum() > 40
 
 
-def test_random_assemblies_fall_at_the_load_of_the_linear_programme(tmp_path: Path) -> None:
-    module = study("random_assemblies")
-    result = module.main(tmp_path, quick=True)
-    assert result.assemblies == 12
-    assert result.right == 24
-    assert result.false == sum(result.undecided.values()) == 0
-    assert result.let_go == result.let_go_right == 4
-    assert max(vars(result.worst).values()) < 1e-9
-    assert result.changed == result.changed_same == 5
-    assert result.worst_change < 1e-9
-    assert [row["below"] + row["above"] for row in result.walls] == ["standscollapses"]
-    with (tmp_path / "random_assemblies.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == 17
-    # Leaning blocks have corners on faces, of which the full run tells.
-    assert {row["kind"] for row in rows} == set(study("assemblies").KINDS) - {"leaning"}
-    assert (tmp_path / "random_assemblies.png").stat().st_size > 0
-
-
 @pytest.mark.long
 def test_random_problems_are_answered_as_is_proved(tmp_path: Path) -> None:
     module = study("random_truth")
@@ -167,33 +148,6 @@ def test_arches_on_spreading_supports(tmp_path: Path) -> None:
     hinges = np.abs(pixels - matplotlib.colors.to_rgb(MECHANISM)).max(axis=-1) < 0.02
     assert not hinges[: len(pixels) // 3, : pixels.shape[1] // 3].any(), "none as built"
     assert hinges[: len(pixels) // 3, pixels.shape[1] // 3 :].any()
-
-
-def test_wrong_forces_and_mechanisms_of_random_assemblies_would_be_seen() -> None:
-    module = study("random_assemblies")
-    problem = module.drawn(1).problem()
-    found = module.collapse(problem)
-    assert max(vars(module.residuals(problem, found)).values()) < 1e-9
-    forces, rates = found.forces.copy(), found.mechanism.copy()
-    forces[0] *= 1.01
-    rates[-1] *= -1
-    wrong = module.residuals(problem, replace(found, forces=forces))
-    assert wrong.imbalance > 1e-3
-    wrong = module.residuals(problem, replace(found, mechanism=rates))
-    assert wrong.overlap > 1e-3
-    wrong = module.residuals(problem, replace(found, load_factor=1.01 * found.load_factor))
-    assert min(wrong.imbalance, wrong.power) > 1e-3
-
-
-@pytest.mark.long
-def test_what_limits_pybullet(tmp_path: Path) -> None:
-    pytest.importorskip("pybullet")
-    result = study("pybullet_settings").main(tmp_path, quick=True)
-    as_built = result.accelerations["as built"]
-    # Losing contacts or starting apart is not a matter of sweeps.
-    assert as_built["thin"] < 1e-3 < result.accelerations["breaking 2"]["thin"]
-    assert as_built["semicircle"] < 3e-3 < result.accelerations["slop 5e-5"]["semicircle"]
-    assert result.moved[0.1] < result.moved[0.01] / 30
 
 
 @pytest.mark.long
@@ -254,43 +208,6 @@ def test_what_a_study_takes_are_its_options(
     assert capsys.readouterr().out == "5\n"
 
 
-def test_arches_with_an_equilibrium_do_not_move(tmp_path: Path) -> None:
-    outcome = study("direct_coulomb").main(tmp_path, quick=True)
-    assert outcome.cases == 2
-    assert outcome.held == outcome.lowered == 0
-    assert (tmp_path / "direct_coulomb.png").stat().st_size > 0
-
-
-@pytest.mark.long
-def test_random_arches_by_direct_are_exact(tmp_path: Path) -> None:
-    result = study("direct_arches").main(tmp_path, quick=True)
-    assert result.arches == result.confirmed == 3
-    assert result.false == result.unsure == 0
-    assert result.worst_error < 1e-8
-    assert (tmp_path / "direct_arches.png").stat().st_size > 0
-
-
-def test_no_arch_without_slip_is_open_or_false(tmp_path: Path) -> None:
-    result = study("no_slip").main(tmp_path, quick=True)
-    assert result.no_slip == 4
-    assert result.false == result.undecided == 0
-
-
-@pytest.mark.long
-def test_the_map_by_simulation_goes_on_where_it_was(tmp_path: Path) -> None:
-    module = study("mode_sweep")
-    (first,) = module.main(tmp_path, quick=True)
-    shards = sorted(tmp_path.glob("rows/rows-*"))
-    assert first.arches == 10
-    assert first.false == first.unsure == 0
-    assert first.as_built == first.arches
-    assert first.worst_error < 1e-8
-    assert {row for row, _ in first.confusion} >= {"rrr", "ss", "srr", "rrs", "rs"}
-    assert module.main(tmp_path, quick=True) == (first,)
-    assert sorted(tmp_path.glob("rows/rows-*")) == shards
-    assert (tmp_path / "mode_sweep_direct.png").stat().st_size > 0
-
-
 @pytest.mark.long
 def test_modes_at_the_onset_are_those_of_limit_analysis(tmp_path: Path) -> None:
     result = study("onset_modes").main(tmp_path, quick=True)
@@ -333,12 +250,6 @@ def test_few_blocks_answer_as_all_voussoirs_do(tmp_path: Path) -> None:
     assert (tmp_path / "reduction.png").stat().st_size > 0
 
 
-def test_reduced_arches_are_right_by_default(tmp_path: Path) -> None:
-    result = study("reduced_arches").main(tmp_path, quick=True)
-    assert (result.asked, result.right) == (8, 8)
-    assert result.whole == 0
-
-
 def test_few_bodies_answer_as_all_blocks_do(tmp_path: Path) -> None:
     result = study("merging").main(tmp_path, quick=True)
     assert (result.asked, result.false, result.opened) == (4, 0, 0)
@@ -347,69 +258,6 @@ def test_few_bodies_answer_as_all_blocks_do(tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     assert [row["side"] for row in rows].count("inside") == 2
     assert all(int(row["bodies"]) <= int(row["all_blocks"]) for row in rows)
-
-
-def test_lmgc90_says_where_it_is_missing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    module = study("lmgc90")
-    monkeypatch.setattr(module, "find_spec", lambda _name: None)
-    assert module.main(tmp_path, quick=True).errors == {}
-    assert capsys.readouterr().err == "LMGC90 is missing: pip install compas_lmgc90\n"
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_the_least_thickness_lmgc90_is_held_to() -> None:
-    """With blocksim's weight it is `limit`'s; the polygons' own shifts it by a little."""
-    module = study("lmgc90")
-    for case in cases(quick=True):
-        exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta
-        assert module.least(case, centroids=False) == pytest.approx(exact, rel=1e-7)
-        assert module.least(case) == pytest.approx(exact, rel=0.05)
-    # Where the weight lies decides whether the chart's steep arch stands at all.
-    steep = cases(quick=False)[3]
-    assert module.least(steep) is None
-    assert limit.least_thickness(steep.half_angle, steep.mu, 27, "sector").eta is None
-
-
-def test_lmgc90_is_charted(tmp_path: Path) -> None:
-    pytest.importorskip("compas_lmgc90")
-    result = study("lmgc90").main(tmp_path, quick=True)
-    assert all(error < 0.02 for steps in result.errors.values() for error in steps.values())
-    points = read_points(tmp_path / "lmgc90.json")
-    assert [point.method for point in points] == ["lmgc90"]
-
-
-def test_there_are_no_islands(tmp_path: Path) -> None:
-    islands = study("islands")
-    result = islands.main(tmp_path, quick=True)
-    assert (result.right, result.wrong, result.undecided) == (48, 0, 0)
-    assert result.not_monotone == result.parted == 0
-    assert result.let_go == 12
-    assert (tmp_path / "islands_direct.png").stat().st_size > 0
-    # A run that was killed while it wrote a row goes on from what is whole.
-    kept = tmp_path / "islands_direct.jsonl"
-    kept.write_bytes(kept.read_bytes()[:-20])
-    again = islands.main(tmp_path, quick=True)
-    assert again.right == 48
-    assert len(kept.read_text(encoding="utf-8").splitlines()) == 48
-
-
-def test_an_island_would_be_seen() -> None:
-    islands = study("islands")
-    fine = ["collapses", "undecided", "stands", "stands"]
-    island = ["collapses", "stands", "collapses", "stands"]
-    assert islands.monotone([{"verdict": each} for each in fine])
-    assert not islands.monotone([{"verdict": each} for each in island])
-
-
-@pytest.mark.long
-def test_early_ends_say_what_late_ones_do(tmp_path: Path) -> None:
-    result = study("early_decisions").main(tmp_path, quick=True)
-    assert (result.runs, result.differ) == (12, 0)
-    assert sum(line.early_wrong + line.early_open for line in result.lines) == 0
-    assert sum(line.long_wrong + line.long_open for line in result.lines) == 0
-    assert 0 < result.simulated_share < 0.5
 
 
 @pytest.mark.long
@@ -646,3 +494,34 @@ def test_frames_of_the_gallery_hold_all_blocks() -> None:
     np.testing.assert_allclose(blocks[0], built, atol=1e-12)
     lowered = np.array(blocks[0])[..., 1].max() - np.array(blocks[1])[..., 1].max()
     assert lowered > 0.2 * problem.assembly.size
+
+
+def test_lmgc90_says_where_it_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    module = study("lmgc90")
+    monkeypatch.setattr(module, "find_spec", lambda _name: None)
+    assert module.main(tmp_path, quick=True).errors == {}
+    assert capsys.readouterr().err == "LMGC90 is missing: pip install compas_lmgc90\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_least_thickness_lmgc90_is_held_to() -> None:
+    """With blocksim's weight it is `limit`'s; the polygons' own shifts it by a little."""
+    module = study("lmgc90")
+    for case in cases(quick=True):
+        exact = limit.least_thickness(case.half_angle, case.mu, case.voussoirs).eta
+        assert module.least(case, centroids=False) == pytest.approx(exact, rel=1e-7)
+        assert module.least(case) == pytest.approx(exact, rel=0.05)
+    # Where the weight lies decides whether the chart's steep arch stands at all.
+    steep = cases(quick=False)[3]
+    assert module.least(steep) is None
+    assert limit.least_thickness(steep.half_angle, steep.mu, 27, "sector").eta is None
+
+
+def test_lmgc90_is_charted(tmp_path: Path) -> None:
+    pytest.importorskip("compas_lmgc90")
+    result = study("lmgc90").main(tmp_path, quick=True)
+    assert all(error < 0.02 for steps in result.errors.values() for error in steps.values())
+    points = read_points(tmp_path / "lmgc90.json")
+    assert [point.method for point in points] == ["lmgc90"]

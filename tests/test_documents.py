@@ -307,9 +307,9 @@ def test_numbers_quoted_are_those_of_the_rows() -> None:
 
 def test_a_number_that_the_rows_do_not_say_is_seen() -> None:
     quotes = module("quotes")
-    (right,) = quotes.quotes("1.56 s<!-- no_slip: largest(cpu_s) -->")
-    (wrong,) = quotes.quotes("1.55 s<!-- no_slip: largest(cpu_s) -->")
-    (whole,) = quotes.quotes("1,701<!-- no_slip: len(ratio) -->")
+    (right,) = quotes.quotes("7 s<!-- random_arches_pymunk: largest(cpu_s) -->")
+    (wrong,) = quotes.quotes("9 s<!-- random_arches_pymunk: largest(cpu_s) -->")
+    (whole,) = quotes.quotes("10,001<!-- random_truth: len(index) -->")
     assert right.holds
     assert not wrong.holds
     assert not whole.holds

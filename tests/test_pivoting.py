@@ -14,7 +14,7 @@ import pytest
 from lemke import lemke, pivoted
 from test_contact import chain, dense, step_of
 
-from analysis.random_assemblies import drawn
+from analysis.assemblies import drawn
 from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.blocks.assembly import Array

@@ -1,8 +1,8 @@
 """Methods: which there are, what each sees, which one a question needs.
 
 `METHODS` go from the cheapest to the dearest, as measured (`analysis/costs.py`), and each
-says how fine a bracket it is good for, as measured (`analysis/random_arches.py`,
-`direct_arches.py`). So `auto` is the first of them that sees what is asked to that width.
+says how fine a bracket it is good for, as measured (`analysis/random_arches.py`).
+So `auto` is the first of them that sees what is asked to that width.
 `theory` is passed over: it is of the continuous arch, which n voussoirs differ from by up to
 33/n^2, and no cheaper, since answers state both.
 """

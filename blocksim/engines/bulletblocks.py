@@ -1,7 +1,6 @@
 """Blocks as bodies of a Bullet space: at rest, in motion, and once they may meet others.
 
-How a near-critical arch has to be put into it (each point measured, see
-`analysis/pybullet_settings.py`):
+How a near-critical arch has to be put into it, each point measured:
 
 - Hulls are unfit: they get one contact point a step, or rounded corners. A block has a
   thin box on each side of a joint, which Bullet collides exactly.
