@@ -321,6 +321,41 @@ def test_the_commands(tmp_path: Path) -> None:
     assert "limit proves" in refused.stderr
 
 
+@pytest.mark.parametrize(
+    ("over", "loads"),
+    [
+        ("tilt", []),
+        ("mu", []),
+        ("load", [{"force": [1e3, 0], "block": "large", "point": [7, 0.9]}]),
+    ],
+)
+def test_both_sides_of_a_change_are_proved(
+    tmp_path: Path, over: str, loads: list[Table]
+) -> None:
+    file, proof = tmp_path / "pebble.json", tmp_path / "proof.json"
+    table = on_a_ramp(1e-3, 0.5, 0.6)
+    file.write_text(json.dumps(table | {"live": loads}))
+    asked = ("bracket", str(file), "--over", over, "--proof", str(proof), "--json")
+    assert json.loads(blocksim(*asked).stdout)["proved"] is True
+    done = blocksim("verify", str(proof))
+    claims = [line.split(",")[0] for line in done.stdout.splitlines()]
+    assert claims == ["proved: collapses", "proved: stands"], done.stderr
+    falls, stands = json.loads(proof.read_text())
+    spoilt_one = {**stands, "problem": falls["problem"]}
+    proof.write_text(json.dumps([falls, {**spoilt_one, "sha256": seal(spoilt_one)}]))
+    assert blocksim("verify", str(proof)).returncode == 2
+    proof.write_text("[]")
+    assert blocksim("verify", str(proof)).returncode == 2
+
+
+@pytest.mark.parametrize("voussoirs", [7, 27])
+def test_both_sides_of_the_least_thickness_are_proved(voussoirs: int) -> None:
+    arch = CircularArch(half_angle_deg=90, eta=0.12, friction=0.7, voussoirs=voussoirs)
+    found = bracket(arch, method="limit")
+    assert [verify(json.loads(json.dumps(proof_record(each)))).split(",")[0]
+            for each in found.proofs] == ["proved: collapses", "proved: stands"]  # fmt: skip
+
+
 def test_the_checker_shares_no_code() -> None:
     source = Path(str(verify_module.__file__)).read_text(encoding="utf-8")
     assert len(source.splitlines()) <= 150

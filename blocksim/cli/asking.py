@@ -68,7 +68,8 @@ def check(
         if at is not None and told is not None:
             report(1.0, "thrust")
             told = carried_of(problem, at)
-    write_proof(answer, proof)
+    found = answer.proof
+    write_proof(answer.method, () if found is None else (found,), proof)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
     raise click.exceptions.Exit(EXIT_CODES[answer.verdict])
 
@@ -84,6 +85,7 @@ def bracket(
     tol: Annotated[float, Option(about="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
     reduce: Reduce = None,
+    proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
     """Find where it starts to fall as one parameter changes: how thin an arch can be.
@@ -116,4 +118,5 @@ def bracket(
             reduce=reduce,
             progress=report,
         )
+    write_proof(answer.method, () if proof is None else answer.proofs, proof)
     answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)

@@ -70,7 +70,7 @@ ProofFile = Annotated[
     Path | None,
     Option(
         name="--proof",
-        about="Write a proof of the verdict by limit, JSON, which blocksim verify checks.",
+        about="Write proofs of the answer by limit, JSON, which blocksim verify checks.",
     ),
 ]
 AtJoint = Annotated[

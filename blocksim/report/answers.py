@@ -78,6 +78,7 @@ def bracket_record(answer: Bracket) -> BracketRecord:
         "stands": answer.stands,  # type: ignore[typeddict-item]
         "limit": answer.limit,
         "confirmed": answer.confirmed,
+        "proved": answer.proved,
         "runs": answer.runs,
         "undecided": answer.undecided,
         "tol": answer.tol,

@@ -217,6 +217,7 @@ class BracketRecord(TypedDict):
     stands: Literal["low", "high"]
     limit: Number | None
     confirmed: bool | None
+    proved: bool
     runs: int
     undecided: int
     tol: float
