@@ -40,7 +40,7 @@ from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.ask.simulate import simulate
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines import ENGINES
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of
 from blocksim.report.tables import processor
 from blocksim.simulation.observation import hold
@@ -166,7 +166,7 @@ def tasks(*, quick: bool) -> dict[str, Task]:
     found[f"direct, collapse of {COLLAPSE:g} s"] = lambda: simulate(
         CircularArch.of(below, friction=MU),
         method="direct",
-        duration=COLLAPSE / arch_problem(below, MU).seconds,
+        duration=COLLAPSE / CircularArch.of(below, MU).problem().seconds,
     )
     falling = simulate(CircularArch.of(below, friction=MU), method="direct", duration=2.0)
     frames = 2 if quick else 50
@@ -180,7 +180,7 @@ def tasks(*, quick: bool) -> dict[str, Task]:
 def _of_engine(engine: str, below: Arch, above: Arch) -> dict[str, Task]:
     tol = TOLERANCES.get(engine, COARSE)
     return {
-        f"{engine}, onset test": lambda: hold(arch_problem(above, MU), engine),
+        f"{engine}, onset test": lambda: hold(CircularArch.of(above, MU).problem(), engine),
         f"{engine}, check": lambda: check(CircularArch.of(below, friction=MU), method=engine),
         f"{engine}, bracket to {tol:g}": lambda: bracket(
             CircularArch(
@@ -199,7 +199,7 @@ def _large(*, quick: bool) -> dict[str, Task]:
         least = least_thickness(ALPHA, MU, count).eta or 0.1
         arch = Arch(half_angle=ALPHA, eta=1.01 * least, voussoirs=count)
         found[f"direct, onset test at n = {count}"] = lambda arch=arch: hold(
-            arch_problem(arch, MU), "direct"
+            CircularArch.of(arch, MU).problem(), "direct"
         )
     for (length, courses), tilt in list(WALLS.items())[: 1 if quick else None]:
         table = {"kind": "wall", "length": length, "courses": courses, "friction": MU}

@@ -31,7 +31,7 @@ from blocksim.arch.circular import GRAVITY, Arch
 from blocksim.arch.limit import least_thickness
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.joints import JointState
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Label
 from blocksim.view.drawing import words_of
@@ -99,7 +99,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
     least = least_thickness(HALF_ANGLE, FRICTION, VOUSSOIRS).eta
     assert least is not None  # noqa: S101
     arch = Arch(half_angle=HALF_ANGLE, eta=(1 - THINNER) * least, voussoirs=VOUSSOIRS)
-    problem = arch_problem(arch, FRICTION)
+    problem = CircularArch.of(arch, FRICTION).problem()
     runs = {
         name: simulate(problem, method=name, duration=LONGEST)
         for name in (QUICK if quick else VIEWS)

@@ -44,7 +44,7 @@ from blocksim.arch.observed import observed_mode
 from blocksim.arch.theory import least_thickness as theory_of
 from blocksim.arch.theory.regions import landmarks
 from blocksim.ask.search import ETA_MAX
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.observation import observe
 from blocksim.sweeps.answers import version_of
 from blocksim.view.mapregions import draw_regions
@@ -131,7 +131,7 @@ def ask(fine: Fine, engine: str) -> Row:
     else:
         mu *= below
     arch = Arch(half_angle=alpha, eta=eta, voussoirs=fine.voussoirs)
-    seen = observe(arch_problem(arch, mu), engine, moving=False)
+    seen = observe(CircularArch.of(arch, mu).problem(), engine, moving=False)
     mode = observed_mode(seen.joints, arch)
     there = mechanism(arch, mu).mode
     return {

@@ -26,7 +26,7 @@ from blocksim.blocks.assembly import SUPPORT, Array, Joint, Support
 from blocksim.blocks.problem import Load, Problem
 from blocksim.common.errors import InputError
 from blocksim.kinds import KINDS
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of
 from blocksim.limit import equilibrium
 
@@ -178,7 +178,7 @@ def _ring(random: Generator, most: int) -> Question | None:
     return Question(
         kind="arch of the map",
         over="thickness",
-        at=lambda value: arch_problem(arch(value)[0], mu),
+        at=lambda value: CircularArch.of(arch(value)[0], mu).problem(),
         critical=eta,
         stands="high",
         known="statics",

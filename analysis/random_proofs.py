@@ -30,7 +30,7 @@ from blocksim.ask.check import check
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.problem import Load, Problem
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit.proof import proof_record
 from blocksim.verify import verify
 
@@ -87,7 +87,7 @@ def _begun(index: int, random: Generator) -> tuple[str, Problem]:
             eta=float(10 ** random.uniform(-2, 0)),
             voussoirs=3,
         )
-        return "three voussoirs", arch_problem(arch, _friction(random) or 0.5)
+        return "three voussoirs", CircularArch.of(arch, _friction(random) or 0.5).problem()
     asked = drawn(Case(int(random.integers(10**6)), MOST))
     return asked.question.kind, asked.problem
 

@@ -32,7 +32,7 @@ from analysis.drawing import Draw, draws
 from blocksim import Arch, Bracket, Mode, bracket
 from blocksim.arch.circular import Weight
 from blocksim.arch.reduction import Reduction
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.observation import Observation, observe
 from blocksim.simulation.onset import PROBE, Onset
 from blocksim.view.style import FONT, INK, METHODS
@@ -144,7 +144,7 @@ def pair(draw: Draw, ratio: float) -> tuple[Arch, Observation, Observation]:
     arch = draw.arch(ratio)
     whole, reduced = (
         observe(
-            arch_problem(arch, draw.mu),
+            CircularArch.of(arch, draw.mu).problem(),
             "direct",
             moving=False,
             reduction=Reduction.of(arch, draw.mu) if reduce else None,

@@ -116,7 +116,7 @@ def _level(score: Score, group: str) -> float:
 def main(
     out: Path,
     *,
-    answers: Annotated[Path | None, Option(help="Folder of answers.", folder=True)] = None,
+    answers: Annotated[Path | None, Option(about="Folder of answers.", folder=True)] = None,
     quick: bool = False,  # noqa: ARG001 - all studies take it
 ) -> list[dict[str, Any]]:
     """Score answers, or read what is kept, and draw."""

@@ -46,7 +46,7 @@ from blocksim.blocks.problem import Load, Problem
 from blocksim.engines import ENGINES
 from blocksim.engines.energy import energy
 from blocksim.engines.solids import Solids, width
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of
 from blocksim.limit import collapse
 from blocksim.simulation.recording import Recording
@@ -105,7 +105,9 @@ def drawn(case: Case) -> Problem:
             count = int(random.integers(5, 22))
             least = least_thickness(half, mu, count).eta
         share = random.uniform(0.8, 0.97)
-        return arch_problem(Arch(half_angle=half, eta=share * least, voussoirs=count), mu)
+        return CircularArch.of(
+            Arch(half_angle=half, eta=share * least, voussoirs=count), mu
+        ).problem()
     mu = random.uniform(0.55, 0.8)
     if case.kind == "wall":
         courses, long = int(random.integers(6, 10)), random.uniform(0.3, 0.5)

@@ -27,7 +27,7 @@ from blocksim import Arch
 from blocksim.arch import limit
 from blocksim.ask.search import Answer, Bisection
 from blocksim.engines import ENGINES
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.report.chart import write_chart
 from blocksim.simulation.simulated import Simulation
 from blocksim.studies.chart import START, ChartArch, cases, gain, measure
@@ -97,7 +97,9 @@ def lenient_error(case: ChartArch) -> float:
 
     def judge(eta: float) -> Answer:
         arch = Arch(half_angle=case.half_angle, eta=eta, voussoirs=case.voussoirs)
-        simulation = Simulation.of(arch_problem(arch, case.mu), "pymunk", settings=settings)
+        simulation = Simulation.of(
+            CircularArch.of(arch, case.mu).problem(), "pymunk", settings=settings
+        )
         return Answer(let_go(simulation, moved=SETTLED, until=LATE).verdict, math.nan)
 
     search = Bisection(judge)

@@ -45,7 +45,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.files import write_whole
 from blocksim.engines import ENGINES, get_engine
 from blocksim.engines.base import Engine
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.motion import moving_run
 from blocksim.simulation.observation import observe
 from blocksim.simulation.onset import onset
@@ -101,7 +101,7 @@ def arch_at(case: Case, ratio: float) -> Arch:
 
 def simulation_of(engine: str, case: Case, ratio: float) -> Simulation:
     """Return such an arch in an engine."""
-    return Simulation.of(arch_problem(arch_at(case, ratio), case[1]), engine)
+    return Simulation.of(CircularArch.of(arch_at(case, ratio), case[1]).problem(), engine)
 
 
 def judged(verdict: Verdict, ratio: float) -> str:
@@ -176,7 +176,7 @@ def lines(engine: str, grid: Grid) -> Iterator[Row]:
     for name, value, case, radius in asked:
         for ratio in RATIOS:
             arch = replace(arch_at(case, ratio), radius=radius, depth=radius)
-            seen = observe(arch_problem(arch, case[1]), engine)
+            seen = observe(CircularArch.of(arch, case[1]).problem(), engine)
             yield Row(
                 "lines",
                 engine,

@@ -42,7 +42,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.engines.contact import ContactProblem, Solution
 from blocksim.engines.contact.coulomb import OPEN, SLIDES_DOWN, SLIDES_UP, STICKS
 from blocksim.engines.direct import ENGINE
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit.starting import LEAST_POWER, Start, may_start, rates_of
 from blocksim.view.drawing import save_figure
 
@@ -91,7 +91,7 @@ class Case:
             voussoirs=self.voussoirs,
             weight=self.weight,
         )
-        return arch_problem(arch, self.mu)
+        return CircularArch.of(arch, self.mu).problem()
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,8 @@
 """Check a proof that blocks stand or fall: `python verify.py FILE`.
 
 It needs the standard library alone, and shares no code with the rest. All arithmetic is of
-rational numbers, so nothing is rounded. A decimal in the file means the binary number next to
-it (IEEE 754, 64 bits); a text "p/q" means that fraction. The file has a `problem`, which is a
-structure file, a `claim`, and what proves it:
+rational numbers. A decimal means the binary number next to it (IEEE 754, 64 bits), a text "p/q"
+that fraction. The file, or each of its list, has a `problem` (a structure file), a `claim`, and
 
 - "stands": `forces`, a pair a, b at both ends of each joint: the force a n + b t on block `b`,
   and its opposite on block `a`. t leads from the first end to the second, n is t turned
@@ -94,7 +93,7 @@ def verify(table: Any) -> str:
     centres = {name: vector(block["centre"]) for name, block in blocks.items()}
     left = loads(problem, blocks, centres)
     stands, still, work = {"stands": True, "collapses": False}[claim], [NOTHING] * 3, NOTHING
-    given = table["forces"] if stands else table["rates"]
+    given = table["forces" if stands else "rates"]
     require(len(given) == len(problem["joints"] if stands else blocks) > 0, "some are missing")
     rates = {} if stands else {name: vector(given[name], 3) for name in blocks}
     for at, joint in enumerate(problem["joints"]):
@@ -136,9 +135,10 @@ def verify(table: Any) -> str:
 
 
 def checked(text: str) -> str:
-    """Check the proof that a text is; raise ValueError where it is none."""
+    """Check the proof that a text is, or each of a list; raise ValueError where it is none."""
     try:
-        return verify(json.loads(text))
+        one: Any = json.loads(text)
+        return "\n".join(map(verify, one if text.strip()[0] == "[" else [one])) or verify(one)
     except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError) as error:
         raise ValueError(f"not proved: {error}") from error
 

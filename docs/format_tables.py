@@ -9,10 +9,10 @@ from typing import Any
 from markdown_table import table
 from pydantic import TypeAdapter
 
-from blocksim.arch.scenario import ScenarioFile
 from blocksim.blocks.entries import Around, StructureFile
+from blocksim.kinds.scenarios import ScenarioFile
 from blocksim.sweeps.design import How
-from blocksim.sweeps.load import BY_ANGLE, USUAL_ARCH, DesignFile
+from blocksim.sweeps.load import DesignFile
 
 
 def of_format(which: str) -> str:
@@ -25,22 +25,7 @@ def of_format(which: str) -> str:
         for name, part in parts.items()
         if "properties" in part
     ]
-    return "\n\n".join([*tables, _by_angle()] if which == "design" else tables)
-
-
-def _by_angle() -> str:
-    """Table of the axes of arches by their half-angle."""
-    rows = [
-        [
-            f"`{name}`",
-            known.allowed(known.low, known.high, known.above),
-            f"`{USUAL_ARCH[name]}`" if name in USUAL_ARCH else "-",
-            known.about,
-        ]
-        for name, known in BY_ANGLE.items()
-    ]
-    said = "**circular-arch**: axes of arches by their half-angle, or by what can be measured."
-    return f"{said}\n\n" + table(["key", "may be", "if left out", "what it is"], rows)
+    return "\n\n".join(tables)
 
 
 def _word(name: str) -> str:
@@ -132,6 +117,10 @@ def _number(part: dict[str, Any], *, many: bool) -> str:
     noun += "s" if many else ""
     above, below = part.get("exclusiveMinimum"), part.get("exclusiveMaximum")
     low, high = part.get("minimum"), part.get("maximum")
+    after = None if high is None else math.nextafter(high, math.inf)
+    if below is None and after is not None and after.is_integer() and high != round(high):
+        # The last number below a round one.
+        below = after
     said = list[str]()
     if above is not None:
         said.append(f"above {above:g}")

@@ -17,8 +17,8 @@ from format_tables import of_format
 from markdown_table import table
 from validation_tables import of_validation
 
-from blocksim.blocks.maker import parameters_of
 from blocksim.cli import app
+from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -88,7 +88,7 @@ def _error(method: str, error: float) -> str:
 
 def _kinds(_: str) -> str:
     rows = [
-        [f"`{kind.name}`", kind.about, ", ".join(f"`{each}`" for each in parameters_of(kind))]
+        [f"`{kind.name}`", kind.about, ", ".join(f"`{each}`" for each in fields_of(kind))]
         for kind in KINDS.values()
     ]
     return table(["kind", "what it is", "parameters"], rows)
@@ -97,9 +97,9 @@ def _kinds(_: str) -> str:
 def _parameters(name: str) -> str:
     usual = KINDS[name.replace(" ", "-")]()
     rows = list[list[str]]()
-    for each, known in parameters_of(type(usual)).items():
+    for each, known in fields_of(type(usual)).items():
         over = ", ".join(one for one in usual.bracketed if one.partition(".")[0] == each)
-        cells = [*known.words(getattr(usual, each)), known.about, over]
+        cells = [known.said(getattr(usual, each)), known.allowed, known.about, over]
         rows.append([f"`{each}`", *(cell.replace("|", "\\|") for cell in cells)])
     return table(["parameter", "if left out", "may be", "what it is", "`--over`"], rows)
 

@@ -11,7 +11,7 @@ from markdown_table import table
 
 from blocksim.arch import theory
 from blocksim.arch.limit import least_thickness
-from blocksim.arch.scenario import load_scenario, shipped
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.questions import StructureRow
 from blocksim.studies.structures import structures, validate_structures
 
@@ -86,17 +86,18 @@ def _scenarios() -> str:
         each = load_scenario(name)
         if not each.expected_modes:
             continue
-        found = theory.least_thickness(each.half_angle, each.mu, each.weight)
-        built = least_thickness(each.half_angle, each.mu, each.voussoirs, each.weight).eta
+        arch = each.arch(1.0)
+        found = theory.least_thickness(arch.half_angle, each.mu, arch.weight)
+        built = least_thickness(arch.half_angle, each.mu, arch.voussoirs, arch.weight).eta
         rows.append(
             [
                 f"`{name}`",
-                f"{math.degrees(each.half_angle):.6g}",
+                f"{math.degrees(arch.half_angle):.6g}",
                 f"{each.mu:.6g}",
                 ", ".join(str(mode) for mode in each.expected_modes),
                 _eta(each.expected_eta),
                 _eta(found.eta),
-                f"{_eta(built)} (n = {each.voussoirs})",
+                f"{_eta(built)} (n = {arch.voussoirs})",
                 each.source.replace("|", "\\|"),
             ]
         )

@@ -274,7 +274,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sizes have no low end", "common/checks.py",
-        "return self.low <= size <= self.high or other", "return size <= self.high or other",
+        "return inside and value <= self.high and", "return value <= self.high and",
         "test_strange_input.py",
     ),
     Mutation(
@@ -365,7 +365,7 @@ MUTATIONS = (
     ),
     Mutation(
         "forces do not say of which size they are", "report/problems.py",
-        "    if arch is None or is_metric(arch, at_of(problem)):\n", "    if True:\n",
+        "    if maker is None or problem.has_size:\n", "    if True:\n",
         "test_dimensions.py",
     ),
     Mutation(
@@ -418,7 +418,7 @@ MUTATIONS = (
         "    axes.update_datalim(points)\n", "", "test_archfigure.py",
     ),
     Mutation(
-        "a ratio of nothing is divided by", "cli/question.py", "if not least:",
+        "a ratio of nothing is divided by", "kinds/circular.py", "if not least:",
         "if least is None:", "test_cli.py",
     ),
     Mutation(

@@ -10,7 +10,7 @@ import numpy as np
 from blocksim.arch.circular import Arch
 from blocksim.arch.modes import Mode
 from blocksim.engines.base import Settings
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Validation
@@ -25,7 +25,7 @@ def sliding() -> Recording:
     moved = np.zeros((11, 8, 3))
     moved[:, 4:, 1] = -0.02 * np.linspace(0, 1, 11)[:, None] ** 2
     return Recording(
-        problem=arch_problem(ARCH, 0.7),
+        problem=CircularArch.of(ARCH, 0.7).problem(),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),

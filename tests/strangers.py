@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from blocksim.arch.circular import Arch
 from blocksim.blocks.record import to_record
 from blocksim.engines.base import Settings
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.recording import Recording
 from blocksim.view.explorer.results import Result
 
@@ -322,7 +322,7 @@ def _recording() -> tuple[dict[str, Any], Any, Any]:
     poses = rest + times[:, None, None] ** 2 * np.array([0.3, -0.5, 0.4])
     settings = Settings(step=0.005, sweeps=250, hold_sweeps=50_000)
     made = Recording(
-        problem=arch_problem(arch, 0.7), engine="pymunk", engine_version="7.3",
+        problem=CircularArch.of(arch, 0.7).problem(), engine="pymunk", engine_version="7.3",
         settings=settings, times=times, poses=poses,
     )  # fmt: skip
     header = {

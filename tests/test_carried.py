@@ -15,7 +15,7 @@ import blocksim
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import least_thickness as least_as_built
 from blocksim.arch.theory import least_thickness
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.report.problems import joint_names
 
 SPAN, RISE, THICKNESS, COUNT, ANGLE, HEAVY = 8.0, 3.0, 0.45, 31, 35.0, 22e3
@@ -174,7 +174,9 @@ def test_what_is_not_weighed_is_told_in_shares_of_its_weight() -> None:
 
 def test_an_arch_that_leans_is_told_no_factors() -> None:
     arch = Arch(half_angle=1.0, eta=0.2, voussoirs=9)
-    answer = blocksim.check(arch_problem(arch, 0.7, 0.02), method="pybullet")
+    answer = blocksim.check(
+        CircularArch.of(arch, 0.7).problem().leaning(0.02), method="pybullet"
+    )
     assert answer.carried is None
     assert answer.to_dict()["geometrical_factor"] is None
 

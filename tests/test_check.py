@@ -15,7 +15,7 @@ from blocksim.ask.check import check
 from blocksim.ask.methods import choose, chosen_words
 from blocksim.blocks.joints import JointState
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.verdict import Verdict
 
 
@@ -85,7 +85,9 @@ def test_wrong_values(field: str, mu: float, method: str) -> None:
     assert caught.value.field == field
 
 
-LEANING = arch_problem(Arch(half_angle=1.0, eta=0.2, voussoirs=9), 0.7, lean=0.1)
+LEANING = (
+    CircularArch.of(Arch(half_angle=1.0, eta=0.2, voussoirs=9), 0.7).problem().leaning(0.1)
+)
 
 
 @pytest.mark.parametrize(

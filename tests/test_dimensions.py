@@ -17,9 +17,8 @@ from blocksim import load_recording
 from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import LINES, At, Dimensions, Line, dimensions_of
-from blocksim.arch.scenario import load_scenario
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import plain_arch
+from blocksim.kinds.scenarios import load_scenario
 
 EXACT = 1e-14
 SIZE = ("--span", "8", "--rise", "3", "--thickness", "0.45")
@@ -252,8 +251,10 @@ def test_a_scenario_in_metres(tmp_path: Path) -> None:
     path = tmp_path / "bridge.toml"
     path.write_text(SCENARIO)
     found = load_scenario(path)
-    assert found.half_angle == pytest.approx(ALPHA, rel=EXACT)
-    assert (found.weight, found.specific_weight) == ("sector", 22_000)
+    arch = found.maker.shape
+    assert arch is not None
+    assert arch.half_angle == pytest.approx(ALPHA, rel=EXACT)
+    assert (arch.weight, arch.specific_weight) == ("sector", 22_000)
     one = json.loads(inside("check", str(path), "--json").stdout)
     two = json.loads(inside("check", *ASKED, "--unit-weight", "22", "--json").stdout)
     assert {**one, "wall_s": 0} == {**two, "wall_s": 0}
@@ -263,7 +264,7 @@ def test_a_scenario_in_metres(tmp_path: Path) -> None:
     assert {key: told["problem"][key] for key in wanted} == pytest.approx(wanted, rel=EXACT)
     told = json.loads(inside("check", str(path), "--alpha", "90", "--json").stdout)
     assert told["arch"]["half_angle_deg"] == 90
-    assert told["problem"]["radius_m"] == found.radius
+    assert told["problem"]["radius_m"] == arch.radius
 
 
 @pytest.mark.parametrize(
@@ -295,7 +296,7 @@ def test_arches_in_metres_are_let_go_and_drawn(tmp_path: Path) -> None:
     options = (*SIZE[:4], "--thickness", "0.2", "--mu", "0.7", "--depth", "2")
     done = inside("simulate", *options, "--seconds", "0.05", "--out", str(run))
     assert done.returncode == 0, done.stderr
-    arch = plain_arch(load_recording(run).problem)
+    arch = load_recording(run).problem.maker.shape
     assert arch is not None
     assert (arch.radius, arch.depth) == (pytest.approx(25 / 6 + 0.1), 2)
     picture = tmp_path / "arch.svg"

@@ -14,7 +14,7 @@ from blocksim.blocks.joints import joint_motion
 from blocksim.blocks.problem import Problem
 from blocksim.engines.direct import ENGINE, Blocks
 from blocksim.engines.ground import ground_level, piers
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.motion import moving_run
 from blocksim.simulation.simulated import Simulation
 from blocksim.simulation.verdict import Verdict
@@ -81,9 +81,10 @@ def test_a_collapse_ends_on_the_ground_with_no_block_in_another(
         for i, shape in enumerate(shapes):
             for other in everything[i + 1 :]:
                 assert clipped(shape, other) < 0.02 * area
-    # Impacts take energy, nothing gives more than steps are off, and at last all lies still.
+    # Impacts take energy, steps of second order give less than a share of their square, and at
+    # last all lies still.
     gained = np.array(energies) - np.minimum.accumulate(energies)
-    assert gained.max() < 1e-4 * (energies[0] - energies[-1])
+    assert gained.max() < 0.01**2 / 12 * (energies[0] - energies[-1])
     assert world.poses()[:, 1].max() < 0.5 + level + arch.eta * 3
     assert world.quality().residual < 1e-7
     assert world.quality().penetration < 0.02
@@ -93,7 +94,9 @@ def test_deeper_overlap_than_allowed_is_undecided():
     def hold(world):
         world.hold(1)
 
-    simulation = Simulation.of(arch_problem(arch_at(0.9, 90, 0.9, 12), 0.9), "direct")
+    simulation = Simulation.of(
+        CircularArch.of(arch_at(0.9, 90, 0.9, 12), 0.9).problem(), "direct"
+    )
     # Below the round-off of corners at rest nothing could pass.
     strict = replace(simulation, settings=replace(simulation.settings, penetration=-1.0))
     world = strict.world()

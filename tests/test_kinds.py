@@ -16,17 +16,19 @@ from running import inside
 from scipy.special import ellipe
 from structure_cases import case, of_each_kind, scenes
 
+import blocksim
 from blocksim.arch.circular import Arch
 from blocksim.blocks import structure
 from blocksim.blocks.assembly import Block
 from blocksim.blocks.entries import AROUND
-from blocksim.blocks.maker import parameters_of
 from blocksim.blocks.polygons import assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.record import from_record, to_record
 from blocksim.common.errors import InputError
+from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
 from blocksim.kinds.archkind import ArchKind, CurvedArch
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure, structure_of
 from blocksim.kinds.recorded import maker_of
 from blocksim.limit import collapse, equilibrium
@@ -319,7 +321,7 @@ def test_scaled_is_the_same(
     def margin(scale: float) -> float:
         table = {"kind": name, "friction": written(mu), "voussoirs": 12, "density": scale}
         lengths = {"thickness": thick}
-        known = parameters_of(KINDS[name])
+        known = fields_of(KINDS[name])
         lengths |= {"span": 2.0} if "span" in known else {"radius": 1.0}
         lengths |= {"rise": rise} if "rise" in known else {}
         lengths |= {"radius": 1.2} if name == "pointed-arch" else {}
@@ -431,7 +433,7 @@ def test_every_kind_stands_as_it_comes(name: str) -> None:
     problem = structure_of({"kind": name, "friction": 0.7})
     assert equilibrium(problem).exists
     assert problem.title == name
-    assert not {*parameters_of(KINDS[name])} & {*AROUND, "kind", "blocks"}
+    assert not {*fields_of(KINDS[name])} & {*AROUND, "kind", "blocks"}
     assert problem.maker is not None
     assert structure_of({**problem.maker.table(), "friction": 0.7}).maker == problem.maker
     again = structure.structure_of(structure.structure_record(problem))
@@ -485,17 +487,17 @@ SAID = [
     ),
     ({"kind": 3, "friction": 1}, "kind = 3: must be one of circular-arch"),
     (pointed(thicknes=0.2), "thicknes = 0.2: must be left out: a pointed-arch has thickness, "),
-    (pointed(thickness=0.7), "thickness = 0.7: must be 1e-06 or more and at most 0.589409 m"),
-    (pointed(thickness="0.2"), "thickness = '0.2': must be 1e-06 or more"),
-    (pointed(thickness=True), "thickness = True: must be 1e-06 or more"),
-    (pointed(thickness=math.nan), "thickness = nan: must be 1e-06 or more"),
+    (pointed(thickness=0.7), "thickness = 0.7: must be 1e-06 to 0.589409 m"),
+    (pointed(thickness="0.2"), "thickness = '0.2': must be 1e-06 to"),
+    (pointed(thickness=True), "thickness = True: must be 1e-06 to"),
+    (pointed(thickness=math.nan), "thickness = nan: must be 1e-06 to"),
     (pointed(voussoirs=7), "voussoirs = 7: must be an even number"),
     (pointed(voussoirs=3.5), "voussoirs = 3.5: must be a whole number from 2 to 10000"),
     (pointed(joints="oblique"), "joints = 'oblique': must be one of normal, radial, vertical"),
     (pointed(radius=0.9), "radius = 0.9: must be above 1 and at most 1e+06 m"),
-    (pointed(fill=-1), "fill = -1: must be 0 or more and at most 1e+06 m"),
+    (pointed(fill=-1), "fill = -1: must be 0 to 1e+06 m"),
     (pointed(blocks=[]), "kind = 'pointed-arch': must be left out beside blocks"),
-    (pointed(friction=-1), 'friction = -1: must be 0 to 1e+06, or "inf"'),
+    (pointed(friction=-1), "friction = -1: must be 0 to 1e+06 (or inf)"),
     ({"kind": "pointed-arch"}, "friction is missing: must be given"),
     (pointed(live=[{"block": 99, "force": [0, -1]}]), "live[0].block = 99: must be the id of"),
     (
@@ -521,7 +523,7 @@ SAID = [
     (of("portal", arch=3), "arch = 3: must be a table with a kind of arch"),
     (
         of("portal", arch={"kind": "circular-arch", "radius": -1}),
-        "arch.radius = -1: must be 1e-06 or more and at most 1e+06 m",
+        "arch.radius = -1: must be 1e-06 to 1e+06 m",
     ),
     (of("portal", pier_width=0.1), "pier_width = 0.1: must be above 0.2"),
     (
@@ -542,7 +544,7 @@ SAID = [
     ),
     (of("wall", openings=[{"rigt": 1}]), "openings[0].rigt = 1: must be left"),
     (of("wall", openings=3), "openings = 3: must be a list of tables"),
-    (of("stack", overhang=2.4), "overhang = 2.4: must be 1e-06 or more and at most"),
+    (of("stack", overhang=2.4), "overhang = 2.4: must be 1e-06 to"),
 ]
 
 
@@ -565,3 +567,67 @@ def test_every_kind_is_asked_by_its_name_alone(name: str) -> None:
     asked = inside("check", name, "--mu", "0.7", "--json")
     assert asked.returncode in {0, 1}, asked.stderr
     assert json.loads(asked.stdout)["problem"]["title"] == name
+
+
+@pytest.mark.parametrize("thickness", [0.09, 0.15])
+def test_an_arch_between_springings_is_known_as_well_as_one_by_its_half_angle(
+    thickness: float,
+) -> None:
+    """The same voussoirs made in two ways: the same answers by every method, up to rounding."""
+    one = CircularArch(left_deg=70, right_deg=70, thickness=thickness, friction=0.7)
+    other = CircularArch(half_angle_deg=70, eta=thickness, friction=0.7)
+    for method in ("limit", "theory", "direct"):
+        first, second = (blocksim.check(each, method=method) for each in (one, other))
+        assert (first.verdict, first.blocks) == (second.verdict, second.blocks)
+        assert (first.arch.mode, first.arch.eta_limit) == (
+            second.arch.mode, second.arch.eta_limit,
+        )  # fmt: skip
+    least = [blocksim.bracket(each, method="limit").high for each in (one, other)]
+    assert least[0] == pytest.approx(least[1], rel=1e-14)
+
+
+def test_a_ratio_is_of_the_least_thickness_that_stands() -> None:
+    arch = CircularArch(half_angle_deg=70, ratio=1.25, friction=0.7)
+    assert blocksim.check(arch, method="limit").arch.eta_limit * 1.25 == arch.eta
+    table = {"kind": "circular-arch", "half_angle_deg": 70, "ratio": 1.25, "friction": 0.7}
+    assert structure_of(table).maker == arch
+    with pytest.raises(InputError, match="friction is missing: must be given beside ratio"):
+        CircularArch(half_angle_deg=70, ratio=1.25)
+    with pytest.raises(InputError, match=r"ratio = 1\.25: must be left out: it is of"):
+        CircularArch(left_deg=70, right_deg=60, ratio=1.25, friction=0.7)
+
+
+OWN_KIND = """\
+from dataclasses import dataclass
+from blocksim import Maker
+from blocksim.blocks.given import Body
+from blocksim.blocks.made import Made
+from blocksim.blocks.maker import metres
+
+@dataclass(frozen=True, kw_only=True)
+class Cube(Maker):
+    name = "cube"
+    side: float = metres(1.0, "side of the cube")
+
+    def made(self, density):
+        a = self.side
+        bed = [[-a, -a], [2 * a, -a], [2 * a, 0], [-a, 0]]
+        cube = [[0, 0], [a, 0], [a, a], [0, a]]
+        return Made(bodies=(Body(polygons=(bed,), fixed=True), Body(polygons=(cube,))))
+"""
+
+
+def test_a_kind_of_ones_own_reaches_the_command_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A block on a slope slides where its tangent is the friction."""
+    (tmp_path / "cubes_of_mine.py").write_text(OWN_KIND)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    own = ("cubes_of_mine:Cube", "--mu", "0.5", "--with", "side=2")
+    told = json.loads(inside("bracket", *own, "--over", "tilt", "--json").stdout)
+    assert told["limit"] == pytest.approx(math.degrees(math.atan(0.5)), rel=1e-9)
+    for place in ("cubes_of_mine:Ball", "os:getcwd"):
+        done = inside("check", place, "--mu", "0.5")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert f"blocksim: kind = {place!r}: must be" in done.stderr

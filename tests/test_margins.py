@@ -16,7 +16,7 @@ from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of as kind_of
 from blocksim.limit import margins, reactions, resultants, thrust_range
 from blocksim.limit.margins import crown
@@ -109,7 +109,7 @@ def test_arches_agree_with_their_own_statics(
     assume(least and spare * least < 2)
     assert least is not None
     arch = Arch(half_angle=half, eta=spare * least, voussoirs=voussoirs, weight=weight)
-    problem = arch_problem(arch, mu)
+    problem = CircularArch.of(arch, mu).problem()
     found = margins(problem)
     if weight == "centreline":
         assert found.width == pytest.approx(1 / spare, rel=1e-9)
@@ -117,7 +117,7 @@ def test_arches_agree_with_their_own_statics(
     assert joint in {voussoirs // 2, (voussoirs + 1) // 2}
     low, high = thrusts(problem, joint)
     assert low <= high
-    own = carried_by_arch(arch, arch_problem(arch, mu))
+    own = carried_by_arch(arch, CircularArch.of(arch, mu).problem())
     assert own.thrust == pytest.approx((low, high), rel=1e-9)
     assert own.strength_used == pytest.approx(found.strength, rel=1e-9)
     assert found.friction is not None
@@ -132,7 +132,7 @@ def test_a_two_hinged_wedge_by_hand() -> None:
     """Two voussoirs: half the weight W/2 acts at a; the thrust line passes crown and springing
     within their joints, so H = (W/2)(x - a)/(rise) between its two extremes."""
     arch = Arch(half_angle=math.pi / 2, eta=0.4, voussoirs=4, weight="sector", radius=2.0)
-    problem = arch_problem(arch, math.inf)
+    problem = CircularArch.of(arch, math.inf).problem()
     quarter = arch.voussoir_weight
     found = thrust_range(problem, 2)
     assert found is not None

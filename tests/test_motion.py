@@ -13,7 +13,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.engines.base import Quality, Settings
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.motion import EARLY, FINER, MOVED, QUIET, moving_run
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.simulated import Simulation
@@ -55,7 +55,7 @@ class Creeping:
 
 def creeping(repeats: int) -> Simulation:
     """An arch in an engine whose arches creep."""
-    made = Simulation.of(arch_problem(arch_at(1.1, 90, 0.9, 5), 0.9), "direct")
+    made = Simulation.of(CircularArch.of(arch_at(1.1, 90, 0.9, 5), 0.9).problem(), "direct")
     # As a whole it overlaps its supports by nothing: blocks slide along the springings.
     settings = replace(made.settings, sweeps=SWEEPS, repeats=repeats, rest=1e-5, noise=1.0)
     return replace(made, engine=replace(made.engine, build=Creeping), settings=settings)
@@ -106,7 +106,7 @@ def test_a_wall_that_stands_does_not_creep_apart_in_bullet() -> None:
 @pytest.mark.parametrize("below", [1e-8, 1e-6, 1e-4, 1e-2])
 def test_few_looks_suffice_and_none_is_too_late_for_the_mechanism(below: float) -> None:
     """What falls is first seen to have moved while the motion still is the mechanism."""
-    held = hold(arch_problem(arch_at(1 - below, 90, 0.7, 27), 0.7), "direct")
+    held = hold(CircularArch.of(arch_at(1 - below, 90, 0.7, 27), 0.7).problem(), "direct")
     recording = held.release().recording
     moved = recording.displacement
     assert EARLY < moved[moved > EARLY][0] < 1.5 * EARLY

@@ -28,7 +28,7 @@ from blocksim.engines import get_engine
 from blocksim.engines.base import TakesForces
 from blocksim.engines.mujocoblocks import library
 from blocksim.engines.mujocostep import coulomb_step
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import equilibrium, least_motion
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.onset import onset
@@ -67,7 +67,7 @@ def test_both_sides_of_the_least_thickness(
     expected: Verdict,
 ) -> None:
     arch = arch_at(ratio, angle, mu, count, weight)
-    seen = observe(arch_problem(arch, mu), "mujoco", moving=False)
+    seen = observe(CircularArch.of(arch, mu).problem(), "mujoco", moving=False)
     assert seen.verdict is expected
     assert observed_mode(seen.joints, arch) is (mode if ratio < 1 else None)
 
@@ -76,7 +76,7 @@ def test_both_sides_of_the_least_thickness(
     ("ratio", "expected"), [SIDES[0], pytest.param(*SIDES[1], marks=pytest.mark.long)]
 )
 def test_let_go_it_does_what_the_onset_test_says(ratio: float, expected: Verdict) -> None:
-    seen = observe(arch_problem(arch_at(ratio, 90, 0.7, 7), 0.7), "mujoco")
+    seen = observe(CircularArch.of(arch_at(ratio, 90, 0.7, 7), 0.7).problem(), "mujoco")
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -102,18 +102,25 @@ def test_few_thick_voussoirs_with_much_friction(ratio: float) -> None:
     arch = arch_at(ratio, 155, 3.0, 11)
     wrong = Verdict.STANDS if ratio < 1 else Verdict.COLLAPSES
     for eta in (arch.eta, math.nextafter(arch.eta, 0), math.nextafter(arch.eta, 1)):
-        seen = observe(arch_problem(replace(arch, eta=eta), 3.0), "mujoco", moving=False)
+        seen = observe(
+            CircularArch.of(replace(arch, eta=eta), 3.0).problem(), "mujoco", moving=False
+        )
         assert seen.verdict is not wrong
     if ratio < 1:
         # With a little less friction it is told.
-        other = observe(arch_problem(arch_at(ratio, 155, 2.5, 11), 2.5), "mujoco", moving=False)
+        other = observe(
+            CircularArch.of(arch_at(ratio, 155, 2.5, 11), 2.5).problem(), "mujoco", moving=False
+        )
         assert other.verdict is Verdict.COLLAPSES
 
 
 def test_what_still_settles_is_no_collapse() -> None:
     """The first thousand steps of this arch end in a motion that opens joints only."""
     arch = arch_at(1.005, 145, 1.6, 17)
-    assert observe(arch_problem(arch, 1.6), "mujoco", moving=False).verdict is Verdict.STANDS
+    assert (
+        observe(CircularArch.of(arch, 1.6).problem(), "mujoco", moving=False).verdict
+        is Verdict.STANDS
+    )
 
 
 @pytest.mark.parametrize("ratio", [0.9, 1.1])
@@ -135,7 +142,9 @@ def test_a_thin_shallow_arch_is_not_answered_from_nothing(ratio: float) -> None:
 )
 def test_a_thin_shallow_arch_is_begun_with_forces(ratio: float, expected: str) -> None:
     """The same arch: the exact limit of its voussoirs is the truth."""
-    seen = observe(arch_problem(arch_at(ratio, 30, 0.7, 27), 0.7), "mujoco", moving=False)
+    seen = observe(
+        CircularArch.of(arch_at(ratio, 30, 0.7, 27), 0.7).problem(), "mujoco", moving=False
+    )
     assert seen.verdict.value == expected
 
 
@@ -212,7 +221,7 @@ def test_where_friction_allows_both_it_keeps_the_forces_it_is_given() -> None:
     Where both are possible the last bit of the thickness decides what MuJoCo finds.
     """
     arches = [arch_at(ratio, 155, 4.0, 9) for ratio in (1.01, 1.02, 1.03, 1.05, 1.1)]
-    seen = [hold(arch_problem(arch, 4.0), "mujoco").onset for arch in arches]
+    seen = [hold(CircularArch.of(arch, 4.0).problem(), "mujoco").onset for arch in arches]
     assert {each.verdict for each in seen} == {Verdict.STANDS}
     assert any(each.may_slide for each in seen)
 
@@ -249,7 +258,7 @@ def test_contacts_press_as_they_are_told_and_prove_it(ratio: float, *, rests: bo
 
     The latter is the least motion, found without MuJoCo: here nothing slides.
     """
-    problem = arch_problem(arch_at(ratio, 90, 0.7, 10), 0.7)
+    problem = CircularArch.of(arch_at(ratio, 90, 0.7, 10), 0.7).problem()
     world = cast("TakesForces", Simulation.of(problem, "mujoco").world())
     least = least_motion(problem)
     assert least is not None
@@ -266,7 +275,9 @@ def test_contacts_press_as_they_are_told_and_prove_it(ratio: float, *, rests: bo
 
 def test_forces_of_another_structure_are_not_kept() -> None:
     """Those of an arch 1 % above its least thickness, in one 1 % below."""
-    stands, falls = (arch_problem(arch_at(ratio, 90, 0.7, 10), 0.7) for ratio in (1.01, 0.99))
+    stands, falls = (
+        CircularArch.of(arch_at(ratio, 90, 0.7, 10), 0.7).problem() for ratio in (1.01, 0.99)
+    )
     forces = equilibrium(stands).forces
     assert forces is not None
     world = cast("TakesForces", Simulation.of(falls, "mujoco").world())

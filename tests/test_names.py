@@ -16,13 +16,13 @@ from running import inside as blocksim
 
 import blocksim as package
 from blocksim import load_recording
-from blocksim.arch.scenario import load_scenario, shipped
 from blocksim.cli.tables import validation_lines, validation_table
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text
 from blocksim.engines import get_engine
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import load_structure
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.report.answerwords import signed
 from blocksim.studies.validate import unasked
 from blocksim.sweeps import load_design
@@ -30,7 +30,7 @@ from blocksim.sweeps import load_design
 
 def test_paths_may_be_texts_and_the_header_is_strict_json(tmp_path: Path) -> None:
     path = str(tmp_path / "a.npz")
-    recording = replace(sliding(), problem=arch_problem(ARCH, math.inf))
+    recording = replace(sliding(), problem=CircularArch.of(ARCH, math.inf).problem())
     recording.save(path)
     with np.load(path) as inside:
         header = json.loads(str(inside["header"]), parse_constant=pytest.fail)
@@ -176,7 +176,7 @@ def test_every_scenario_can_be_checked(name: str) -> None:
     scenario = load_scenario(name)
     assert answer["problem"]["lean_deg"] == pytest.approx(math.degrees(scenario.lean))
     assert answer["verdict"] == (scenario.expected_verdict or "collapses")
-    assert ("no thickness was given" in answer["reason"]) == (scenario.eta is None)
+    assert ("no thickness was given" in answer["reason"]) == (not scenario.has_thickness)
 
 
 def test_what_was_not_asked_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

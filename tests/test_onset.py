@@ -21,7 +21,7 @@ from blocksim.arch.theory.map import divide_friction
 from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
 from blocksim.engines.contact import ContactProblem, Solution
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import equilibrium
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.verdict import Verdict
@@ -59,7 +59,10 @@ def test_motion_is_an_answer_above_the_limit(case: Case) -> None:
 def test_an_arch_stands_if_it_can_rest(
     engine: str, ratio: float, right: str, case: Case
 ) -> None:
-    assert observe(arch_problem(arch_at(ratio, *case), case[1]), engine).verdict == right
+    assert (
+        observe(CircularArch.of(arch_at(ratio, *case), case[1]).problem(), engine).verdict
+        == right
+    )
 
 
 @every_case
@@ -80,9 +83,9 @@ def test_what_was_given_is_told() -> None:
     case = TWO_ANSWERS[-1]
     assert (
         "they were given"
-        in hold(arch_problem(arch_at(1.01, *case), case[1]), "pymunk").onset.reason
+        in hold(CircularArch.of(arch_at(1.01, *case), case[1]).problem(), "pymunk").onset.reason
     )
-    alone = hold(arch_problem(arch_at(1.01, 90.0, 0.7, 27), 0.7), "pymunk").onset
+    alone = hold(CircularArch.of(arch_at(1.01, 90.0, 0.7, 27), 0.7).problem(), "pymunk").onset
     assert alone.verdict is Verdict.STANDS
     assert alone.forces is None
 
@@ -94,8 +97,8 @@ def test_what_was_given_is_told() -> None:
 def test_bullet_keeps_forces_it_is_given(case: Case) -> None:
     """It keeps no impulses: joints press by themselves, and friction has to be found."""
     pytest.importorskip("pybullet", exc_type=ImportError)
-    below = hold(arch_problem(arch_at(0.9995, *case), case[1]), "pybullet").onset
-    above = hold(arch_problem(arch_at(1.0005, *case), case[1]), "pybullet").onset
+    below = hold(CircularArch.of(arch_at(0.9995, *case), case[1]).problem(), "pybullet").onset
+    above = hold(CircularArch.of(arch_at(1.0005, *case), case[1]).problem(), "pybullet").onset
     assert below.verdict is Verdict.COLLAPSES
     assert above.verdict is Verdict.STANDS
     assert "they were given" in above.reason
@@ -106,7 +109,7 @@ def test_forces_that_break_friction_are_not_kept() -> None:
     pytest.importorskip("pybullet", exc_type=ImportError)
     case = TWO_ANSWERS[-1]
     arch, engine = arch_at(1.0005, *case), get_engine("pybullet")
-    forces = equilibrium(arch_problem(arch, case[1])).forces
+    forces = equilibrium(CircularArch.of(arch, case[1]).problem()).forces
     worlds = []
     for mu in (case[1], 0.9 * case[1]):
         assembly = arch.assembly()
@@ -120,7 +123,7 @@ def test_pybullet_says_why_it_is_undecided() -> None:
     """Let go, it moves: blocks that can rest may do so, and Bullet forgets friction."""
     pytest.importorskip("pybullet", exc_type=ImportError)
     case = TWO_ANSWERS[-1]
-    seen = observe(arch_problem(arch_at(1.0005, *case), case[1]), "pybullet")
+    seen = observe(CircularArch.of(arch_at(1.0005, *case), case[1]).problem(), "pybullet")
     assert seen.verdict is Verdict.UNDECIDED
     assert "friction may let it move, too" in seen.reason
     assert "released, it moved" in seen.reason
@@ -144,7 +147,7 @@ def test_pymunk_is_right_where_two_answers_are_likeliest(reduce: bool) -> None:
         for ratio in (0.97, 0.99, 0.998, 1.0005, 1.002, 1.01, 1.03, 1.1):
             arch = Arch(half_angle=alpha, eta=least * ratio, voussoirs=count, weight=weight)
             seen = observe(
-                arch_problem(arch, mu),
+                CircularArch.of(arch, mu).problem(),
                 "pymunk",
                 moving=arches % 5 == 0,
                 reduction=Reduction.of(arch, mu) if reduce else None,
@@ -156,7 +159,7 @@ def test_pymunk_is_right_where_two_answers_are_likeliest(reduce: bool) -> None:
 
 def test_what_cannot_be_found_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
     """Numbers that end in none give no verdict, and no reason says nan."""
-    problem = arch_problem(arch_at(1.01, 90, 0.7, 9), 0.7)
+    problem = CircularArch.of(arch_at(1.01, 90, 0.7, 9), 0.7).problem()
     held = hold(problem, "direct")
     solve = ContactProblem.solve
 

@@ -21,7 +21,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.engines.contact import ContactProblem
 from blocksim.engines.direct import ENGINE, Blocks
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import collapse, equilibrium
 
 SAME = 1e-8
@@ -86,7 +86,9 @@ def test_arches_start_as_by_pivoting(largest: int, monkeypatch: pytest.MonkeyPat
         count = int(random.integers(3, largest + 1))
         least = limit.least_thickness(alpha, mu, count).eta
         eta = random.choice(SIDES) * (least or 0.3)
-        problem = arch_problem(Arch(half_angle=alpha, eta=min(eta, 2.0), voussoirs=count), mu)
+        problem = CircularArch.of(
+            Arch(half_angle=alpha, eta=min(eta, 2.0), voussoirs=count), mu
+        ).problem()
         held, other, same = released(problem, monkeypatch)
         rests = np.abs(held).max() < 1e-9
         assert rests == equilibrium(problem).exists

@@ -16,7 +16,7 @@ from structure_cases import case, names, of_each_kind, scenes
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import Unsolved
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import collapse, equilibrium, least_motion, linear
 
 frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))
@@ -326,7 +326,9 @@ def test_least_motion_is_none_where_forces_of_equilibrium_exist(name: str) -> No
 def test_least_motion_wedges_nothing_between_rough_joints() -> None:
     """Forces at mu = 1000 are those of a thrust, as without slip, not thousands of weights."""
     arch = arch_at(0.99, 90, 1e3, 20)
-    rough, boundless = (least_motion(arch_problem(arch, mu)) for mu in (1e3, math.inf))
+    rough, boundless = (
+        least_motion(CircularArch.of(arch, mu).problem()) for mu in (1e3, math.inf)
+    )
     assert rough.accelerations == pytest.approx(boundless.accelerations, abs=1e-9)
     assert np.abs(rough.forces).max() < 20
 

@@ -30,7 +30,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Engine
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.motion import lie_still
 from blocksim.simulation.observation import hold, observe
@@ -74,7 +74,9 @@ def test_both_sides_of_the_least_thickness(
 ) -> None:
     """Onset test and moving run, 1 % below and above."""
     assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    seen = observe(arch_problem(arch_at(ratio, angle, mu, count, weight), mu), "pybullet")
+    seen = observe(
+        CircularArch.of(arch_at(ratio, angle, mu, count, weight), mu).problem(), "pybullet"
+    )
     assert seen.verdict is expected
     assert seen.motion.verdict is expected
 
@@ -84,7 +86,7 @@ def test_mode_just_below_the_least_thickness(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     arch = arch_at(0.995, angle, mu, count, weight)
-    seen = observe(arch_problem(arch, mu), "pybullet", moving=False)
+    seen = observe(CircularArch.of(arch, mu).problem(), "pybullet", moving=False)
     assert seen.verdict is Verdict.COLLAPSES
     assert observed_mode(seen.joints, arch) is mode
 
@@ -251,7 +253,9 @@ def test_each_joint_has_two_contacts_at_its_ends(name: str) -> None:
     assert np.isfinite(resultants).all()
 
 
-NARROW_INTRADOS = arch_problem(Arch(half_angle=math.radians(120), eta=1.99, voussoirs=11), 1.5)
+NARROW_INTRADOS = CircularArch.of(
+    Arch(half_angle=math.radians(120), eta=1.99, voussoirs=11), 1.5
+).problem()
 """Its voussoirs are narrower there than the boxes on their faces."""
 
 
@@ -277,31 +281,34 @@ def test_blocks_stay_in_the_plane() -> None:
 def test_the_reason_names_bounded_friction() -> None:
     thick = replace(THIN, eta=0.3)
     assert (
-        "as friction" not in observe(arch_problem(thick, 0.7), "pybullet", moving=False).reason
+        "as friction"
+        not in observe(CircularArch.of(thick, 0.7).problem(), "pybullet", moving=False).reason
     )
-    rough = observe(arch_problem(thick, 20.0), "pybullet", moving=False)
+    rough = observe(CircularArch.of(thick, 20.0).problem(), "pybullet", moving=False)
     assert "pybullet took 10 as friction" in rough.reason
 
 
 @pytest.mark.parametrize("method", ["theory", "limit", "direct", "pymunk"])
 def test_planar_methods_take_no_lean(method: str) -> None:
     with pytest.raises(InputError) as caught:
-        check(arch_problem(THIN, 0.7, 0.1), method=method)
+        check(CircularArch.of(THIN, 0.7).problem().leaning(0.1), method=method)
     assert caught.value.field == "method"
     assert "pybullet" in str(caught.value)
 
 
 def test_other_spaces_do_not_disturb_a_held_one() -> None:
     """Bullet has settings that all its spaces share."""
-    alone, beside = (hold(arch_problem(THIN, 0.7), "pybullet") for _ in range(2))
+    alone, beside = (hold(CircularArch.of(THIN, 0.7).problem(), "pybullet") for _ in range(2))
     undisturbed = alone.release(0.5).recording
-    hold(arch_problem(replace(THIN, eta=1.0), 0.7), "pybullet")
+    hold(CircularArch.of(replace(THIN, eta=1.0), 0.7).problem(), "pybullet")
     assert beside.release(0.5).recording.state_hash == undisturbed.state_hash
 
 
 def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
     thick = replace(THIN, eta=0.3)
-    recording = simulate(arch_problem(thick, 0.7, 0.7), method="pybullet", duration=0.5)
+    recording = simulate(
+        CircularArch.of(thick, 0.7).problem().leaning(0.7), method="pybullet", duration=0.5
+    )
     path = tmp_path / "run.npz"
     recording.save(path)
     again = load_recording(path)
@@ -314,7 +321,9 @@ def test_a_recording_in_space_is_kept(tmp_path: Path) -> None:
 def test_the_thinnest_arches_are_given_up_soon() -> None:
     """Sweeps would grow without end as joints shorten; what few can tell is undecided."""
     arch = Arch(half_angle=math.radians(60), eta=1e-9, voussoirs=3)
-    assert observe(arch_problem(arch, 1.0), "pybullet").verdict is Verdict.UNDECIDED
+    assert (
+        observe(CircularArch.of(arch, 1.0).problem(), "pybullet").verdict is Verdict.UNDECIDED
+    )
 
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0, -1), (0.6, 0, 0.8), (1, 0, 0)])
@@ -334,7 +343,7 @@ def test_an_arch_that_falls_stays_symmetric_and_falls_as_pymunk_has_it() -> None
 
     In pymunk with short steps: with its usual ones `direct` starts early.
     """
-    problem = arch_problem(arch_at(0.93, 90, 0.7, 15), 0.7)
+    problem = CircularArch.of(arch_at(0.93, 90, 0.7, 15), 0.7).problem()
     bullet, fine = (
         simulate_problem(problem, method=name, duration=2.0, settings=settings)
         for name, settings in (("pybullet", {}), ("pymunk", {"step": 0.002}))
@@ -355,7 +364,7 @@ def test_contacts_are_kept_where_an_arch_begins_to_turn() -> None:
 
 def test_a_block_on_its_head_lies_still() -> None:
     """Turned by half a turn it may be seen as turned either way, and would rock in numbers."""
-    world = Bodies(arch_problem(THIN, 0.6), ENGINE.rule(THIN.assembly()))
+    world = Bodies(CircularArch.of(THIN, 0.6).problem(), ENGINE.rule(THIN.assembly()))
     body, place = world._bodies[0], world._built[0].place
     poses: list[Array] = []
     for angle in [*np.arange(0.0, math.pi, 0.1), *[math.pi + 1e-4, math.pi - 1e-4] * 30]:
@@ -390,7 +399,7 @@ def test_blocks_let_go_start_neither_early_nor_late() -> None:
     slides = simulate_problem(slope, method="pybullet", duration=1.0)
     pull = math.sin(math.pi / 6) - 0.2 * math.cos(math.pi / 6)
     assert slides.displacement == pytest.approx(pull * slides.times**2 / 2, rel=1e-4, abs=1e-6)
-    arch = arch_problem(Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13), 0.7)
+    arch = CircularArch.of(Arch(half_angle=math.pi / 2, eta=0.1, voussoirs=13), 0.7).problem()
     one, other = (
         simulate_problem(arch, method=method, duration=1.5) for method in ("pybullet", "pymunk")
     )

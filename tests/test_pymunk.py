@@ -32,7 +32,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.engines import get_engine
 from blocksim.engines.base import Settings
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import least_motion
 from blocksim.simulation.motion import SOONEST, moving_run
 from blocksim.simulation.observation import observe
@@ -58,7 +58,7 @@ SMALL = Arch(half_angle=math.pi / 2, eta=0.11, voussoirs=13)
 
 def test_a_space_goes_without_pythons_collector() -> None:
     """What chooses holds its space, in pymunk: 2,000 checks grew by 5 MB of old ones."""
-    engine, problem = get_engine("pymunk"), arch_problem(SMALL, 0.3)
+    engine, problem = get_engine("pymunk"), CircularArch.of(SMALL, 0.3).problem()
     gc.collect()
     gc.disable()
     try:
@@ -81,11 +81,15 @@ def test_both_sides_of_the_least_thickness(
 ) -> None:
     """Onset test and moving run, 1 % below and above."""
     assert limit.least_thickness(math.radians(angle), mu, count, weight).mode is mode
-    thin = observe(arch_problem(arch_at(0.99, angle, mu, count, weight), mu), "pymunk")
+    thin = observe(
+        CircularArch.of(arch_at(0.99, angle, mu, count, weight), mu).problem(), "pymunk"
+    )
     assert thin.verdict is Verdict.COLLAPSES
     assert thin.motion.verdict is Verdict.COLLAPSES
     assert observed_mode(thin.joints, arch_at(0.99, angle, mu, count, weight)) is not None
-    thick = observe(arch_problem(arch_at(1.01, angle, mu, count, weight), mu), "pymunk")
+    thick = observe(
+        CircularArch.of(arch_at(1.01, angle, mu, count, weight), mu).problem(), "pymunk"
+    )
     assert thick.verdict is Verdict.STANDS
     assert thick.onset.acceleration < Settings.still
     assert {joint.state for joint in thick.joints} == {JointState.CLOSED}
@@ -96,7 +100,7 @@ def test_mode_just_below_the_least_thickness(
     angle: float, mu: float, count: int, weight: str, mode: Mode
 ) -> None:
     arch = arch_at(0.998, angle, mu, count, weight)
-    seen = observe(arch_problem(arch, mu), "pymunk", moving=False)
+    seen = observe(CircularArch.of(arch, mu).problem(), "pymunk", moving=False)
     assert seen.verdict is Verdict.COLLAPSES
     assert observed_mode(seen.joints, arch) is mode
 
@@ -105,7 +109,7 @@ def test_mode_just_below_the_least_thickness(
 def test_purely_sliding_at_any_thickness(eta: float) -> None:
     arch = Arch(half_angle=math.pi / 2, eta=eta, voussoirs=15)
     assert limit.least_thickness(arch.half_angle, 0.28, 15).eta is None
-    seen = observe(arch_problem(arch, 0.28), "pymunk")
+    seen = observe(CircularArch.of(arch, 0.28).problem(), "pymunk")
     assert seen.verdict is Verdict.COLLAPSES
     if eta >= 0.5:  # thin ones are overcome by turning, too
         assert observed_mode(seen.joints, arch) is Mode.SS
@@ -128,7 +132,9 @@ def test_bracket_holds_the_limit(
 def test_thin_arches_are_never_answered_wrongly() -> None:
     """From nothing, thin shallow arches of many voussoirs need millions of sweeps."""
     for ratio, right in ((0.98, Verdict.COLLAPSES), (1.02, Verdict.STANDS)):
-        simulation = Simulation.of(arch_problem(arch_at(ratio, 20, 0.7, 27), 0.7), "pymunk")
+        simulation = Simulation.of(
+            CircularArch.of(arch_at(ratio, 20, 0.7, 27), 0.7).problem(), "pymunk"
+        )
         for sweeps in (1000, 20_000, 100_000):
             chosen = replace(simulation.settings, hold_sweeps=sweeps, unaided=None)
             seen = onset(simulation.world(), simulation.engine, simulation.taken, chosen)
@@ -142,7 +148,7 @@ def test_thin_arches_are_never_answered_wrongly() -> None:
 def test_forces_to_begin_with_decide_thin_arches(ratio: float, right: str) -> None:
     """All voussoirs; from nothing it took 17 million sweeps, two minutes."""
     arch = arch_at(ratio, 20, 0.7, 27)
-    seen = observe(arch_problem(arch, 0.7), "pymunk")
+    seen = observe(CircularArch.of(arch, 0.7).problem(), "pymunk")
     assert seen.verdict.value == right
     assert seen.motion.verdict.value == right
     assert seen.onset.sweeps < 300_000
@@ -158,8 +164,12 @@ def test_no_forces_to_begin_with_make_a_verdict(
     angle: float, mu: float, count: int, ratio: float, wrong: str, other: float
 ) -> None:
     """Forces of a thinner or a thicker arch: those that it would fall, or stand with."""
-    forces = least_motion(arch_problem(arch_at(other, angle, mu, count), mu)).forces
-    simulation = Simulation.of(arch_problem(arch_at(ratio, angle, mu, count), mu), "pymunk")
+    forces = least_motion(
+        CircularArch.of(arch_at(other, angle, mu, count), mu).problem()
+    ).forces
+    simulation = Simulation.of(
+        CircularArch.of(arch_at(ratio, angle, mu, count), mu).problem(), "pymunk"
+    )
     world = simulation.world()
     world.begin(forces)
     chosen = replace(simulation.settings, hold_sweeps=30_000, unaided=None)
@@ -171,7 +181,9 @@ def test_no_forces_to_begin_with_make_a_verdict(
 @pytest.mark.parametrize("ratio", [0.98, 1.02])
 def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> None:
     """Impulses that overshoot open joints without overlap, but against the weight."""
-    simulation = Simulation.of(arch_problem(arch_at(ratio, 20, 0.7, count), 0.7), "pymunk")
+    simulation = Simulation.of(
+        CircularArch.of(arch_at(ratio, 20, 0.7, count), 0.7).problem(), "pymunk"
+    )
     chosen = replace(simulation.settings, hold_sweeps=100_000)
     seen = onset(simulation.world(), simulation.engine, simulation.taken, chosen)
     assert seen.verdict is Verdict.UNDECIDED
@@ -180,7 +192,9 @@ def test_an_arch_thrown_upwards_has_not_collapsed(count: int, ratio: float) -> N
 @pytest.mark.parametrize(("ratio", "right"), [(0.98, "collapses"), (1.02, "stands")])
 def test_twice_as_wide_arches_are_answered(ratio: float, right: str) -> None:
     """The other side of that limit: 40 degrees."""
-    seen = observe(arch_problem(arch_at(ratio, 40, 0.7, 12), 0.7), "pymunk", moving=False)
+    seen = observe(
+        CircularArch.of(arch_at(ratio, 40, 0.7, 12), 0.7).problem(), "pymunk", moving=False
+    )
     assert seen.verdict.value == right
 
 
@@ -190,7 +204,7 @@ def test_the_weight_drives_the_mechanism(
 ) -> None:
     """Work balance: what weight gives, motion gains, but for friction where joints slide."""
     simulation = Simulation.of(
-        arch_problem(arch_at(0.99, angle, mu, count, weight), mu), "pymunk"
+        CircularArch.of(arch_at(0.99, angle, mu, count, weight), mu).problem(), "pymunk"
     )
     world = simulation.world()
     for _ in range(4):
@@ -267,7 +281,7 @@ def test_size_and_material_change_no_verdict(
         depth=depth,
     )
     expected = Verdict.STANDS if ratio > 1 else Verdict.COLLAPSES
-    assert observe(arch_problem(arch, 0.9), "pymunk").verdict is expected
+    assert observe(CircularArch.of(arch, 0.9).problem(), "pymunk").verdict is expected
 
 
 def held(assembly: Assembly, mu: float) -> tuple[Verdict, Array]:
@@ -381,7 +395,7 @@ def test_energy_does_not_grow(
     """Poses alone give it: with central differences free fall conserves it exactly."""
     assert mode in set(Mode)
     arch = arch_at(0.9, angle, mu, count, weight)
-    simulation = Simulation.of(arch_problem(arch, mu), "pymunk")
+    simulation = Simulation.of(CircularArch.of(arch, mu).problem(), "pymunk")
     world = simulation.world()
     onset(world, simulation.engine, simulation.taken, simulation.settings)
     step = simulation.settings.step
@@ -406,7 +420,9 @@ def test_energy_does_not_grow(
 
 def test_blocks_at_rest_are_put_back() -> None:
     """`hold` moves nothing, however often."""
-    simulation = Simulation.of(arch_problem(replace(SMALL, eta=0.05), 0.6), "pymunk")
+    simulation = Simulation.of(
+        CircularArch.of(replace(SMALL, eta=0.05), 0.6).problem(), "pymunk"
+    )
     world = simulation.world()
     before = world.poses()
     for _ in range(3):
@@ -416,7 +432,9 @@ def test_blocks_at_rest_are_put_back() -> None:
 
 
 def test_standing_arch_stays_where_it_was_built() -> None:
-    simulation = Simulation.of(arch_problem(replace(SMALL, eta=0.15), 0.6), "pymunk")
+    simulation = Simulation.of(
+        CircularArch.of(replace(SMALL, eta=0.15), 0.6).problem(), "pymunk"
+    )
     world = simulation.world()
     first = onset(world, simulation.engine, simulation.taken, simulation.settings)
     motion = moving_run(simulation, world, first.repeat)
@@ -455,7 +473,7 @@ def test_what_it_starts_with_names_the_mode() -> None:
     mu = 0.1802
     arch = Arch(half_angle=math.radians(75), eta=0.126, voussoirs=20)
     published = least_thickness(arch.half_angle, mu)
-    seen = observe(arch_problem(arch, mu), "pymunk")
+    seen = observe(CircularArch.of(arch, mu).problem(), "pymunk")
     assert observed_mode(seen.joints, arch) is Mode.SS
     assert published.modes == (Mode.SS,)
     sliding = sorted({abs(joint.angle) for joint in seen.joints if joint.state == "slides"})

@@ -28,7 +28,7 @@ from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES, get_engine
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.observation import hold, observe
 from blocksim.simulation.onset import onset
 from blocksim.simulation.simulated import Simulation
@@ -73,7 +73,11 @@ def every_joint(arch, mu):
     an unsymmetric one; of the half, merging must not change any.
     """
     joints = tuple(range(arch.voussoirs // 2 + 1))
-    return hold(arch_problem(arch, mu), "direct", reduction=Reduction(arch.assembly(), joints))
+    return hold(
+        CircularArch.of(arch, mu).problem(),
+        "direct",
+        reduction=Reduction(arch.assembly(), joints),
+    )
 
 
 def unbalanced(assembly, resultants, rates):
@@ -204,7 +208,9 @@ def test_nothing_holds_a_block_on_a_smooth_slope(engine):
 def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
     arch = arch_at(ratio, 125, 0.9, voussoirs)
     for reduction in (None, Reduction.of(arch, 0.9)):
-        world = Simulation.of(arch_problem(arch, 0.9), engine, reduction=reduction).world()
+        world = Simulation.of(
+            CircularArch.of(arch, 0.9).problem(), engine, reduction=reduction
+        ).world()
         rates = world.hold(SWEEPS[engine])[:, :3]
         left = unbalanced(arch.assembly(), world.resultants(), rates)
         # Bodies that overlap have two places for one force.
@@ -215,9 +221,9 @@ def test_resultants_obey_newton_for_every_voussoir(engine, voussoirs, ratio):
 def test_resultants_are_those_of_all_voussoirs(voussoirs):
     """In a collapse hinges fix the resultants; at rest there is a choice."""
     arch = arch_at(0.97, 90, 0.7, voussoirs)
-    every = Simulation.of(arch_problem(arch, 0.7), "direct").world()
+    every = Simulation.of(CircularArch.of(arch, 0.7).problem(), "direct").world()
     few = Simulation.of(
-        arch_problem(arch, 0.7), "direct", reduction=Reduction.of(arch, 0.7)
+        CircularArch.of(arch, 0.7).problem(), "direct", reduction=Reduction.of(arch, 0.7)
     ).world()
     every.hold(1)
     few.hold(1)
@@ -234,8 +240,10 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
     arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
     crown = () if voussoirs % 2 else (voussoirs // 2,)
     wrong = Reduction(arch.assembly(), (0, *crown))
-    held = hold(arch_problem(arch, mu), "direct", reduction=wrong)
-    assert held.onset.verdict is hold(arch_problem(arch, mu), "direct").onset.verdict
+    held = hold(CircularArch.of(arch, mu).problem(), "direct", reduction=wrong)
+    assert (
+        held.onset.verdict is hold(CircularArch.of(arch, mu).problem(), "direct").onset.verdict
+    )
     assert held.simulation.blocks < 10
     half = every_joint(arch, mu)
     scale = max(half.onset.acceleration, 1e-6)
@@ -245,14 +253,14 @@ def test_any_guess_is_corrected(half_angle_deg, mu, voussoirs, weight, ratio):
 def test_without_a_second_look_a_wrong_guess_would_stand():
     arch = arch_at(0.98, 90, 0.7, 28)
     wrong = Reduction(arch.assembly(), (0, 14))
-    simulation = Simulation.of(arch_problem(arch, 0.7), "direct", reduction=wrong)
+    simulation = Simulation.of(CircularArch.of(arch, 0.7).problem(), "direct", reduction=wrong)
     world = simulation.world()
     assert (
         onset(world, simulation.engine, simulation.taken, simulation.settings).verdict
         is Verdict.STANDS
     )
     assert wrong.overstrained(world.resultants(), 0.7, 1e-9)
-    held = hold(arch_problem(arch, 0.7), "direct", reduction=wrong)
+    held = hold(CircularArch.of(arch, 0.7).problem(), "direct", reduction=wrong)
     assert held.onset.verdict is Verdict.COLLAPSES
     assert held.splits > 0
 
@@ -263,7 +271,11 @@ def test_joints_that_slide_are_split_again():
     right = Reduction.of(arch, mu).kept
     assert len(right) == 4
     merged = tuple(joint for joint in right if joint != right[2])
-    held = hold(arch_problem(arch, mu), "direct", reduction=Reduction(arch.assembly(), merged))
+    held = hold(
+        CircularArch.of(arch, mu).problem(),
+        "direct",
+        reduction=Reduction(arch.assembly(), merged),
+    )
     assert held.splits > 0
     assert accelerations(held) == pytest.approx(accelerations(every_joint(arch, mu)), abs=1e-9)
 
@@ -295,7 +307,7 @@ def test_a_keystone_that_leaves_the_plane_takes_all_voussoirs():
     arch = Arch(half_angle=math.radians(146.91), eta=0.5742, voussoirs=5)
     few, every = (
         observe(
-            arch_problem(arch, 2.43),
+            CircularArch.of(arch, 2.43).problem(),
             "direct",
             moving=False,
             reduction=Reduction.of(arch, 2.43) if reduce else None,
@@ -327,7 +339,10 @@ def test_a_billionth_of_the_limit_decides(half_angle_deg, mu, voussoirs, weight)
     for ratio, expected in ((1 - 1e-9, Verdict.COLLAPSES), (1 + 1e-9, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
         seen = observe(
-            arch_problem(arch, mu), "direct", moving=False, reduction=Reduction.of(arch, mu)
+            CircularArch.of(arch, mu).problem(),
+            "direct",
+            moving=False,
+            reduction=Reduction.of(arch, mu),
         )
         assert seen.verdict is expected
         assert seen.blocks <= 6
@@ -348,7 +363,7 @@ def test_half_and_whole_agree(half_angle_deg, mu, voussoirs, weight, ratio):
     arch = Arch(half_angle=half_angle, eta=eta * ratio, voussoirs=voussoirs, weight=weight)
     few, every = (
         observe(
-            arch_problem(arch, mu),
+            CircularArch.of(arch, mu).problem(),
             "direct",
             moving=False,
             reduction=Reduction.of(arch, mu) if reduce else None,
@@ -364,7 +379,9 @@ def test_pymunk_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs, we
     """All 301 voussoirs would take it minutes."""
     for ratio, expected in ((0.999, Verdict.COLLAPSES), (1.001, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs, weight)
-        seen = observe(arch_problem(arch, mu), "pymunk", reduction=Reduction.of(arch, mu))
+        seen = observe(
+            CircularArch.of(arch, mu).problem(), "pymunk", reduction=Reduction.of(arch, mu)
+        )
         assert seen.verdict is expected, seen.reason
         if expected is Verdict.COLLAPSES:
             state = limit.least_thickness(arch.half_angle, mu, voussoirs, weight)
@@ -379,7 +396,9 @@ def test_pybullet_answers_as_limit_analysis_does(half_angle_deg, mu, voussoirs):
     pytest.importorskip("pybullet")
     for ratio, expected in ((0.995, Verdict.COLLAPSES), (1.005, Verdict.STANDS)):
         arch = arch_at(ratio, half_angle_deg, mu, voussoirs)
-        seen = observe(arch_problem(arch, mu), "pybullet", reduction=Reduction.of(arch, mu))
+        seen = observe(
+            CircularArch.of(arch, mu).problem(), "pybullet", reduction=Reduction.of(arch, mu)
+        )
         assert seen.verdict is expected, seen.reason
         assert seen.motion.recording.poses.shape[1:] == (voussoirs, 6)
 
@@ -418,7 +437,7 @@ def test_let_go_it_moves_as_all_voussoirs_do(voussoirs):
     arch = arch_at(0.98, 125, 0.9, voussoirs)
     few, every = (
         observe(
-            arch_problem(arch, 0.9),
+            CircularArch.of(arch, 0.9).problem(),
             "direct",
             reduction=Reduction.of(arch, 0.9) if reduce else None,
         )
@@ -449,7 +468,7 @@ def test_scale_and_density_change_nothing():
     arch = arch_at(0.98, 125, 0.9, 27)
     other = replace(arch, radius=64.0, depth=0.25, specific_weight=16_000.0)
     one, two = (
-        hold(arch_problem(a, 0.9), "direct", reduction=Reduction.of(a, 0.9))
+        hold(CircularArch.of(a, 0.9).problem(), "direct", reduction=Reduction.of(a, 0.9))
         for a in (arch, other)
     )
     assert accelerations(one) == pytest.approx(accelerations(two), abs=1e-12)
@@ -465,7 +484,14 @@ def test_there_is_nothing_to_reduce_where_nothing_is_simulated(method):
 
 def test_out_of_the_plane_nothing_is_reduced():
     with pytest.raises(InputError, match="reduce"):
-        check(arch_problem(arch_at(1.0, 90, 0.7, 27), 0.7, 0.1), method="pybullet", reduce=True)
+        check(
+            CircularArch.of(arch_at(1.0, 90, 0.7, 27), 0.7).problem().leaning(0.1),
+            method="pybullet",
+            reduce=True,
+        )
     pytest.importorskip("pybullet")
     thick = Arch(half_angle=math.radians(60), eta=0.4, voussoirs=3)
-    assert check(arch_problem(thick, 1.0, 0.01), method="pybullet").blocks == 3
+    assert (
+        check(CircularArch.of(thick, 1.0).problem().leaning(0.01), method="pybullet").blocks
+        == 3
+    )

@@ -15,7 +15,7 @@ from windows import Windows
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import margins, reactions, thrust_range
 from blocksim.limit.margins import crown
 
@@ -86,7 +86,7 @@ def value(text: str) -> float:
 def test_figures_of_an_arch_are_those_of_limit_analysis(pages: Path) -> None:
     said = rows_of(pages / "arch.html")
     arch, mu = engineers(), math.tan(math.radians(35))
-    problem = arch_problem(arch, mu)
+    problem = CircularArch.of(arch, mu).problem()
     assert said["span"] == "8.000 m | intrados"
     assert said["rise"] == "3.000 m | intrados"
     assert said["thickness"].startswith("0.450 m")

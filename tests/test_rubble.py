@@ -16,7 +16,7 @@ from blocksim.engines import ENGINES
 from blocksim.engines.energy import Balance, energy
 from blocksim.engines.ground import ground_level
 from blocksim.engines.solids import prisms
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.recording import Recording
 
 CASES = {case.number: case for case in rubble.cases(rubble.COUNT)}
@@ -69,7 +69,7 @@ def test_what_leaves_the_plane_falls_onto_the_ground() -> None:
     """An arch in gravity that leans out of its plane overturns, and lies on its side."""
     pytest.importorskip("pybullet")
     arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.3)
-    problem = arch_problem(arch, 0.8).leaning(math.radians(20))
+    problem = CircularArch.of(arch, 0.8).problem().leaning(math.radians(20))
     recording = simulate(problem, method="pybullet", duration=12.0)
     found = rubble.measured(recording)
     assert found["overlap"] < rubble.ALLOWED
@@ -109,7 +109,7 @@ def test_free_fall_keeps_its_energy_and_a_push_is_seen() -> None:
 def test_energy_in_space_is_that_of_the_turned_axes() -> None:
     """A block that spins about its own upright axis has the energy of that axis."""
     arch = Arch(half_angle=math.pi / 2, eta=0.3, voussoirs=5, depth=0.5)
-    problem = arch_problem(arch, 0.8)
+    problem = CircularArch.of(arch, 0.8).problem()
     poses = np.zeros((5, 6))
     # Turned by a right angle about x, its own z axis is along -y of the space.
     poses[0, 4] = math.pi / 2

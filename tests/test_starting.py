@@ -17,7 +17,7 @@ from blocksim.ask.check import check
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.structure import structure_of, structure_record
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit import equilibrium
 from blocksim.limit.starting import Start, may_start, rates_of
 
@@ -47,7 +47,9 @@ def arch(mu: float, times: float, voussoirs: int = 3) -> Problem:
     """A wide arch of so many times its least thickness."""
     eta = least_thickness(HALF_ANGLE, mu, voussoirs).eta
     assert eta is not None
-    return arch_problem(Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=voussoirs), mu)
+    return CircularArch.of(
+        Arch(eta=eta * times, half_angle=HALF_ANGLE, voussoirs=voussoirs), mu
+    ).problem()
 
 
 def wrong(problem: Problem, start: Start) -> float:
@@ -120,9 +122,9 @@ def test_its_motion_is_none_with_other_friction() -> None:
 def test_of_another_size_it_is_the_same() -> None:
     powers = [
         may_start(
-            arch_problem(
+            CircularArch.of(
                 Arch(eta=1.286, radius=radius, half_angle=HALF_ANGLE, voussoirs=3), 3.0
-            )
+            ).problem()
         ).power
         for radius in (1.0, 250.0)
     ]
@@ -142,7 +144,9 @@ def test_elsewhere_there_is_no_band(alpha: float, mu: float) -> None:
     half_angle = math.radians(alpha)
     eta = least_thickness(half_angle, mu, 7).eta
     assert eta is not None
-    problem = arch_problem(Arch(half_angle=half_angle, eta=1.001 * eta, voussoirs=7), mu)
+    problem = CircularArch.of(
+        Arch(half_angle=half_angle, eta=1.001 * eta, voussoirs=7), mu
+    ).problem()
     assert may_start(problem).moves is False
 
 

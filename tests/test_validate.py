@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from blocksim.arch.modes import Mode
-from blocksim.arch.scenario import load_scenario
 from blocksim.common.errors import InputError
+from blocksim.kinds.scenarios import load_scenario
 from blocksim.report.tables import write_results
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import disagreements
@@ -78,7 +78,11 @@ def test_modes_that_coincide_on_a_line_of_the_map_are_both_right() -> None:
     assert (on_it.mode_observed, on_it.mode_limit) == (Mode.RRR, Mode.RRS)
     assert on_it.miss == ""
     assert on_it.note.startswith("on a line of the map")
-    beside = validate_one(replace(scenario, mu=1.0001 * scenario.mu), "direct", tol=4e-3)
+    beside = validate_one(
+        replace(scenario, given={**scenario.given, "friction": 1.0001 * scenario.mu}),
+        "direct",
+        tol=4e-3,
+    )
     assert (beside.mode_observed, beside.mode_limit) == (Mode.RRR, Mode.RRS)
     assert beside.miss == "mode rrr, limit says rrs"
 

@@ -28,7 +28,7 @@ from blocksim.blocks.joints import JointState, classify, joint_motion
 from blocksim.common.errors import InputError
 from blocksim.engines.base import Settings
 from blocksim.engines.ground import DEPTH
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.recording import Recording
 from blocksim.view.canvas import Canvas, Panel, Shape, colour
@@ -51,7 +51,7 @@ def rest(arch: Arch = ARCH) -> Array:
 def recording(moved: Array, times: Array, arch: Arch = ARCH) -> Recording:
     """Record given displacements, (frames, blocks, 3)."""
     return Recording(
-        problem=arch_problem(arch, 0.7),
+        problem=CircularArch.of(arch, 0.7).problem(),
         engine="pymunk",
         engine_version="7.3",
         settings=Settings(step=0.01, sweeps=10, hold_sweeps=10),
@@ -536,7 +536,9 @@ def test_lengths_and_times_have_units_where_a_radius_was_given() -> None:
     assert "t = 0.300 s" in metric
     assert "1 m" in metric
     assert "10 times slower" in metric
-    free = replace(falling(), problem=arch_problem(replace(ARCH, radius=1.0, depth=0.5), 0.7))
+    free = replace(
+        falling(), problem=CircularArch.of(replace(ARCH, radius=1.0, depth=0.5), 0.7).problem()
+    )
     film = Film([free], slow=10)
     words = drawn_words(film, 0.3)
     assert "t = 0.30 √(r/g)" in words
@@ -557,12 +559,12 @@ def test_a_still_has_a_legend_of_what_is_in_it() -> None:
 def test_the_title_says_what_the_motion_shows() -> None:
     still = recording(np.zeros((2, ARCH.voussoirs, 3)), np.array([0.0, 10.0]))
     titles = [
-        next(word for word in drawn_words(Film([each])) if "least thickness" in word)
+        next(word for word in drawn_words(Film([each])) if "factor of safety" in word)
         for each in (falling(), still)
     ]
-    assert titles[0].startswith("collapses, ")
-    assert titles[1].startswith("at rest, ")
-    assert all("least thickness as built" in title for title in titles)
+    told = "geometrical factor of safety 2.856"
+    assert titles[0].startswith(f"collapses, still moving as it ends, {told}")
+    assert titles[1].startswith(f"at rest, {told}")
 
 
 def test_rubble_on_the_floor_is_no_hinge() -> None:
@@ -587,14 +589,16 @@ def test_rubble_on_the_floor_is_no_hinge() -> None:
 
 def test_the_line_of_thrust_is_whole_or_not_there() -> None:
     """From springing to springing, however thin the arch; none where it goes far out."""
-    for degrees, eta, whole in ((90, 0.3, True), (90, 0.005, True), (150, 0.9, False)):
+    for degrees, eta, whole in ((90, 0.3, True), (90, 0.005, True), (165, 0.3, False)):
         arch = replace(ARCH, half_angle=math.radians(degrees), eta=eta, voussoirs=27)
         stage = Stage(recording(np.zeros((2, 27, 3)), np.array([0.0, 1.0]), arch))
         assert len(stage.thrust) == whole
         for line in stage.thrust:
             assert line[0] == pytest.approx(line[-1] * [-1, 1], abs=1e-9)
             assert abs(line[0, 1]) < 1e-9
-            assert np.hypot(*np.diff(line, axis=0).T).max() < 0.02
+            # A corner at each joint.
+            # One below the weight of most voussoirs, too.
+            assert 28 < len(line) <= 2 * 27 + 1
 
 
 def test_an_arch_that_leans_stands_on_its_piers_in_the_plane() -> None:
@@ -654,7 +658,7 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         said[way] = inside("render", *pair, *small).stdout
     assert "simulate --seconds 2 records how it falls" in said["short"]
     assert "simulate --seconds" not in said["long"]
-    assert "(eta 0.1035, direct): it is at rest" in said["long"]
+    assert "η = 0.1035, direct): it is at rest" in said["long"]
     with Image.open(tmp_path / "long.gif") as picture:
         first = np.asarray(picture.convert("RGB")).astype(int)
         picture.seek(picture.n_frames - 1)
@@ -674,7 +678,7 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         (("RUN", "--slow", "0"), "--slow = 0.0: must be above 0"),
         (("RUN", "--method", "direct"), "--method = 'direct': must be left out"),
         (("RUN", "--time", "1"), "--time = 1.0: must be left out of a film"),
-        (("RUN", "--time", "-1"), "--time = -1.0: must be 0 or above"),
+        (("RUN", "--time", "-1"), "--time = -1.0: must be 0 or more"),
         (("RUN", "--beside", "none.npz"), "an existing .npz file"),
         (("--alpha", "90", "--mu", "0.3"), "eta is missing"),
         (("semicircle", "--method", "limit"), "--method = 'limit'"),

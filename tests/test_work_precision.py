@@ -17,7 +17,7 @@ from blocksim.ask.methods import METHODS
 from blocksim.cli.tables import chart_table
 from blocksim.common.errors import InputError
 from blocksim.engines import ENGINES
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.report import chart
 from blocksim.report.chart import read_points, write_chart, write_points
 from blocksim.simulation.motion import QUIET
@@ -158,7 +158,7 @@ def test_brackets_of_an_onset_test_cut_short_are_wider_not_wrong(
 def test_work_is_contacts_times_sweeps_times_steps(method: str) -> None:
     """What stands is watched to the end."""
     simulation = Simulation.of(
-        arch_problem(arch(SMALL, 1.5), SMALL.mu),
+        CircularArch.of(arch(SMALL, 1.5), SMALL.mu).problem(),
         method,
         settings={"step": 1 / 480, "sweeps": 20},
     )

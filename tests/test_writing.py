@@ -27,7 +27,7 @@ from blocksim import Arch, InputError, MachineError, simulate
 from blocksim.ask.check import check
 from blocksim.common.files import make_folder, require_place, write_whole
 from blocksim.common.sheets import write_sheet
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.report.poses import write_recording_csv
 from blocksim.report.sheetpage import structure_page
 from blocksim.view.drawing import save_figure
@@ -221,7 +221,7 @@ class Frames:
 def writers() -> Writers:
     """What writes a file of each kind, by the ending of its name."""
     run = simulate(CircularArch.of(ARCH, friction=0.7), method="pymunk", duration=0.02)
-    problem = arch_problem(ARCH, 0.7)
+    problem = CircularArch.of(ARCH, 0.7).problem()
     sheet = sheet_of(problem)
     page = structure_page(check(problem), mode=None, command="blocksim report", settings="")
 

@@ -16,8 +16,8 @@ from blocksim.common.checks import (
     HALF_ANGLE,
     LENGTH,
     PER_VOLUME,
+    VOUSSOIRS,
     require,
-    require_voussoirs,
 )
 from blocksim.common.shown import Shown
 
@@ -68,7 +68,7 @@ class Arch(Shown):
         """Check the ranges."""
         HALF_ANGLE.require("half_angle", self.half_angle)
         ETA.require("eta", self.eta)
-        require_voussoirs(self.voussoirs)
+        VOUSSOIRS.require("voussoirs", self.voussoirs)
         require(self.weight in WEIGHTS, "weight", self.weight, f"one of {', '.join(WEIGHTS)}")
         LENGTH.require("radius", self.radius)
         LENGTH.require("depth", self.depth)

@@ -9,8 +9,9 @@ widest. The half-angle is the same at intrados, centreline and extrados.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from blocksim.arch.circular import Arch
 from blocksim.blocks.problem import STANDARD_GRAVITY
@@ -158,16 +159,16 @@ def friction_angle(mu: float) -> float:
     return math.degrees(math.atan(mu))
 
 
-def require_measured(line: Line, thickness: float | None) -> None:
+def require_measured(given: Mapping[str, Any]) -> None:
     """Raise `InputError` for dimensions that nobody has measured, as of a wrong unit.
 
     Parameters
     ----------
-    line : Line
-    thickness : float or None
-        [m]
+    given : mapping
+        `span`, `rise`, and `thickness` and `at` where they are known.
     """
-    span, rise = line.span, line.rise
+    line = Line(**{name: given[name] for name in ("span", "rise", "at") if name in given})
+    span, rise, thickness = line.span, line.rise, given.get("thickness")
     for field, value in (("span", span), ("rise", rise), ("thickness", thickness)):
         if value is not None:
             LENGTH.require(field, value)
@@ -185,13 +186,6 @@ def require_measured(line: Line, thickness: float | None) -> None:
     radius = Dimensions(span=span, rise=rise, thickness=thickness, at=line.at).radius
     thick = f"at most the mean radius, {radius:.6g} m, which is eta = 1 (is it in m?)"
     require(thickness <= radius, "thickness", thickness, thick)
-
-
-def require_friction_angle(field: str, angle: object) -> None:
-    """Raise `InputError` unless a value is an angle of friction in degrees."""
-    require(
-        is_number(angle, 0, 90), field, angle, "above 0 and at most 90 deg (90: no sliding)"
-    )
 
 
 def require_unit_weight(field: str, value: float) -> None:

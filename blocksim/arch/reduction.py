@@ -67,13 +67,13 @@ class Reduction:
     forces = None
 
     @classmethod
-    def of(cls, arch: Arch, mu: float) -> Reduction:
-        """Keep the joints that limit analysis expects to move."""
+    def of(cls, arch: Arch, mu: float, whole: Assembly | None = None) -> Reduction:
+        """Keep the joints that limit analysis expects to move; `whole` is the arch as built."""
         middle = arch.voussoirs // 2
         expected = {middle - joint for joint in weakest_joints(arch, mu)}
         if arch.voussoirs % 2 == 0:
             expected.add(middle)
-        return cls(arch.assembly(), tuple(sorted({0, *expected})))
+        return cls(whole or arch.assembly(), tuple(sorted({0, *expected})))
 
     def world(self, world: World) -> World:
         """Return the world of all voussoirs, from that of the blocks simulated."""

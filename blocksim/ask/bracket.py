@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Unpack
 
 from blocksim.ask.ends import Ask, Stands, Within, around, tried_ends
@@ -17,6 +19,7 @@ from blocksim.ask.searches import (
     by_engine,
     by_programmes,
     followed,
+    proofs_beside,
     shaken,
     slowly,
 )
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
     from blocksim.arch.answers import ArchBracket
     from blocksim.ask.spread import Happening
     from blocksim.engines.base import Engine, Method
+    from blocksim.limit.proof import Proof
     from blocksim.simulation.observation import Held
     from blocksim.simulation.simulated import Reduced
 
@@ -41,6 +45,10 @@ LEAST = 1e-12
 """Least upper end of where to search."""
 GUESS = 0.1
 """Share of the range at which a search begins where limit analysis gives no value."""
+
+
+Change = tuple[Callable[[float], Problem], float, bool]
+"""Value to problem, the value of the change, and whether it stands above it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,6 +87,8 @@ class Bracket(Shown):
         limit analysis does not know them.
     arch : ArchBracket or None
         Over the thickness of a symmetric circular arch under its own weight: ratios and modes.
+    changes : tuple of Change
+        By limit analysis, what `proofs` prove.
     """
 
     method: str
@@ -100,11 +110,26 @@ class Bracket(Shown):
     events: tuple[Happening, ...] | None = None
     intervals: tuple[Stands, ...] | None = None
     arch: ArchBracket | None = None
+    changes: tuple[Change, ...] = ()
 
     @property
     def reason(self) -> str:
         """The evidence as a sentence."""
         return reason_of(self.evidence)
+
+    @cached_property
+    def proofs(self) -> tuple[Proof, ...]:
+        """Of each change, that it falls to one side and stands to the other, by limit analysis.
+
+        Nearer than 1e-6 of its value; empty where one of them is not proved.
+        """
+        found = [proofs_beside(at, value, rises=rises) for at, value, rises in self.changes]
+        return tuple(proof for each in found for proof in each) if all(found) else ()
+
+    @property
+    def proved(self) -> bool:
+        """Whether all changes are proved from both sides (`blocksim.verify`)."""
+        return bool(self.proofs)
 
     def __repr__(self) -> str:
         low, high = (
@@ -230,6 +255,9 @@ def _thinned(
         splits=found.splits,
         wall_s=time.perf_counter() - started,
         arch=facts,
+        changes=((threshold.problem, threshold.exact, True),)
+        if chosen.name == "limit" and threshold.exact
+        else (),
     )
 
 
@@ -316,6 +344,7 @@ def _of_family(
         evidence += (Evidence("reduction", words),)
     ends = (found.falls, found.stands)
     lower, upper = ends if rises else ends[::-1]
+    intervals = tried_ends(family, found, ask) if static else None
     return Bracket(
         method=chosen.name,
         over=family.name,
@@ -334,8 +363,19 @@ def _of_family(
         splits=found.splits,
         wall_s=time.perf_counter() - started,
         events=None if family.spreading is None else family.spreading.events,
-        intervals=tried_ends(family, found, ask) if static else None,
+        intervals=intervals,
+        changes=_changes(family, intervals or ()) if chosen.name == "limit" else (),
     )
+
+
+def _changes(family: Family, intervals: tuple[Stands, ...]) -> tuple[Change, ...]:
+    """Return all changes that limit analysis knows."""
+    ends = (
+        (end, above)
+        for each in intervals
+        for end, above in ((each.low, True), (each.high, False))
+    )
+    return tuple((family.at, end.limit, above) for end, above in ends if end is not None)
 
 
 def _asking(

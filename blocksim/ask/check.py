@@ -12,6 +12,7 @@ from blocksim.ask.carried import carried_of
 from blocksim.ask.methods import choose, chosen_words, engine_of, merges, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
+from blocksim.ask.undecided import undecided_words
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
@@ -20,7 +21,7 @@ from blocksim.common.shown import Shown
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
-from blocksim.limit.programme import NEAR
+from blocksim.limit.exact import Exact
 from blocksim.limit.proof import proof_of_rest
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
@@ -111,14 +112,15 @@ class Check(Shown):
 
     @cached_property
     def proof(self) -> Proof | None:
-        """The proof of the verdict by limit analysis; None where there is none."""
+        """The proof of the verdict by limit analysis; None where it is undecided."""
         if self.method != "limit":
             return None
         found = None
-        if offers_of(self.problem) and self.carried is not None:
+        stands = self.verdict is Verdict.STANDS
+        if stands and offers_of(self.problem) and self.carried is not None:
             # The maker's own statics know forces: no linear programme has to be loaded.
             forces = self.carried.forces
-            found = None if forces is None else proof_of_rest(self.problem, forces)
+            found = None if forces is None else proof_of_rest(Exact(self.problem), forces)
         if found is None and self.static is not None:
             found = self.static.proof
         return found if found is not None and found.claim == self.verdict.value else None
@@ -230,6 +232,10 @@ def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) 
     if found.static is not None:
         # Asked for already.
         vars(answer)["static"] = found.static
+    if answer.method == "limit" and not answer.proved:
+        open_ = Evidence("limit analysis", undecided_words(problem))
+        evidence = (open_, *answer.evidence[1:])
+        return replace(answer, verdict=Verdict.UNDECIDED, evidence=evidence)
     return answer
 
 
@@ -284,7 +290,7 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
         answer = Check(
             method=chosen.name,
-            verdict=verdict if static.decided else Verdict.UNDECIDED,
+            verdict=verdict,
             evidence=(
                 Evidence("limit analysis", _static_words(static)),
                 *_closing(problem, static.exists),
@@ -368,11 +374,6 @@ def _unit(rates: Array, problem: Problem) -> Array:
 
 def _static_words(static: Equilibrium) -> str:
     """Say what limit analysis found."""
-    if not static.decided:
-        return (
-            f"the limit is nearer than {NEAR:g}: loads or friction changed by that share would "
-            "decide"
-        )
     if static.exists:
         return (
             "forces of equilibrium exist, every contact pressing by "

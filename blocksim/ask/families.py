@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from blocksim.ask.scan import Scan, least_friction
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.shaking import LONGEST, SHORTEST, STRONGEST, Shaking
+from blocksim.blocks.shaking import AMPLITUDE, DURATION, Shaking
 from blocksim.common.errors import InputError
 from blocksim.limit.intervals import Interval, over_factor, over_tilt
 
@@ -206,7 +206,7 @@ def _over_amplitude(problem: Problem) -> Family:
         unit="g",
         at=lambda value: replace(problem, shaking=shaking.with_amplitude(value)),
         low=0.0,
-        high=STRONGEST,
+        high=AMPLITUDE.high,
         stands="low",
         standing=lambda: None,
         start=shaking.amplitude or None,
@@ -219,8 +219,8 @@ def _over_duration(problem: Problem) -> Family:
         name="duration",
         unit="s",
         at=lambda value: replace(problem, shaking=shaking.with_duration(value)),
-        low=SHORTEST,
-        high=LONGEST,
+        low=DURATION.low,
+        high=DURATION.high,
         stands="low",
         standing=lambda: None,
         start=shaking.duration,

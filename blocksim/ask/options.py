@@ -7,7 +7,7 @@ from typing import TypedDict
 
 from blocksim.blocks.maker import Maker
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import WIDTH, require
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Method
 from blocksim.simulation.simulated import BY_RULE, Overrides
@@ -63,7 +63,7 @@ class Taken:
 
     def __post_init__(self) -> None:
         """Check the width of a bracket."""
-        require(is_number(self.tol, 0, 0.5), "tol", self.tol, "above 0 and at most 0.5")
+        WIDTH.require("tol", self.tol)
 
 
 def taken(options: Options, *without: str) -> Taken:

@@ -17,7 +17,9 @@ from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
     from blocksim.ask.spread import Spreading
+    from blocksim.blocks.problem import Problem
     from blocksim.engines.base import Engine
+    from blocksim.limit.proof import Proof
     from blocksim.simulation.observation import Held, Observation
 
 SURE = (1e-8, 1e-7, 1e-6)
@@ -131,6 +133,28 @@ def shaken(
         reason=f"shaken at {search.runs} values, each time until all lay still; this is one "
         "change from standing to falling, and beyond it blocks may stand again",
     )
+
+
+def proofs_beside(
+    at: Callable[[float], Problem], value: float, *, rises: bool
+) -> tuple[Proof, ...]:
+    """Prove that it falls and stands a little to both sides of a value; empty if not proved.
+
+    Parameters
+    ----------
+    at : callable
+        Value to problem.
+    value : float
+    rises : bool
+        Whether it stands above the value.
+    """
+    for sure in SURE:
+        ends = value * (1 - sure), value * (1 + sure)
+        found = [equilibrium(at(end)).proof for end in (ends if rises else ends[::-1])]
+        proofs = tuple(each for each in found if each is not None)
+        if [each.claim for each in proofs] == ["collapses", "stands"]:
+            return proofs
+    return ()
 
 
 def by_programmes(family: Family, exact: float | None, *, rises: bool) -> Search:

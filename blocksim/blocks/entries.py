@@ -3,73 +3,50 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cache
-from typing import Annotated, Any, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field
 
 from blocksim.blocks.polygons import MOST_BLOCKS
 from blocksim.blocks.shaking import MOST_ROWS
 from blocksim.blocks.shapes import MOST_CORNERS
 from blocksim.common.checks import (
     COORDINATE,
-    ETA,
     FACTOR,
     FORCE,
-    FRICTION,
     INERTIA,
     LENGTH,
     PER_VOLUME,
+    SMOOTH_OR_ROUGH,
     TURN,
     WEIGHT,
+    Range,
 )
-from blocksim.common.errors import MISSING, InputError
+from blocksim.common.tables import Words, Written, as_said
 
-FARTHEST = 1e15
-"""Largest number in a file that has no unit of its own."""
-
-Number = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST, allow_inf_nan=False, strict=True)]
-Coordinate = Annotated[
-    float,
-    Field(ge=-COORDINATE.high, le=COORDINATE.high, allow_inf_nan=False, strict=True),
-]
-Newtons = Annotated[
-    float, Field(ge=-FORCE.high, le=FORCE.high, allow_inf_nan=False, strict=True)
-]
-Times = Annotated[
-    float, Field(ge=-FACTOR.high, le=FACTOR.high, allow_inf_nan=False, strict=True)
-]
-Degrees = Annotated[float, Field(ge=-TURN.high, le=TURN.high, allow_inf_nan=False, strict=True)]
-Length = Annotated[
-    float, Field(ge=LENGTH.low, le=LENGTH.high, allow_inf_nan=False, strict=True)
-]
-Step = Annotated[float, Field(ge=0, le=LENGTH.high, allow_inf_nan=False, strict=True)]
-Weight = Annotated[
-    float, Field(ge=WEIGHT.low, le=WEIGHT.high, allow_inf_nan=False, strict=True)
-]
-Inertia = Annotated[
-    float, Field(ge=INERTIA.low, le=INERTIA.high, allow_inf_nan=False, strict=True)
-]
-Density = Annotated[
-    float, Field(ge=PER_VOLUME.low, le=PER_VOLUME.high, allow_inf_nan=False, strict=True)
-]
+Number = Annotated[float, Range(low=-1e15, high=1e15)]
+"""One in a file that has no unit of its own."""
+Coordinate = Annotated[float, COORDINATE]
+Newtons = Annotated[float, FORCE]
+Times = Annotated[float, FACTOR]
+Length = Annotated[float, LENGTH]
+Step = Annotated[float, Range(low=0, high=LENGTH.high, unit="m")]
+Density = Annotated[float, PER_VOLUME]
+Friction = Annotated[float, SMOOTH_OR_ROUGH]
 Point = tuple[Coordinate, Coordinate]
 Force = tuple[Newtons, Newtons]
 Way = tuple[Times, Times]
 Corners = Annotated[list[Point], Field(min_length=3, max_length=MOST_CORNERS)]
 Name = Annotated[str, Field(min_length=1, max_length=100, strict=True)]
-Id = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
+_Any = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
+Id = Annotated[_Any, Words("the id of a block")]
+NewId = Annotated[_Any, Words("a whole number or a name of up to 100 characters")]
 Note = Annotated[str, Field(max_length=2000, strict=True)]
 MOST_NOTES = 20
-Friction = (
-    Annotated[float, Field(ge=0, le=FRICTION.high, allow_inf_nan=False, strict=True)]
-    | Literal["inf"]
-)
-_FORBID: dict[str, str] = {"extra": "forbid"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class BlockEntry:
+class BlockEntry(Written):
     """Entry of `blocks`: `vertices`, or `polygons` that move as one; see `Body`.
 
     Parameters
@@ -92,22 +69,20 @@ class BlockEntry:
         Length out of the plane [m].
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
-    id: Id
+    id: NewId
     vertices: Corners | None = None
     polygons: Annotated[list[Corners], Field(min_length=1, max_length=MOST_CORNERS)] | None = (
         None
     )
     fixed: Annotated[bool, Field(strict=True)] = False
-    weight: Weight | None = None
+    weight: Annotated[float, WEIGHT] | None = None
     centre: Point | None = None
-    inertia: Inertia | None = None
+    inertia: Annotated[float, INERTIA] | None = None
     depth: Length = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointEntry:
+class JointEntry(Written):
     """Entry of `joints`: two ends, or one and a `normal` from `a` into `b`.
 
     Parameters
@@ -118,13 +93,11 @@ class JointEntry:
         Both ends of the joint [m], or the corner that rests on a face.
     normal : point
         Direction from `a` into `b`, where there is one end.
-    friction : float or "inf"
+    friction : float
         Of this joint, instead of that of the file; 0 allowed.
     faces : pair of faces
         Faces of `a` and `b` that meet in it, two points each [m], where they are known.
     """
-
-    __pydantic_config__: ClassVar = _FORBID
 
     a: Id
     b: Id
@@ -135,7 +108,7 @@ class JointEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LoadEntry:
+class LoadEntry(Written):
     """Entry of `dead` or `live`: a `body` force, or a `force` on a block or along a `patch`.
 
     Parameters
@@ -154,8 +127,6 @@ class LoadEntry:
         From one x to another [m]: what lies uppermost there bears the force, evenly.
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     body: Annotated[list[Times], Field(min_length=2, max_length=3)] | None = None
     blocks: Annotated[list[Id], Field(min_length=1, max_length=MOST_BLOCKS)] | None = None
     block: Id | None = None
@@ -165,7 +136,7 @@ class LoadEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class MoveEntry:
+class MoveEntry(Written):
     """Entry of `move`: how a fixed block moves as the parameter [m] grows.
 
     Parameters
@@ -180,16 +151,14 @@ class MoveEntry:
         What it turns about [m]; by default the middle of its corners.
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     block: Id
     direction: Way | None = None
-    turn_deg: Degrees = 0.0
+    turn_deg: Annotated[float, TURN] = 0.0
     about: Point | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShakeEntry:
+class ShakeEntry(Written):
     """`shake`: a shape, how strong [g] and how long [s]; or accelerations [g] over time [s].
 
     Parameters
@@ -206,8 +175,6 @@ class ShakeEntry:
         The acceleration across at each of them [g].
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     shape: str | None = None
     amplitude_g: Number | None = None
     duration_s: Number | None = None
@@ -216,7 +183,7 @@ class ShakeEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExpectEntry:
+class ExpectEntry(Written):
     """Entry of `expect`: what the source says, for `validate`.
 
     Either a `verdict` on the structure as it is, or the `value` of `over`.
@@ -235,8 +202,6 @@ class ExpectEntry:
         `stands` or `collapses`, of the structure as it is.
     """
 
-    __pydantic_config__: ClassVar = _FORBID
-
     over: Name | None = None
     value: Number | None = None
     published: Annotated[str, Field(pattern=r"^-?\d+(\.\d+)?$", strict=True)] | None = None
@@ -245,12 +210,12 @@ class ExpectEntry:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Around:
+class Around(Written):
     """What a structure file says besides its blocks: friction, weight and loads.
 
     Parameters
     ----------
-    friction : float or "inf"
+    friction : float
         Friction coefficient of every joint.
     title : str
         Said with each answer.
@@ -278,8 +243,6 @@ class Around:
     quick : bool
         Whether `validate --quick` asks it.
     """
-
-    __pydantic_config__: ClassVar = _FORBID
 
     friction: Friction
     title: Annotated[str, Field(max_length=200, strict=True)] = ""
@@ -330,50 +293,6 @@ class StructureFile(Around):
     rounding: Step | None = None
 
 
-_TABLES = (
-    StructureFile,
-    BlockEntry,
-    JointEntry,
-    LoadEntry,
-    MoveEntry,
-    ShakeEntry,
-    ExpectEntry,
-)
-_KEYS = {field.name for table in _TABLES for field in fields(table)}
-_ALLOWED = {
-    "friction": '0 to 1e+06, or "inf"',
-    "a": "the id of a block",
-    "b": "the id of a block",
-    "block": "the id of a block",
-    "id": "a whole number or a name of up to 100 characters",
-}
-"""What is said of keys that may have several types."""
-_OF_POINTS = (
-    "vertices",
-    "polygons",
-    "centre",
-    "ends",
-    "faces",
-    "point",
-    "patch",
-    "about",
-)
-_RANGES = {
-    **dict.fromkeys(_OF_POINTS, COORDINATE),
-    **dict.fromkeys(("normal", "body", "direction", "load"), FACTOR),
-    **dict.fromkeys(("depth", "size", "radius"), LENGTH),
-    **dict.fromkeys(("span_m", "rise_m", "thickness_m"), LENGTH),
-    **dict.fromkeys(("density", "specific_weight"), PER_VOLUME),
-    "force": FORCE,
-    "weight": WEIGHT,
-    "inertia": INERTIA,
-    "turn_deg": TURN,
-    "eta": ETA,
-    "mu": FRICTION,
-}
-"""What is said of numbers out of range."""
-
-
 def entries_of(table: dict[str, Any]) -> StructureFile:
     """Check the keys, types and ranges of a structure file of blocks.
 
@@ -382,7 +301,7 @@ def entries_of(table: dict[str, Any]) -> StructureFile:
     InputError
         In one line: the first entry that is wrong.
     """
-    return _checked(_of_blocks(), table)
+    return as_said(StructureFile, table)
 
 
 def around_of(table: dict[str, Any]) -> Around:
@@ -393,61 +312,4 @@ def around_of(table: dict[str, Any]) -> Around:
     InputError
         In one line: the first entry that is wrong.
     """
-    return _checked(_of_others(), table)
-
-
-Checked = TypeVar("Checked")
-
-
-def _checked(schema: TypeAdapter[Checked], table: dict[str, Any]) -> Checked:
-    try:
-        return schema.validate_python(table)
-    except ValidationError as error:
-        raise _first_of(error) from None
-
-
-@cache
-def _of_blocks() -> TypeAdapter[StructureFile]:
-    return TypeAdapter(StructureFile)
-
-
-@cache
-def _of_others() -> TypeAdapter[Around]:
-    return TypeAdapter(Around)
-
-
-def _first_of(error: ValidationError) -> InputError:
-    """Turn the first of pydantic's complaints into one line."""
-    errors = error.errors(include_url=False, include_context=False)
-    # A misspelt key shows twice, as unknown and as missing: the first says more.
-    same = [each for each in errors if each["loc"][:-1] == errors[0]["loc"][:-1]]
-    first = min(same, key=lambda each: each["type"] != "unexpected_keyword_argument")
-    unknown = first["type"] == "unexpected_keyword_argument"
-    path = first["loc"]
-    field = ""
-    for at, part in enumerate(path):
-        if isinstance(part, int):
-            field += f"[{part}]"
-        elif part in _KEYS or (unknown and at == len(path) - 1):
-            field += f".{part}" if field else part
-    if unknown:
-        return InputError(field, first["input"], "left out: there is no such key")
-    if first["type"] in {"missing", "missing_argument"}:
-        return InputError(field, MISSING, "given")
-    last = field.rpartition(".")[2].partition("[")[0]
-    said = allowed_words(last, first["type"], first["msg"])
-    return InputError(field, first["input"], _ALLOWED.get(last, said))
-
-
-def allowed_words(key: str, kind: str, message: str) -> str:
-    """Say what would be accepted of a key: both ends of its range where a number is beyond it.
-
-    Parameters
-    ----------
-    key : str
-    kind, message : str
-        Of pydantic's complaint.
-    """
-    if key in _RANGES and kind in {"greater_than_equal", "less_than_equal"}:
-        return _RANGES[key].words
-    return message.removeprefix("Input should be ")
+    return as_said(Around, table)

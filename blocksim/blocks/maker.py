@@ -7,12 +7,12 @@ Every kind of structure is one. So is a class of a user's own, which needs a nam
 from __future__ import annotations
 
 import math
-import sys
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, cast
+from types import MappingProxyType
+from typing import Any, ClassVar, Self, cast
 
 from blocksim.blocks.made import Built, Made
 from blocksim.blocks.problem import Problem
@@ -20,17 +20,14 @@ from blocksim.common.checks import (
     LENGTH,
     PER_VOLUME,
     SMOOTH_OR_ROUGH,
-    is_number,
+    Range,
     require,
 )
 from blocksim.common.errors import MISSING, InputError, perhaps
+from blocksim.common.fields import Field, fields_of
 from blocksim.common.shown import Shown
 
-if TYPE_CHECKING:
-    pass
-
 Array = Any
-Stands = Literal["low", "high"]
 FARTHEST = LENGTH.high
 """Largest length [m]."""
 MOST = 1000
@@ -39,108 +36,40 @@ UNIT_WEIGHT = 1.0
 """Weight per volume where none is given: only ratios of forces have a meaning [N/m^3]."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Parameter:
-    """What is known of a parameter: messages, ranges and tables in pages come from it.
-
-    Parameters
-    ----------
-    about : str
-        In a line.
-    unit : str
-        m, deg, or nothing.
-    low, high : float
-        Range, ends included; `above` says that the low end is not.
-    above : bool
-    whole : bool
-        Whether it is a whole number.
-    choices : tuple of str
-        Words, where it is one of them.
-    optional : bool
-        Whether it may be left out for nothing.
-    tables : bool
-        Whether it is a list of tables.
-    table : bool
-        Whether it is a table of an arch.
-    stands : {"low", "high"} or None
-        On which side structures stand, where it may be bracketed over.
-    """
-
-    about: str
-    unit: str = ""
-    low: float = 0.0
-    high: float = math.inf
-    above: bool = True
-    whole: bool = False
-    choices: tuple[str, ...] = ()
-    optional: bool = False
-    tables: bool = False
-    table: bool = False
-    stands: Stands | None = None
-
-    @property
-    def is_number(self) -> bool:
-        """Whether it is a number."""
-        return not (self.choices or self.tables or self.table)
-
-    def require(
-        self, name: str, value: object, within: tuple[float, float] | None = None
-    ) -> None:
-        """Raise `InputError` unless a value is one, in its own range or a narrower one."""
-        low, high = within or (self.low, self.high)
-        above = self.above or low != self.low
-        allowed = self.allowed(low, high, above)
-        if self.optional and value is None:
-            return
-        if self.choices:
-            require(value in self.choices, name, value, allowed)
-        elif self.is_number:
-            # Just below a low end that counts is_number takes it.
-            least = low if above else math.nextafter(low, -math.inf)
-            ok = is_number(value, least, min(high, sys.float_info.max))
-            ok = ok and (not self.whole or value == int(cast(float, value)))
-            require(ok, name, value, allowed)
-
-    def words(self, value: object) -> tuple[str, str]:
-        """Say a value and which ones there may be, for tables."""
-        if self.table:
-            return cast(Maker, value).name, "a table with a kind of arch"
-        if self.tables:
-            return "none", "a list of tables"
-        said = f"{value:g}" if isinstance(value, float) else str(value)
-        return said.lower(), self.allowed(self.low, self.high, self.above)
-
-    def allowed(self, low: float, high: float, above: bool) -> str:
-        """Say which values it may have."""
-        if self.choices:
-            return f"one of {', '.join(self.choices)}"
-        unit = f" {self.unit}" if self.unit else ""
-        if self.whole:
-            return f"a whole number from {low:g} to {high:g}"
-        start = f"above {low:.6g}" if above else f"{low:.6g} or more"
-        after = math.nextafter(high, math.inf)
-        # The last number below a round one is not said as that.
-        is_next = after.is_integer() and not float(high).is_integer()
-        end = f"below {after:g}" if is_next else f"at most {high:.6g}"
-        return f"{start} and {end}{unit}"
+def parameter(
+    default: object,
+    about: str,
+    *,
+    unit: str = "",
+    low: float = 0.0,
+    high: float = math.inf,
+    above: bool = True,
+    whole: bool = False,
+    **known: Any,
+) -> Any:
+    """Make a field of a kind: a number, but for `choices` and `nested`; see `Field`."""
+    numbers = Range(low=low, high=high, unit=unit, above=above, whole=whole)
+    is_number = not (known.get("choices") or known.get("nested"))
+    said = Field(about=about, range=numbers if is_number else None, **known)
+    return field(default=default, metadata={Field.__name__: said})
 
 
-def parameter(default: object, about: str, **known: Any) -> Any:
-    """Make a field of a kind; see `Parameter`."""
-    return field(default=default, metadata={"parameter": Parameter(about=about, **known)})
-
-
-def metres(default: float, about: str, **known: Any) -> Any:
+def metres(
+    default: float,
+    about: str,
+    *,
+    low: float = LENGTH.low,
+    high: float = LENGTH.high,
+    above: bool = False,
+    **known: Any,
+) -> Any:
     """Make a field that is a length [m]."""
-    usual = {"low": LENGTH.low, "high": FARTHEST, "above": False}
-    return parameter(default, about, unit="m", **{**usual, **known})
+    return parameter(default, about, unit="m", low=low, high=high, above=above, **known)
 
 
-def count(default: int, about: str, **known: Any) -> Any:
+def count(default: int, about: str, *, low: int = 1, high: float = MOST, **known: Any) -> Any:
     """Make a field that is a number of things."""
-    return parameter(
-        default, about, whole=True, **{"low": 1, "high": MOST, "above": False, **known}
-    )
+    return parameter(default, about, whole=True, low=low, high=high, above=False, **known)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,24 +84,26 @@ class Table:
 
     def __post_init__(self) -> None:
         """Check first each value alone, then those that depend on others."""
-        for name, known in parameters_of(type(self)).items():
+        for name, known in fields_of(type(self)).items():
             value = getattr(self, name)
             known.require(name, value)
             if known.whole and isinstance(value, float):
                 # 40.0 of a file is 40.
                 object.__setattr__(self, name, int(value))
         # What all kinds have comes first and depends on what comes after it.
-        for name, known in reversed(parameters_of(type(self)).items()):
-            known.require(name, getattr(self, name), self.limits(name))
+        for name, known in reversed(fields_of(type(self)).items()):
+            within = None if known.range is None else self.limits(name)
+            known.require(name, getattr(self, name), within)
 
     def limits(self, name: str) -> tuple[float, float]:
         """Range of a parameter beside the others."""
-        known = parameters_of(type(self))[name]
+        known = fields_of(type(self))[name].range
+        assert known is not None  # noqa: S101 - asked of numbers only
         return known.low, known.high
 
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them."""
-        return {name: _plain(getattr(self, name)) for name in parameters_of(type(self))}
+        return {name: _plain(getattr(self, name)) for name in fields_of(type(self))}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,7 +158,7 @@ class Maker(Shown, Table, ABC):
     def made(self, density: float) -> Made:
         """Make the bodies.
 
-        Parameters
+        Fields
         ----------
         density : float
             Weight per volume [N/m^3].
@@ -283,6 +214,16 @@ class Maker(Shown, Table, ABC):
         """What the unit of length of engines is called."""
         return "L"
 
+    @property
+    def has_size(self) -> bool:
+        """Whether its lengths are metres."""
+        return True
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """What it is known by, in words for drawings; nothing where its title says enough."""
+        return ()
+
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them, with the kind's name."""
         return {"kind": self.name, **super().table()}
@@ -300,12 +241,12 @@ class Maker(Shown, Table, ABC):
             given[here] = cast(Maker, given[here]).but(**{rest: value}) if rest else value
         return type(self)(**given)
 
-    def number(self, name: str) -> tuple[Parameter, float, float]:
+    def number(self, name: str) -> tuple[Field, float, float]:
         """Return what is known of a number that may be bracketed over, and its range."""
         here, _, rest = name.partition(".")
         if rest:
             return cast(Maker, getattr(self, here)).number(rest)
-        return parameters_of(type(self))[here], *self.limits(here)
+        return fields_of(type(self))[here], *self.limits(here)
 
     def value(self, name: str) -> float:
         """Return the value of such a number."""
@@ -318,18 +259,12 @@ class Maker(Shown, Table, ABC):
     def bracketed(self) -> tuple[str, ...]:
         """Names of the parameters that may be bracketed over."""
         names: list[str] = []
-        for name, known in parameters_of(type(self)).items():
+        for name, known in fields_of(type(self)).items():
             if known.stands is not None and getattr(self, name) is not None:
                 names.append(name)
-            elif known.table:
+            elif known.nested == "table":
                 names += [f"{name}.{each}" for each in getattr(self, name).bracketed]
         return tuple(names)
-
-
-def parameters_of(table: type[Table]) -> dict[str, Parameter]:
-    """Return what is known of each parameter, by name, in order."""
-    known = {each.name: each.metadata.get("parameter") for each in fields(table)}
-    return {name: each for name, each in known.items() if each is not None}
 
 
 def _plain(value: object) -> object:
@@ -340,7 +275,12 @@ def _plain(value: object) -> object:
     return value
 
 
-def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Maker]], path: str = "") -> Maker:
+def kind_of(
+    written: Mapping[str, Any],
+    kinds: Sequence[type[Maker]],
+    path: str = "",
+    forces: Mapping[str, float | None] = MappingProxyType({}),
+) -> Maker:
     """Read a kind from a table.
 
     Parameters
@@ -351,6 +291,8 @@ def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Maker]], path: str 
         Those there are.
     path : str
         What leads to the table, for messages: `arch.`.
+    forces : mapping of str to float
+        Friction and density, which stand beside the parameters.
 
     Raises
     ------
@@ -365,7 +307,7 @@ def kind_of(written: Mapping[str, Any], kinds: Sequence[type[Maker]], path: str 
         raise InputError(f"{path}kind", named, allowed + near)
     chosen = known[named]
     given = {key: value for key, value in written.items() if key != "kind"}
-    return cast(Maker, _table_of(chosen, given, kinds, path, f"a {named} has"))
+    return cast(Maker, _table_of(chosen, given, kinds, path, f"a {named} has", forces))
 
 
 def _table_of(
@@ -374,8 +316,9 @@ def _table_of(
     kinds: Sequence[type[Maker]],
     path: str,
     has: str,
+    forces: Mapping[str, float | None] = MappingProxyType({}),
 ) -> Table:
-    parameters = parameters_of(chosen)
+    parameters = fields_of(chosen)
     given: dict[str, Any] = {}
     for key, value in written.items():
         known = parameters.get(key)
@@ -383,14 +326,14 @@ def _table_of(
             raise InputError(f"{path}{key}", value, f"left out: {has} {', '.join(parameters)}")
         where = f"{path}{key}"
         given[key] = value
-        if known.table:
-            require(isinstance(value, Mapping), where, value, "a table with a kind of arch")
+        if known.nested == "table":
+            require(isinstance(value, Mapping), where, value, known.allowed)
             arches = [each for each in kinds if each.is_arch]
             usual = {"kind": getattr(chosen, key).name}
             table = {**usual, **cast("Mapping[str, Any]", value)}
             given[key] = kind_of(table, arches, f"{where}.")
-        elif known.tables:
-            require(isinstance(value, list | tuple), where, value, "a list of tables")
+        elif known.nested == "tables":
+            require(isinstance(value, list | tuple), where, value, known.allowed)
             row = cast("type[Maker]", chosen).row_types[key]
             tables: list[Table] = []
             for at, each in enumerate(cast("Sequence[Any]", value)):
@@ -399,6 +342,6 @@ def _table_of(
                 tables.append(_table_of(row, each, kinds, f"{where}[{at}].", "it has"))
             given[key] = tuple(tables)
     try:
-        return chosen(**given)
+        return chosen(**given, **forces)
     except InputError as error:
         raise InputError(f"{path}{error.field}", error.value, error.allowed) from None

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from blocksim.blocks.assembly import Array, frozen
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import Range, require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath, read_file
 
@@ -33,10 +33,8 @@ PARTS = 20
 """Parts of a pulse in which its acceleration hardly changes."""
 TABLE = "table"
 """The shape of an acceleration that is given over time."""
-STRONGEST = 100.0
-"""Largest amplitude [g]."""
-SHORTEST, LONGEST = 1e-6, 600.0
-"""Least and largest duration [s]."""
+AMPLITUDE = Range(low=0, high=100, unit="g")
+DURATION = Range(low=1e-6, high=600, unit="s")
 MOST_ROWS, LARGEST_FILE, LONGEST_LINE = 1_000_000, 50_000_000, 200
 """Rows of a table, bytes of its file, and letters of a line."""
 LATEST = 1e9
@@ -77,10 +75,8 @@ class Shaking:
         """Check the ranges."""
         known = (*SHAPES, TABLE)
         require(self.shape in known, "shake", self.shape, f"one of {', '.join(known)}")
-        strong = self.amplitude == 0 or is_number(self.amplitude, 0, STRONGEST)
-        require(strong, "amplitude", self.amplitude, f"0 to {STRONGEST:g} g")
-        long = is_number(self.duration, 0, LONGEST) and self.duration >= SHORTEST
-        require(long, "duration", self.duration, f"{SHORTEST:g} to {LONGEST:g} s")
+        AMPLITUDE.require("amplitude", self.amplitude)
+        DURATION.require("duration", self.duration)
         object.__setattr__(self, "table", frozen(np.reshape(self.table, (-1, 2)), (-1, 2)))
 
     def with_amplitude(self, amplitude: float) -> Shaking:

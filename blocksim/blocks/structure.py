@@ -103,7 +103,7 @@ def _joints(written: StructureFile, bodies: Sequence[Body]) -> list[GivenJoint] 
                 b=b,
                 ends=np.array(joint.ends, dtype=float),
                 normal=None if joint.normal is None else np.array(joint.normal, dtype=float),
-                friction=_friction(joint.friction),
+                friction=joint.friction,
                 faces=None if joint.faces is None else np.array(joint.faces, dtype=float),
             )
         )
@@ -166,16 +166,16 @@ def problem_of(
                 about=about,
             )
         )
-    mu = _friction(written.friction)
+    mu = written.friction
     own = {joint.friction for joint in assembly.joints}
     if len(own) == 1 and own != {None}:
         # All joints have the same friction of their own: it is that of the structure.
-        mu = own.pop()
+        mu = own.pop() or 0.0
         joined = tuple(replace(joint, friction=None) for joint in assembly.joints)
         assembly = replace(assembly, joints=joined)
     return Problem(
         assembly=assembly,
-        mu=0.0 if mu is None else mu,
+        mu=mu,
         gravity=gravity,
         dead=tuple(dead),
         live=tuple(live),
@@ -191,10 +191,6 @@ def problem_of(
 
 def _has_weight(body: Body) -> bool:
     return body.fixed or body.weight is not None
-
-
-def _friction(value: float | str | None) -> float | None:
-    return math.inf if value == "inf" else None if value is None else float(value)
 
 
 def _friction_text(value: float) -> float | str:

@@ -12,6 +12,9 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import click
 
+from blocksim.common.checks import Range
+from blocksim.common.fields import Field
+
 
 class _File(click.Path):
     """The path of a file, or of a folder."""
@@ -34,6 +37,24 @@ class _File(click.Path):
         return super().convert(value, param, ctx)
 
 
+class _Number(click.ParamType[Any]):
+    """A number in a range."""
+
+    def __init__(self, kind: click.ParamType[Any], known: Range) -> None:
+        self.name, self._kind, self._known = kind.name, kind, known
+
+    def convert(
+        self,
+        value: Any,
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> Any:
+        """Refuse what is no number, or out of range."""
+        number = self._kind.convert(value, param, ctx)
+        self._known.require(param.opts[0] if param else self.name, number)
+        return number
+
+
 KINDS: dict[object, click.ParamType[Any]] = {
     str: click.STRING,
     int: click.INT,
@@ -42,36 +63,27 @@ KINDS: dict[object, click.ParamType[Any]] = {
 }
 
 
-@dataclass(frozen=True)
-class Option:
+@dataclass(frozen=True, kw_only=True)
+class Option(Field):
     """What is said of an option, beside its type and default.
 
     Parameters
     ----------
-    help : str
     name : str
         With its dashes, where it is not that of the parameter; `--yes/--no` of a flag.
     metavar : str, optional
-    low, high : int, optional
-        Range of a whole number, ends included.
     folder : bool
         Whether a path is that of a folder.
     """
 
-    help: str
     name: str = ""
     metavar: str | None = None
-    low: int | None = None
-    high: int | None = None
     folder: bool = False
 
 
-@dataclass(frozen=True)
-class Argument:
+@dataclass(frozen=True, kw_only=True)
+class Argument(Option):
     """What is said of an argument, which may be left out."""
-
-    help: str
-    folder: bool = False
 
 
 class _Argument(click.Argument):
@@ -165,15 +177,15 @@ def _parameter(
 ) -> click.Parameter:
     """Make an option or an argument of an annotated type."""
     kind, said = _said(hint)
-    if needed and said == Option(""):
-        said = Argument("")
+    if needed and said == Option():
+        said = Argument()
     if isinstance(said, Argument):
         made = _Argument([name], type=_type(kind, said), required=needed, default=default)
-        made.about = said.help
+        made.about = said.about
         return made
     flags = [said.name or f"--{name.replace('_', '-')}", name]
     if kind is bool:
-        return click.Option(flags, is_flag=True, default=default, help=said.help)
+        return click.Option(flags, is_flag=True, default=default, help=said.about)
     many = get_origin(kind) is list
     return click.Option(
         flags,
@@ -183,7 +195,7 @@ def _parameter(
         required=needed,
         metavar=said.metavar,
         show_default=default is not None,
-        help=said.help,
+        help=said.about,
         callback=_as_list if many else None,
     )
 
@@ -192,11 +204,11 @@ def _as_list(context: object, parameter: object, value: tuple[str, ...]) -> list
     return list(value)
 
 
-def _said(hint: Any) -> tuple[Any, Option | Argument]:
+def _said(hint: Any) -> tuple[Any, Option]:
     """Return the type of an annotation, None left out, and what is said of it."""
-    found: Option | Argument = Option("")
+    found = Option()
     for part in _parts(hint):
-        if isinstance(part, Option | Argument):
+        if isinstance(part, Option):
             found = part
         elif part is not NoneType:
             hint = part
@@ -213,11 +225,11 @@ def _parts(hint: Any) -> Iterator[Any]:
         yield hint
 
 
-def _type(kind: Any, said: Option | Argument) -> Any:
+def _type(kind: Any, said: Option) -> Any:
     if get_origin(kind) is Literal:
         return click.Choice(get_args(kind))
     if get_origin(kind) is tuple:
         return click.Tuple([KINDS[each] for each in get_args(kind)])
-    if isinstance(said, Option) and said.high is not None:
-        return click.IntRange(said.low, said.high)
+    if said.range is not None:
+        return _Number(KINDS[kind], said.range)
     return _File(folder=True) if said.folder else KINDS[kind]

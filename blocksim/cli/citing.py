@@ -14,7 +14,7 @@ from blocksim.cli.output import say
 def cite(
     methods: Annotated[
         list[str] | None,
-        Option(name="--method", help=f"Repeatable, or all: {', '.join(METHODS.shipped)}."),
+        Option(name="--method", about=f"Repeatable, or all: {', '.join(METHODS.shipped)}."),
     ] = None,
 ) -> None:
     """Print BibTeX of blocksim, of the paper, and of what methods rest on."""

@@ -40,43 +40,39 @@ from blocksim.cli.options import (
 from blocksim.cli.output import picture_kind, progress, say
 from blocksim.cli.question import question
 from blocksim.cli.subject import problem_asked
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
-from blocksim.kinds.circular import plain_arch
 from blocksim.report.recordings import recording_lines
 from blocksim.simulation.recording import Recording
 
 FILMS = ("mp4", "gif")
-LONGEST_RECORDING = 600.0
-"""Seconds."""
+RECORDED = Range(low=0, high=600, unit="s", above=True)
 
 
 def simulate(
     given: Given,
     loading: Loading,
-    out: Annotated[Path | None, Option(help="Recording to write, .npz; required.")] = None,
+    out: Annotated[Path | None, Option(about="Recording to write, .npz; required.")] = None,
     scene: Scene = None,
     method: Annotated[
-        str, Option(help=f"auto, or an engine: {', '.join(NAMES)}{OWN}.")
+        str, Option(about=f"auto, or an engine: {', '.join(NAMES)}{OWN}.")
     ] = "auto",
     over: Annotated[
-        str | None, Option(help="spread: move the supports until it has fallen.")
+        str | None, Option(about="spread: move the supports until it has fallen.")
     ] = None,
     seconds: Annotated[
-        float | None, Option(help="Seconds to record; until decided if left out.")
+        float | None,
+        Option(about="Seconds to record; until decided if left out.", range=RECORDED),
     ] = None,
     settings: Set = None,
 ) -> None:
     """Let it go and record its motion."""
     problem = problem_asked(scene, given, loading, thick=True, out=out)
-    size = "L" if plain_arch(problem) is None else "r"
+    size = problem.length_name
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require_place(out)
-    if seconds is not None:
-        ok = is_number(seconds, 0, LONGEST_RECORDING)
-        require(ok, "--seconds", seconds, f"above 0 and at most {LONGEST_RECORDING:g}")
     if over is not None:
         recording = _spread(problem, over, method, seconds, settings)
     else:
@@ -117,13 +113,13 @@ def render(
     out: Annotated[
         Path | None,
         Option(
-            help="File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, .csv, "
-            ".json of a recording; required."
+            about="File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, "
+            ".csv, .json of a recording; required."
         ),
     ] = None,
     scene: Annotated[
         str | None,
-        Argument(help="Scenario, structure, or a recording: an .npz file."),
+        Argument(about="Scenario, structure, or a recording: an .npz file."),
     ] = None,
     beside: Beside = None,
     view: View = "2d",

@@ -17,23 +17,23 @@ from blocksim.kinds.files import is_drawing, named_file, structure_of, with_fric
 
 def convert(
     source: Annotated[
-        str, Argument(help="A drawing, .dxf or .svg, or an assembly of compas, .json.")
+        str, Argument(about="A drawing, .dxf or .svg, or an assembly of compas, .json.")
     ],
     out: Annotated[
-        Path | None, Option(help="Structure file to write, .json; required.")
+        Path | None, Option(about="Structure file to write, .json; required.")
     ] = None,
     mu: Annotated[
-        float | None, Option(help="Friction coefficient, above 0; inf allowed.")
+        float | None, Option(about="Friction coefficient, above 0; inf allowed.")
     ] = None,
     unit: Annotated[
         float | None,
-        Option(help="Metres that a unit of the drawing is; 0.001 for mm."),
+        Option(about="Metres that a unit of the drawing is; 0.001 for mm."),
     ] = None,
     tolerance: Annotated[
-        float | None, Option(help="Gaps and overlaps up to this are closed, in m.")
+        float | None, Option(about="Gaps and overlaps up to this are closed, in m.")
     ] = None,
     fixed: Annotated[
-        str | None, Option(help="Blocks that stay where they are: ids, with commas.")
+        str | None, Option(about="Blocks that stay where they are: ids, with commas.")
     ] = None,
 ) -> None:
     """Turn a drawing into a structure file, so that loads, weights or friction can be added."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from blocksim.arch.theory import least_thickness
-from blocksim.ask.check import Check, check
+from blocksim.ask.check import check
 from blocksim.blocks.problem import Problem
 from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import Given, Loading, named_options
@@ -33,7 +33,7 @@ def write_still(
     """
     built = is_structure(scene) or loading.given
     asked = None if built else question(scene, given)
-    if asked is None or (not asked.lean and (asked.eta is not None or given.ratio is not None)):
+    if asked is None or (not asked.lean and asked.has_thickness):
         _write_sheet(
             out, kind, problem_asked(scene, given, loading, thick=True), method, height
         )
@@ -50,10 +50,11 @@ def write_still(
     from blocksim.view.archfigure import arch_figure, picture_of_theory
 
     with named_options():
-        critical = least_thickness(asked.half_angle, asked.mu, asked.weight)
+        shape = asked.arch(1.0)
+        arch = shape.half_angle, asked.mu, shape.weight
+        critical = least_thickness(*arch)
         if critical.eta is None:
             raise InputError("eta", MISSING, "given where no thickness stands")
-        arch = asked.half_angle, asked.mu, asked.weight
         pictures = [picture_of_theory(critical, mode, *arch) for mode in critical.modes]
     save_picture(arch_figure(pictures), out, kind, height)
 
@@ -65,27 +66,15 @@ def _write_sheet(
     as_built = "limit or an engine: it is drawn as built"
     require(method != "theory", "--method", method, as_built)
     # Drawing takes a second to import, which other commands need not wait for.
-    from blocksim.view.sheet import sheet_of
+    from blocksim.view.sheet import answer_sheet
     from blocksim.view.sheetdxf import write_dxf
     from blocksim.view.sheetfigure import sheet_figure
 
     with named_options(), progress() as report:
         answer = check(problem, method=method or "auto", progress=report)
-    sheet = sheet_of(
-        problem,
-        verdict=verdict_words(answer),
-        mechanism=answer.mechanism,
-        joint_states=[joint.state for joint in answer.joints],
-    )
+    sheet = answer_sheet(answer)
     if kind == "dxf":
         write_whole(out, lambda file: write_dxf(sheet, file))
         say(f"wrote {out}")
         return
     save_picture(sheet_figure(sheet), out, kind, height)
-
-
-def verdict_words(answer: Check) -> str:
-    """Say the verdict and its method, and how an arch falls of its own weight."""
-    mode = answer.arch and answer.arch.mode
-    named = f", mode {mode}" if mode else ""
-    return f"{answer.verdict.value}{named}, by {answer.method}"

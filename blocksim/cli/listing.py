@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from blocksim.arch.scenario import load_scenario, shipped
-from blocksim.blocks.maker import parameters_of
+from blocksim.blocks.vehicles import shipped_vehicles, vehicle_of
 from blocksim.cli.arguments import Argument
 from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
 from blocksim.common.errors import InputError, perhaps
+from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.structures import structures
 
 NUMBERS = {"alpha", "mu", "n", "eta"}
@@ -19,14 +20,15 @@ NUMBERS = {"alpha", "mu", "n", "eta"}
 
 
 def list_scenarios() -> None:
-    """List the scenarios and structures that come with blocksim."""
+    """List the scenarios, structures and vehicles that come with blocksim."""
     table = Table()
     for heading in ("name", "alpha", "mu", "n", "eta", "title", "source"):
         table.add_column(heading, justify="right" if heading in NUMBERS else "left")
     for name in shipped():
         each = load_scenario(name)
-        eta = "-" if each.eta is None else f"{each.eta:g}"
-        numbers = f"{math.degrees(each.half_angle):g}", f"{each.mu:.4g}", str(each.voussoirs)
+        arch = each.arch(1.0)
+        eta = f"{each.maker.eta:g}" if each.has_thickness else "-"
+        numbers = f"{math.degrees(arch.half_angle):g}", f"{each.mu:.4g}", str(arch.voussoirs)
         table.add_row(name, *numbers, eta, each.title, each.source)
     show(table)
     say("")
@@ -42,11 +44,20 @@ def list_scenarios() -> None:
         size = str(len(problem.assembly.blocks)), f"{problem.mu:.4g}"
         built.add_row(known.name, *size, ", ".join(told), problem.title, problem.source)
     show(built)
+    say("")
+    vehicles = Table()
+    for heading in ("vehicle", "axles", "title", "source"):
+        vehicles.add_column(heading)
+    for name in shipped_vehicles():
+        each = vehicle_of(name)
+        axles = ", ".join(f"{weight / 1e3:g} kN at {x:g} m" for x, weight in each.axles)
+        vehicles.add_row(name, axles, each.title, each.source)
+    show(vehicles)
 
 
 def list_kinds(
     name: Annotated[
-        str | None, Argument(help="One of them, whose parameters are to be listed.")
+        str | None, Argument(about="One of them, whose parameters are to be listed.")
     ] = None,
 ) -> None:
     """List the kinds of structures, or the parameters of one."""
@@ -55,7 +66,7 @@ def list_kinds(
         for heading in ("kind", "what it is", "parameters"):
             table.add_column(heading)
         for kind in KINDS.values():
-            table.add_row(kind.name, kind.about, ", ".join(parameters_of(kind)))
+            table.add_row(kind.name, kind.about, ", ".join(fields_of(kind)))
         show(table)
         return
     if name not in KINDS:
@@ -63,7 +74,7 @@ def list_kinds(
     for heading in ("parameter", "if left out", "may be", "what it is", "--over"):
         table.add_column(heading)
     usual = KINDS[name]()
-    for each, known in parameters_of(KINDS[name]).items():
+    for each, known in fields_of(KINDS[name]).items():
         over = ", ".join(over for over in usual.bracketed if over.partition(".")[0] == each)
-        table.add_row(each, *known.words(getattr(usual, each)), known.about, over)
+        table.add_row(each, known.said(getattr(usual, each)), known.allowed, known.about, over)
     show(table)

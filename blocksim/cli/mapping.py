@@ -20,29 +20,29 @@ def draw_map(
     out: Annotated[
         Path | None,
         Option(
-            help="Picture, .svg, .png or .pdf, page, .html, or numbers, .csv; required "
+            about="Picture, .svg, .png or .pdf, page, .html, or numbers, .csv; required "
             "without --table or --json."
         ),
     ] = None,
     lines: Annotated[
-        bool, Option(name="--lines", help="Dividing lines and lines of equal alpha instead.")
+        bool, Option(name="--lines", about="Dividing lines and lines of equal alpha instead.")
     ] = False,
     zoom: Annotated[
-        str, Option(help="whole, central; with --lines: whole, lower, upper.")
+        str, Option(about="whole, central; with --lines: whole, lower, upper.")
     ] = "whole",
     weight: Annotated[
-        OfWeight, Option(help="Where weight acts: of the paper, or of true voussoirs.")
+        OfWeight, Option(about="Where weight acts: of the paper, or of true voussoirs.")
     ] = "centreline",
     phi: Annotated[
-        bool, Option(name="--phi", help="Over the friction angle in degrees, up to 90.")
+        bool, Option(name="--phi", about="Over the friction angle in degrees, up to 90.")
     ] = False,
     table: Annotated[
         bool,
-        Option(name="--table", help="Print Table 1, special angles and rates of the modes."),
+        Option(name="--table", about="Print Table 1, special angles and rates of the modes."),
     ] = False,
     as_json: Json = False,
     results: Annotated[
-        Path | None, Option(help="validate.json of a `validate` run, shown on the page.")
+        Path | None, Option(about="validate.json of a `validate` run, shown on the page.")
     ] = None,
 ) -> None:
     """Draw the analytical map of least thickness and collapse modes.

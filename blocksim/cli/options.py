@@ -7,14 +7,14 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
-from blocksim.arch.dimensions import LINES, friction_of, require_friction_angle
+from blocksim.arch.dimensions import LINES, friction_of
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.blocks.shaking import COLUMNS, SHAPES
 from blocksim.cli.arguments import Argument, Option
-from blocksim.common.checks import require
+from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, RATIO, TILT_DEG, Range, require
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import json_of
 from blocksim.simulation.simulated import SETTINGS
@@ -23,22 +23,22 @@ from blocksim.simulation.verdict import Verdict
 Scene = Annotated[
     str | None,
     Argument(
-        help="Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
-        ".json or .toml, or the name of a kind (blocksim kinds)."
+        about="Scenario of an arch, a .toml file or a shipped name; or a structure: a file, "
+        ".json or .toml, or a kind: its name (blocksim kinds), or module:CLASS of your own."
     ),
 ]
 EXIT_CODES = {Verdict.STANDS: 0, Verdict.COLLAPSES: 1, Verdict.UNDECIDED: 3}
 OWN = ", or an engine of your own: its name, or module:ENGINE"
-MethodOption = Annotated[str, Option(help=f"{', '.join(CHOICES)}{OWN}.")]
+MethodOption = Annotated[str, Option(about=f"{', '.join(CHOICES)}{OWN}.")]
 Over = Annotated[
     str | None,
-    Option(help=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
+    Option(about=f"Parameter: {', '.join(FAMILIES)}; thickness, of arches, if left out."),
 ]
 Within = Annotated[
     tuple[float, float] | None,
     Option(
         metavar="LOW HIGH",
-        help="Where an engine searches, instead of where limit analysis says. Other methods "
+        about="Where an engine searches, instead of where limit analysis says. Other methods "
         "search nowhere and refuse it.",
     ),
 ]
@@ -47,14 +47,14 @@ Set = Annotated[
     Option(
         name="--set",
         metavar="NAME=VALUE",
-        help=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
+        about=f"Setting of the engine instead of its rule; repeatable: {', '.join(SETTINGS)}.",
     ),
 ]
 Reduce = Annotated[
     bool | None,
     Option(
         name="--reduce/--no-reduce",
-        help="Simulate blocks that stay together as one, and half of an arch: pymunk does, "
+        about="Simulate blocks that stay together as one, and half of an arch: pymunk does, "
         "pybullet does with arches.",
     ),
 ]
@@ -62,7 +62,7 @@ MustRest = Annotated[
     bool,
     Option(
         name="--must-rest",
-        help="Find out as well whether it must rest, or friction may let it move: "
+        about="Find out as well whether it must rest, or friction may let it move: "
         "a second with 8 joints, ten with 28.",
     ),
 ]
@@ -70,7 +70,7 @@ ProofFile = Annotated[
     Path | None,
     Option(
         name="--proof",
-        help="Write a proof of the verdict by limit, JSON, which blocksim verify checks.",
+        about="Write proofs of the answer by limit, JSON, which blocksim verify checks.",
     ),
 ]
 AtJoint = Annotated[
@@ -78,10 +78,10 @@ AtJoint = Annotated[
     Option(
         name="--joint",
         metavar="A-B",
-        help="Joint whose thrust is printed, named by its two blocks; the crown if left out.",
+        about="Joint whose thrust is printed, named by its two blocks; the crown if left out.",
     ),
 ]
-Json = Annotated[bool, Option(name="--json", help="Print one JSON object, nothing else.")]
+Json = Annotated[bool, Option(name="--json", about="Print one JSON object, nothing else.")]
 
 
 THICKNESS = "thickness"
@@ -102,76 +102,80 @@ class Given:
     heading: ClassVar[str] = "What is built"
 
     alpha: Annotated[
-        float | None, Option(help="Half-angle of embrace in degrees, 0 to 180.")
+        float | None, Option(about="Half-angle of embrace in degrees, 0 to 180.")
     ] = None
-    eta: Annotated[float | None, Option(help="Thickness-to-radius ratio, up to 2.")] = None
+    eta: Annotated[float | None, Option(about="Thickness-to-radius ratio, up to 2.")] = None
     span: Annotated[
         float | None,
-        Option(help="Instead of --alpha and --eta: distance between the springings in m."),
+        Option(about="Instead of --alpha and --eta: distance between the springings in m."),
     ] = None
     rise: Annotated[
-        float | None, Option(help="Beside --span: height of the crown above them in m.")
+        float | None, Option(about="Beside --span: height of the crown above them in m.")
     ] = None
     thickness: Annotated[
-        float | None, Option(help="Beside --span: thickness of the arch in m.")
+        float | None, Option(about="Beside --span: thickness of the arch in m.")
     ] = None
     at: Annotated[
         str | None,
         Option(
             metavar="LINE",
-            help=f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
+            about=f"Line of --span and --rise: {', '.join(LINES)}; the intrados if left out, "
             "which gives the clear span.",
         ),
     ] = None
     ratio: Annotated[
         float | None,
         Option(
-            help="Instead of --eta or --thickness: thickness over the least one that stands, "
-            "as built."
+            about="Instead of --eta or --thickness: thickness over the least one that stands, "
+            "as built.",
+            range=RATIO,
         ),
     ] = None
-    mu: Annotated[float | None, Option(help="Friction coefficient, above 0; inf allowed.")] = (
+    mu: Annotated[float | None, Option(about="Friction coefficient, above 0; inf allowed.")] = (
         None
     )
     friction_angle: Annotated[
-        float | None, Option(help="Instead of --mu: angle of friction in degrees.")
+        float | None,
+        Option(about="Instead of --mu: angle of friction in degrees.", range=FRICTION_ANGLE),
     ] = None
     voussoirs: Annotated[
-        int | None, Option(help="Number of voussoirs, 3 to 10000; 27 if left out.")
+        int | None, Option(about="Number of voussoirs, 3 to 10000; 27 if left out.")
     ] = None
     weight: Annotated[
         str | None,
         Option(
-            help="Where weight acts: centreline, or sector, as it does in true voussoirs. "
+            about="Where weight acts: centreline, or sector, as it does in true voussoirs. "
             "If left out: sector with --span, else centreline."
         ),
     ] = None
     unit_weight: Annotated[
         float | None,
-        Option(help="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
+        Option(about="Unit weight of the blocks in kN/m3; 20 in arches if left out."),
     ] = None
     depth: Annotated[
         float | None,
-        Option(help="Depth out of the plane in m; 1 if left out, as the radius is."),
+        Option(about="Depth out of the plane in m; 1 if left out, as the radius is."),
     ] = None
     lean: Annotated[
         float | None,
-        Option(help="Angle by which gravity leans out of the plane, in degrees."),
+        Option(
+            about="Angle by which gravity leans out of the plane, in degrees.", range=LEAN_DEG
+        ),
     ] = None
     parameters: Annotated[
         list[str] | None,
         Option(
             name="--with",
             metavar="NAME=VALUE",
-            help="Parameter of a kind of structure (blocksim kinds NAME lists them); "
+            about="Parameter of a kind of structure (blocksim kinds NAME lists them); "
             "repeatable.",
         ),
     ] = None
     tolerance: Annotated[
         float | None,
         Option(
-            help="Gaps and overlaps of a drawing up to this are closed, in m; what rounding of "
-            "its coordinates explains if left out."
+            about="Gaps and overlaps of a drawing up to this are closed, in m; what rounding "
+            "of its coordinates explains if left out."
         ),
     ] = None
 
@@ -203,7 +207,6 @@ class Given:
             require(not slip, "--mu", mu, words)
             return mu
         require(mu is None, "--friction-angle", angle, "left out where --mu is given")
-        require_friction_angle("--friction-angle", angle)
         smooth = angle < math.pi / 2
         words = f"in degrees: as a coefficient it would be --mu {angle:g}, in radians "
         words += f"--friction-angle {math.degrees(angle):.4g}"
@@ -222,48 +225,62 @@ class Loading:
 
     fill: Annotated[
         float | None,
-        Option(help="Of arches and portals: height of fill over the crown in m."),
+        Option(
+            about="Of arches and portals: height of fill over the crown in m.",
+            range=Range(low=0, high=1000, unit="m"),
+        ),
     ] = None
     fill_unit_weight: Annotated[
         float | None,
-        Option(help="Unit weight of the fill in kN/m3; that of the blocks if left out."),
+        Option(about="Unit weight of the fill in kN/m3; that of the blocks if left out."),
     ] = None
     point_load: Annotated[
         list[tuple[float, float]] | None,
         Option(
             metavar="X KN",
-            help="Weight on the road at x (m from the crown of an arch; else from the "
-            "structure's origin), live. It goes straight down to the block below; fill does "
-            "not spread it. Repeatable: an axle each.",
+            about="Weight on the road at x (m from the crown of an arch; else from the "
+            "structure's origin), live. It goes straight down to the block below, or as "
+            "--dispersal says. Repeatable: an axle each.",
         ),
     ] = None
     patch_load: Annotated[
         list[tuple[float, float, float]] | None,
-        Option(metavar="X1 X2 KN", help="The same, spread evenly from x1 to x2; repeatable."),
+        Option(metavar="X1 X2 KN", about="The same, spread evenly from x1 to x2; repeatable."),
+    ] = None
+    dispersal: Annotated[
+        str | None,
+        Option(
+            metavar="ACROSS:DOWN",
+            about="How fill spreads loads on the road: 1:2, evenly over half the depth to each "
+            "side; or boussinesq, up to 30 deg from the vertical. Not at all if left out.",
+        ),
     ] = None
     load: Annotated[
         float | None,
         Option(
-            help="Factor on the live loads; if left out 1 with --point-load or --patch-load, "
+            about="Factor on the live loads; if left out 1 with --point-load or --patch-load, "
             "else what the file says."
         ),
     ] = None
     tilt: Annotated[
         float | None,
-        Option(help="Tilt of the table in the plane, in degrees: its right side goes down."),
+        Option(
+            about="Tilt of the table in the plane, in degrees: its right side goes down.",
+            range=TILT_DEG,
+        ),
     ] = None
     shake: Annotated[
         str | None,
         Option(
             metavar="SHAPE|FILE",
-            help=f"Ground that shakes: {', '.join(SHAPES)}, or a .csv file "
+            about=f"Ground that shakes: {', '.join(SHAPES)}, or a .csv file "
             f"({','.join(COLUMNS)}); does it survive?",
         ),
     ] = None
     amplitude: Annotated[
-        float | None, Option(help="Largest acceleration of the ground, in g.")
+        float | None, Option(about="Largest acceleration of the ground, in g.")
     ] = None
-    duration: Annotated[float | None, Option(help="How long the ground shakes, in s.")] = None
+    duration: Annotated[float | None, Option(about="How long the ground shakes, in s.")] = None
 
     @property
     def given(self) -> bool:
@@ -273,9 +290,36 @@ class Loading:
     @property
     def on_road(self) -> dict[str, object]:
         """Those that lie on the road; empty where none is given."""
-        names = ("fill", "fill_unit_weight", "point_load", "patch_load")
+        names = ("fill", "fill_unit_weight", "point_load", "patch_load", "dispersal")
         found = {name: getattr(self, name) for name in names}
         return {name: each for name, each in found.items() if each is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossed:
+    """The options of a vehicle that crosses, as given on the command line."""
+
+    heading: ClassVar[str] = "What crosses it"
+
+    vehicle: Annotated[
+        str | None,
+        Option(
+            metavar="NAME|FILE|AXLES",
+            about="Vehicle on the road, both ways: a shipped name (blocksim scenarios), a "
+            ".toml file, or axles in kN at m, as 10@0,10@1.2.",
+        ),
+    ] = None
+    along: Annotated[
+        Literal["road"] | None, Option(about="Where it goes; on the road if left out.")
+    ] = None
+    out: Annotated[
+        list[Path] | None,
+        Option(
+            about="Beside --vehicle, a file to write; repeatable: .csv, load factor and thrust "
+            "at every place; .pdf, .svg, .png, their curve above the worst place; .dxf, the "
+            "drawing at the worst place."
+        ),
+    ] = None
 
 
 def require_given(instead: str = "", /, **options: object) -> None:
@@ -289,7 +333,7 @@ def require_given(instead: str = "", /, **options: object) -> None:
 
 def option_of(field: str) -> str:
     """Return the option of a field."""
-    return "--with" if field == "parameters" else f"--{field.replace('_', '-')}"
+    return NAMED.get(field) or f"--{field.replace('_', '-')}"
 
 
 def parameters_of(given: list[str] | None) -> dict[str, object]:
@@ -322,12 +366,18 @@ def settings_of(given: list[str] | None) -> dict[str, float]:
     return settings
 
 
+NAMED = {"parameters": "--with", "half_angle_deg": "--alpha", "friction": "--mu"}
+"""Options that are not called as their fields."""
 OPTIONS = {
+    *NAMED,
+    "ratio",
     "span",
     "rise",
     "thickness",
     "at",
     "fill",
+    "dispersal",
+    "vehicle",
     "shake",
     "amplitude",
     "duration",

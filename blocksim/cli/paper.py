@@ -9,6 +9,7 @@ import click
 
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.output import progress, say
+from blocksim.common.checks import Range
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.words import counted
 
@@ -19,14 +20,19 @@ MET = 1e-12
 def paper(
     out: Annotated[
         Path | None,
-        Argument(help="Folder for the figures and a page, index.html; required.", folder=True),
+        Argument(about="Folder for the figures and a page, index.html; required.", folder=True),
     ] = None,
     figures: Annotated[
         list[int] | None,
-        Option(name="--figure", metavar="N", low=1, high=25, help="Only this one; repeatable."),
+        Option(
+            name="--figure",
+            metavar="N",
+            range=Range(low=1, high=25, whole=True),
+            about="Only this one; repeatable.",
+        ),
     ] = None,
     kind: Annotated[
-        Literal["svg", "png"], Option(name="--format", help="Of the pictures.")
+        Literal["svg", "png"], Option(name="--format", about="Of the pictures.")
     ] = "svg",
 ) -> None:
     """Draw every figure of the paper, and compare every number that it prints.

@@ -7,45 +7,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from blocksim.arch.asked import Scenario
-from blocksim.arch.dimensions import (
-    Dimensions,
-    Line,
-    require_measured,
-    require_unit_weight,
-)
-from blocksim.arch.limit import least_thickness
-from blocksim.ask.search import ETA_MAX
+from blocksim.arch.dimensions import require_measured, require_unit_weight
 from blocksim.cli.options import Given, named_options, option_of, require_given
-from blocksim.common.checks import FRICTION, is_number, require
-from blocksim.common.errors import MISSING, InputError, perhaps
+from blocksim.common.checks import ETA, is_number, require
+from blocksim.common.errors import InputError, perhaps
 from blocksim.kinds import KINDS
-from blocksim.kinds.circular import CircularArch
-
-NO_SCENARIO = Scenario(
-    name="",
-    title="",
-    source="",
-    half_angle=math.pi / 2,
-    mu=math.inf,
-    voussoirs=27,
-    weight="centreline",
-    eta=None,
-    line=None,
-    radius=1.0,
-    depth=1.0,
-    specific_weight=20_000.0,
-    lean=0.0,
-    expected_modes=(),
-    expected_eta=None,
-    expected_verdict=None,
-    quick=False,
-)
-"""Defaults of the options; half-angle and friction have none and are always replaced."""
-
-
-ASIDE = 0.99
-"""Thickness of a scenario that sets none, over its least: it collapses, in one mode."""
+from blocksim.kinds.scenario import MEASURES, THICK, USUAL, Scenario
 
 
 def question(
@@ -62,7 +29,6 @@ def question(
     needed : object
         Other options that have to be given, by name.
     """
-    mu = given.friction
     if scene is None:
         given_mu = given.mu if given.friction_angle is None else given.friction_angle
         if given.measured:
@@ -89,26 +55,24 @@ def question(
     require(given.tolerance is None, "--tolerance", given.tolerance, no_gaps)
     require(given.parameters is None, "--with", " ".join(given.parameters or ()), no_kind)
     _require_ranges(given)
-    asked = NO_SCENARIO if scene is None else _scenario(scene)
-    alpha, lean, heavy = given.alpha, given.lean, given.unit_weight
-    changes: dict[str, object] = {
-        "half_angle": None if alpha is None else math.radians(alpha),
-        "mu": mu,
+    asked = Scenario(given=USUAL) if scene is None else _scenario(scene)
+    table = _measured(asked, given) if given.measured else _by_angle(asked, given)
+    own = {
         "voussoirs": given.voussoirs,
-        "depth": given.depth,
-        "eta": given.eta,
-        "specific_weight": None if heavy is None else 1000 * heavy,
-        "lean": None if lean is None else math.radians(lean),
         "weight": given.weight,
+        "depth": given.depth,
+        "friction": given.friction,
+        "density": None if given.unit_weight is None else 1000 * given.unit_weight,
     }
-    found = {key: value for key, value in changes.items() if value is not None}
-    return replace(asked, **{**_shape(asked, given), **found})
+    table |= {name: value for name, value in own.items() if value is not None}
+    lean = asked.lean if given.lean is None else math.radians(given.lean)
+    return replace(asked, given=table, lean=lean)
 
 
 def _scenario(scene: str) -> Scenario:
     # Files are read with libraries that options do not need.
-    from blocksim.arch.scenario import load_scenario, shipped
     from blocksim.kinds.files import shipped_structures
+    from blocksim.kinds.scenarios import load_scenario, shipped
 
     try:
         return load_scenario(scene)
@@ -119,6 +83,8 @@ def _scenario(scene: str) -> Scenario:
         raise InputError(error.field, error.value, error.allowed + near) from None
 
 
+BY_ANGLE = {"half_angle_deg", "radius", "eta", "ratio"}
+"""What an arch in metres is not made by."""
 IN_METRES = " (or --span, --rise and --thickness, in m)"
 
 
@@ -131,16 +97,13 @@ def instead_of(friction: float | None, **thickness: float | None) -> str:
 
 def _require_ranges(given: Given) -> None:
     """Raise `InputError` where an option is out of range or beside one that says the same."""
-    alpha, lean = given.alpha, given.lean
+    alpha = given.alpha
     if alpha is not None:
         ok = is_number(alpha, 0, math.nextafter(180, 0))
         require(ok, "--alpha", alpha, "above 0 and below 180 deg")
         flat = f"in degrees: {alpha:g} deg is nearly flat, in radians it would be "
         flat += f"{math.degrees(alpha):.4g} deg (a flat arch: --span and --rise)"
         require(alpha > math.pi, "--alpha", alpha, flat)
-    if lean is not None:
-        ok = is_number(lean, -90, math.nextafter(90, 0))
-        require(ok, "--lean", lean, "above -90 and below 90 deg")
     if given.unit_weight is not None:
         require_unit_weight("--unit-weight", given.unit_weight)
     both = given.eta is not None and given.ratio is not None
@@ -154,92 +117,40 @@ def _require_ranges(given: Given) -> None:
         require(getattr(given, name) is None, f"--{name}", getattr(given, name), allowed)
 
 
-def _shape(asked: Scenario, given: Given) -> dict[str, object]:
-    """Return what a scenario becomes with the shape given, where it has been measured."""
-    if not given.measured:
-        if asked.line is None or (given.alpha is None and given.eta is None):
-            return {}
-        if given.alpha is None and given.eta is not None and asked.eta is None:
-            return {"radius": asked.line.mean_radius(given.eta)}
-        # With another angle the line is no longer the one that was measured.
-        return {"line": asked.line if given.alpha is None else None}
-    known = {} if asked.line is None else vars(asked.line)
-    if asked.line is not None and asked.eta is not None:
-        known = {**known, "thickness": asked.eta * asked.radius}
+def _measured(asked: Scenario, given: Given) -> dict[str, Any]:
+    """Return parameters of the arch, of which some have been measured."""
+    table = dict(asked.given)
+    if "span" not in table:
+        table = {name: table[name] for name in table if name not in BY_ANGLE}
+        table["weight"] = "sector"
     if given.ratio is not None:
-        known.pop("thickness", None)
-    merged: dict[str, Any] = {**known, **given.measured}
-    thickness = merged.pop("thickness", None)
-    require_given(span=merged.get("span"), rise=merged.get("rise"))
+        table |= {"ratio": given.ratio}
+        table.pop("thickness", None)
+    table |= given.measured
+    require_given(span=table.get("span"), rise=table.get("rise"))
     with named_options():
-        line = Line(**merged)
-        require_measured(line, thickness)
-        changes: dict[str, object] = {"line": line, "half_angle": line.half_angle}
-        if asked.line is None:
-            changes["weight"] = "sector"
-        if thickness is None:
-            return {**changes, "eta": None, "radius": line.radius}
-        found = Dimensions(**merged, thickness=thickness)
-        return {**changes, "eta": found.eta, "radius": found.radius}
+        require_measured(table)
+    return table
 
 
-def maker_of(asked: Scenario, ratio: float | None) -> CircularArch:
-    """Return the arch asked about.
-
-    At a share of the least thickness as built where that is given, else at the scenario's
-    thickness, else at `ASIDE` of the least.
-    """
-    with named_options():
-        if asked.eta is not None and ratio is None:
-            return _made(asked, asked.eta)
-        if ratio is not None:
-            require(is_number(ratio, 0, 100), "--ratio", ratio, "above 0 and at most 100")
-        FRICTION.require("mu", asked.mu)
-        # Checked by the arch before anything is made of them.
-        asked.arch(1.0)
-        arch = asked.half_angle, asked.mu, asked.voussoirs, asked.weight
-        least = least_thickness(*arch).eta
-        if not least:
-            why = "no thickness up to 2 stands" if least is None else "any thickness stands"
-            field = "--eta" if ratio is None else "--ratio"
-            value = MISSING if ratio is None else ratio
-            allowed = "given" if ratio is None else "left out for --eta"
-            raise InputError(field, value, f"{allowed}: {why} here")
-        eta = (ratio or ASIDE) * least
-        if ratio is not None:
-            require(eta <= ETA_MAX, "--ratio", ratio, f"at most {ETA_MAX / least:.6g}, eta = 2")
-        return _made(asked, eta)
-
-
-def of_any_thickness(asked: Scenario) -> CircularArch:
-    """Return the arch asked about, of which the thickness is sought."""
-    with named_options():
-        return _made(asked, 1.0 if asked.eta is None else asked.eta)
-
-
-def _made(asked: Scenario, eta: float) -> CircularArch:
-    """Make an arch by the line that was measured, else by its half-angle and radius."""
-    shape: dict[str, Any] = {"half_angle": asked.half_angle, "radius": asked.radius}
-    if asked.line is not None:
-        shape = vars(asked.line)
-    asked.arch(eta)
-    FRICTION.require("mu", asked.mu)
-    return CircularArch(
-        **shape,
-        eta=eta,
-        voussoirs=asked.voussoirs,
-        weight=asked.weight,
-        depth=asked.depth,
-        density=asked.specific_weight,
-        friction=asked.mu,
-    )
-
-
-def thickness_notes(asked: Scenario, ratio: float | None) -> tuple[str, ...]:
-    """Say which thickness was taken where none was given."""
-    if asked.eta is not None or ratio is not None:
-        return ()
-    return (f"no thickness was given, so it is {ASIDE:g} of the least as built",)
+def _by_angle(asked: Scenario, given: Given) -> dict[str, Any]:
+    """Return parameters of the arch, with another half-angle or thickness over radius."""
+    table, alpha = dict(asked.given), given.alpha
+    thickness = {"eta": given.eta, "ratio": given.ratio}
+    if alpha is not None and "span" in table:
+        # The line is no longer the one that was measured; the centreline stays.
+        made = asked.maker if asked.has_thickness else asked.of(eta=ETA.low)
+        table = {name: table[name] for name in table if name not in MEASURES}
+        table["radius"] = made.radius
+        if asked.has_thickness:
+            table["eta"] = made.thickness / made.radius
+    if alpha is not None:
+        table["half_angle_deg"] = alpha
+    for name, value in thickness.items():
+        if value is not None:
+            table = {key: table[key] for key in table if key not in THICK}
+            table[name] = value
+    return table
 
 
 def joint_of(said: str, names: Sequence[str]) -> int:

@@ -31,7 +31,7 @@ from blocksim.common.files import require_place, write_whole
 def report(
     given: Given,
     loading: Loading,
-    out: Annotated[Path | None, Option(help="Page to write, .html; required.")] = None,
+    out: Annotated[Path | None, Option(about="Page to write, .html; required.")] = None,
     scene: Scene = None,
     method: MethodOption = "auto",
     settings: Set = None,

@@ -9,7 +9,7 @@ from blocksim.cli.road import loaded
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import read_file, toml_of
-from blocksim.kinds import KINDS
+from blocksim.kinds import KINDS, own_kind
 from blocksim.kinds.files import (
     changed,
     is_drawing,
@@ -17,6 +17,7 @@ from blocksim.kinds.files import (
     shipped_structures,
     structure_of,
     weighed,
+    with_friction,
 )
 
 LARGEST_PEEK = 1 << 20
@@ -29,6 +30,8 @@ def is_structure(scene: str | None) -> bool:
         return True
     if scene is None:
         return False
+    if _is_place(scene):
+        return True
     if is_drawing(scene) or scene.lower().endswith(".json"):
         return True
     if not scene.endswith(".toml"):
@@ -57,19 +60,19 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
         require_unit_weight("--unit-weight", heavy)
     density = None if heavy is None else 1000 * heavy
     try:
-        if scene in KINDS:
+        if scene in KINDS or _is_place(scene):
+            own = () if scene in KINDS else (own_kind(scene),)
+            name = own[0].name if own else scene
             allowed = "left out: a kind of structure has no gaps"
             require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
             require_given(mu=given.friction)
-            # Friction is put on with the loads.
-            table = changed({"kind": scene, "friction": 0.0}, changes)
-            built = structure_of(table if density is None else weighed(table, density))
+            table = changed(with_friction({"kind": name}, given.friction or 0.0), changes)
+            built = structure_of(table if density is None else weighed(table, density), *own)
         else:
             if is_drawing(scene):
                 require_given(mu=given.friction)
-            friction = None if given.friction is None else 0.0
             built = load_structure(
-                scene, changes, density, friction=friction, tolerance=given.tolerance
+                scene, changes, density, friction=given.friction, tolerance=given.tolerance
             )
     except InputError as error:
         name = error.field.partition("[")[0]
@@ -77,3 +80,10 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
             raise
         raise InputError("--with", f"{error.field}={error.value}", error.allowed) from None
     return loaded(built, given, loading)
+
+
+def _is_place(scene: str) -> bool:
+    """Tell the place of a kind of one's own, ``module:CLASS``, from a file's name."""
+    module, colon, name = scene.partition(":")
+    named = all(part.isidentifier() for part in module.split("."))
+    return bool(colon) and named and name.isidentifier()

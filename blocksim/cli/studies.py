@@ -17,6 +17,7 @@ from blocksim.cli.tables import (
     validation_table,
 )
 from blocksim.cli.terminal import show
+from blocksim.common.checks import Range
 from blocksim.common.files import make_folder
 from blocksim.engines import NAMES, engine_named
 from blocksim.studies.chart import cases, measure
@@ -31,19 +32,21 @@ from blocksim.studies.validate import validate as run_validation
 
 def validate(
     quick: Annotated[
-        bool, Option(name="--quick/--full", help="Scenarios marked quick, or all of them.")
+        bool, Option(name="--quick/--full", about="Scenarios marked quick, or all of them.")
     ] = False,
-    out: Annotated[Path, Option(help="Folder for the results.", folder=True)] = Path(
+    out: Annotated[Path, Option(about="Folder for the results.", folder=True)] = Path(
         "out/validate"
     ),
     methods: Annotated[
         str | None,
         Option(
-            help=f"Engines, with commas: {', '.join(NAMES)}, or your own as module:ENGINE; "
+            about=f"Engines, with commas: {', '.join(NAMES)}, or your own as module:ENGINE; "
             "those usual if left out."
         ),
     ] = None,
-    workers: Annotated[int, Option(low=1, high=64, help="Processes.")] = 2,
+    workers: Annotated[
+        int, Option(range=Range(low=1, high=64, whole=True), about="Processes.")
+    ] = 2,
 ) -> None:
     """Simulate published arches and structures; compare with the map and their sources.
 
@@ -74,13 +77,13 @@ def validate(
 
 def chart(
     quick: Annotated[
-        bool, Option(name="--quick/--full", help="Two small arches, or five.")
+        bool, Option(name="--quick/--full", about="Two small arches, or five.")
     ] = False,
-    out: Annotated[Path, Option(help="Folder for the results.", folder=True)] = Path(
+    out: Annotated[Path, Option(about="Folder for the results.", folder=True)] = Path(
         "out/chart"
     ),
     beside: Annotated[
-        Path | None, Option(help="Points of another program: JSON like chart.json.")
+        Path | None, Option(about="Points of another program: JSON like chart.json.")
     ] = None,
 ) -> None:
     """Chart the error of every method, from coarse to fine, against time and work."""

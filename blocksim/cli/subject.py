@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from blocksim.blocks.problem import Problem
-from blocksim.cli.options import Given, Loading, require_given
-from blocksim.cli.question import maker_of, of_any_thickness, question, thickness_notes
+from blocksim.cli.options import Given, Loading, named_options, require_given
+from blocksim.cli.question import question
 
 
 def is_structure(scene: str | None) -> bool:
@@ -44,11 +44,11 @@ def problem_asked(
         require_given(**needed)
         return structure(scene, given, loading)
     asked = question(scene, given, thick=thick, **needed)
-    made = of_any_thickness(asked) if sought else maker_of(asked, given.ratio)
-    notes = () if sought else thickness_notes(asked, given.ratio)
-    # Fill and loads on the road are borne by supports that are drawn.
-    built = (made.between_supports() if loading.on_road else made).problem()
-    problem = replace(built.leaning(asked.lean) if asked.lean else built, notes=notes)
+    with named_options():
+        if sought and not asked.has_thickness:
+            asked = replace(asked, given={**asked.given, "eta": 1.0})
+        # Fill and loads on the road are borne by supports that are drawn.
+        problem = asked.problem(supports=bool(loading.on_road))
     if not loading.given:
         return problem
     from blocksim.cli.road import loaded

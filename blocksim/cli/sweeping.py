@@ -10,6 +10,7 @@ from typing import Annotated
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.options import Json, require_given
 from blocksim.cli.output import answer_with, progress
+from blocksim.common.checks import Range
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.sweeps import Summary, load_design, write_parquet
 from blocksim.sweeps import sweep as ask_sweep
@@ -19,23 +20,25 @@ from blocksim.sweeps.table import require_parquet, write_csv
 
 def sweep(
     design: Annotated[
-        Path | None, Argument(help="Which arches to ask about: a .toml file; required.")
+        Path | None, Argument(about="Which arches to ask about: a .toml file; required.")
     ] = None,
     out: Annotated[
         Path | None,
         Option(
-            help="Folder for the rows; one that has some is resumed; required.", folder=True
+            about="Folder for the rows; one that has some is resumed; required.", folder=True
         ),
     ] = None,
-    workers: Annotated[int, Option(low=1, high=256, help="Processes.")] = 2,
+    workers: Annotated[
+        int, Option(range=Range(low=1, high=256, whole=True), about="Processes.")
+    ] = 2,
     scheduler: Annotated[
-        str | None, Option(help="Address of a dask scheduler, instead of processes.")
+        str | None, Option(about="Address of a dask scheduler, instead of processes.")
     ] = None,
     parquet: Annotated[
-        bool, Option(name="--parquet", help="Write all rows as a table, too: rows.parquet.")
+        bool, Option(name="--parquet", about="Write all rows as a table, too: rows.parquet.")
     ] = False,
     csv: Annotated[
-        bool, Option(name="--csv", help="Write all rows as CSV, too: rows.csv.")
+        bool, Option(name="--csv", about="Write all rows as CSV, too: rows.csv.")
     ] = False,
     as_json: Json = False,
 ) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 from blocksim.common.errors import InputError
@@ -31,38 +31,50 @@ class Range:
     Parameters
     ----------
     low, high : float
-        Both allowed.
+        Both allowed, an infinite end is not.
     unit : str
-    signed : bool
-        Whether it may be below 0: then `high` is the largest to both sides, and 0 allowed.
-    zero, infinite : bool
-        Whether it may be 0, or infinite, besides.
+    above : bool
+        Whether the low end is not allowed.
+    whole : bool
+        Whether it is a whole number.
+    infinite : bool
+        Whether it may be infinite besides; files say "inf".
     """
 
     low: float
     high: float
     unit: str = ""
-    signed: bool = False
-    zero: bool = False
+    above: bool = False
+    whole: bool = False
     infinite: bool = False
 
     def has(self, value: object) -> bool:
         """Tell whether a value is a number in the range."""
         if not isinstance(value, int | float) or isinstance(value, bool):
             return False
-        size = abs(value) if self.signed else value
-        other = (self.zero and value == 0) or (self.infinite and value == math.inf)
-        return self.low <= size <= self.high or other
+        if value == math.inf:
+            return self.infinite
+        inside = self.low < value if self.above else self.low <= value
+        return inside and value <= self.high and (not self.whole or value == int(value))
 
     @property
     def words(self) -> str:
         """The range in words."""
         unit = f" {self.unit}" if self.unit else ""
-        if self.signed:
-            return f"{-self.high:g} to {self.high:g}{unit}"
-        others = [each for each, may in (("0", self.zero), ("inf", self.infinite)) if may]
-        beside = f" (or {', '.join(others)})" if others else ""
-        return f"{self.low:g} to {self.high:g}{unit}{beside}"
+        beside = " (or inf)" if self.infinite else ""
+        low, high = f"{self.low:.6g}", f"{self.high:.6g}"
+        if self.whole:
+            return f"a whole number from {low} to {high}{unit}{beside}"
+        if math.isinf(self.high):
+            return f"{f'above {low}' if self.above else f'{low} or more'}{unit}{beside}"
+        after = math.nextafter(self.high, math.inf)
+        # The last number below a round one is not said as that.
+        below = after.is_integer() and not float(self.high).is_integer()
+        if self.above:
+            end = f"below {after:g}" if below else f"at most {high}"
+            return f"above {low} and {end}{unit}{beside}"
+        end = f"below {after:g}" if below else high
+        return f"{low} to {end}{unit}{beside}"
 
     def require(self, field: str, value: object) -> None:
         """Raise `InputError` unless a value is in the range."""
@@ -70,46 +82,69 @@ class Range:
         if not self.has(value):
             raise InputError(field, value, self.words)
 
+    def within(self, low: float, high: float) -> Range:
+        """Return a narrower range, of which a low end of its own is not allowed."""
+        return replace(self, low=low, high=high, above=self.above or low != self.low)
+
+    def __get_pydantic_core_schema__(self, _: Any, handler: Any) -> dict[str, Any]:
+        """Tell pydantic, by which files are read, what a number annotated by it may be."""
+        number: dict[str, Any] = {"type": "int" if self.whole else "float", "strict": True}
+        number["gt" if self.above else "ge"] = int(self.low) if self.whole else self.low
+        if math.isfinite(self.high):
+            number["le"] = int(self.high) if self.whole else self.high
+        if not self.whole:
+            number["allow_inf_nan"] = False
+        if self.infinite:
+            text = {"type": "literal", "expected": ["inf"]}
+            taken = {"type": "no-info", "function": infinite}
+            endless = {"type": "function-after", "function": taken, "schema": text}
+            number = {"type": "union", "choices": [number, endless]}
+        return {
+            "type": "custom-error",
+            "schema": number,
+            "custom_error_type": "range",
+            "custom_error_message": self.words,
+        }
+
+
+def infinite(written: object) -> object:
+    """Take the text "inf" for infinity, as JSON has it."""
+    return math.inf if written == "inf" else written
+
 
 LENGTH = Range(low=1e-6, high=1e6, unit="m")
 """Radius, span, depth, and the size of a structure."""
-COORDINATE = Range(low=0, high=1e9, unit="m", signed=True)
+COORDINATE = Range(low=-1e9, high=1e9, unit="m")
 HALF_ANGLE = Range(low=1e-3, high=math.nextafter(math.pi, 0), unit="rad")
+HALF_ANGLE_DEG = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
 ETA = Range(low=1e-15, high=2)
 """Thickness over radius: the flattest arch stands at 1e-14."""
-VOUSSOIRS = Range(low=3, high=10_000)
+RATIO = Range(low=0, high=100, above=True)
+"""Of a thickness to the least one that stands, as built."""
+VOUSSOIRS = Range(low=3, high=10_000, whole=True)
 FRICTION = Range(low=1e-6, high=1e6, infinite=True)
 SMOOTH_OR_ROUGH = Range(low=0, high=1e6, infinite=True)
 """Friction that a search may come to, and that of a joint of its own, which may be smooth."""
+FRICTION_ANGLE = Range(low=0, high=90, unit="deg", above=True)
+ANY_FRICTION = Range(low=0, high=math.inf, above=True, infinite=True)
+"""What theory and the statics of an arch take."""
+LEAN = Range(low=-math.pi / 2, high=math.nextafter(math.pi / 2, 0), unit="rad", above=True)
+LEAN_DEG = Range(low=-90, high=math.nextafter(90, 0), unit="deg", above=True)
+TILT_DEG = Range(low=-180, high=180, unit="deg")
+WIDTH = Range(low=0, high=0.5, above=True)
+"""Of a bracket, relative."""
 PER_VOLUME = Range(low=1e-6, high=1e9, unit="N/m3")
 """Weight of a unit of volume."""
 WEIGHT = Range(low=1e-18, high=1e18, unit="N")
-FORCE = Range(low=0, high=1e15, unit="N", signed=True)
+FORCE = Range(low=-1e15, high=1e15, unit="N")
 MASS = Range(low=1e-36, high=1e36, unit="kg")
 INERTIA = Range(low=1e-48, high=1e48, unit="kg m2")
-FACTOR = Range(low=0, high=1e9, signed=True)
+FACTOR = Range(low=-1e9, high=1e9)
 """On live loads, on weights, and on motions of supports."""
-TURN = Range(low=0, high=1e6, unit="deg", signed=True)
+TURN = Range(low=-1e6, high=1e6, unit="deg")
 
 
 def require_all(known: Range, field: str, values: object) -> None:
     """Raise `InputError` unless all numbers of an array are in a range."""
     for value in cast(Any, values).ravel().tolist():
         known.require(field, value)
-
-
-def require_voussoirs(count: object) -> None:
-    """Raise `InputError` unless it is a whole number of voussoirs that make an arch."""
-    whole = VOUSSOIRS.has(count) and count == int(cast(float, count))
-    require(whole, "voussoirs", count, f"a whole number from {VOUSSOIRS.words}")
-
-
-def require_friction(mu: object) -> None:
-    """Raise `InputError` unless 0 < mu <= inf."""
-    require(is_number(mu, 0, math.inf), "mu", mu, "above 0 (inf for unbounded friction)")
-
-
-def require_lean(lean: object) -> None:
-    """Raise `InputError` unless gravity leans by less than a right angle, or not at all."""
-    upright = is_number(lean, -math.pi / 2, math.nextafter(math.pi / 2, 0))
-    require(upright, "lean", lean, "above -pi/2 and below pi/2")

@@ -9,6 +9,7 @@ from contextlib import contextmanager, nullcontext
 from functools import cached_property
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from blocksim.common import interrupts
@@ -137,6 +138,14 @@ def loaded(what: str, place: str) -> Any:
         # Whatever code of others raises is told in one line.
         why = " ".join(f"{type(error).__name__}: {error}".split())
         raise InputError(what, place, f"MODULE:NAME that can be loaded ({why})") from error
+
+
+def loaded_here(what: str, place: str) -> Any:
+    """Return what a module has at a place, as `loaded`, one in the working directory, too."""
+    here = str(Path.cwd())
+    if here not in sys.path:
+        sys.path.append(here)
+    return loaded(what, place)
 
 
 def require_library(library: str, part: str, extra: str) -> None:

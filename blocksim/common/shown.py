@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from blocksim.common.files import AnyPath
+
 LONGEST = 60
 """Letters of a title in a `repr`."""
 
@@ -31,6 +33,10 @@ class Renderer(Protocol):
         """Return the words and the drawing of a thing."""
         ...
 
+    def film_of(self, shown: object, path: AnyPath, **options: Any) -> None:
+        """Write a recording as a film."""
+        ...
+
 
 _renderers: list[Callable[[], Renderer]] = []
 
@@ -38,6 +44,11 @@ _renderers: list[Callable[[], Renderer]] = []
 def show_by(renderer: Callable[[], Renderer]) -> None:
     """Say what loads the renderer when something is first shown."""
     _renderers[:] = [renderer]
+
+
+def renderer() -> Renderer:
+    """Return what draws and tells things."""
+    return _renderers[0]()
 
 
 class Shown:
@@ -49,19 +60,19 @@ class Shown:
 
     def plot(self) -> Figure:
         """Draw it, as a matplotlib figure to change or to save."""
-        return _renderers[0]().figure_of(self)
+        return renderer().figure_of(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as JSON has it: for answers what `--json` prints."""
-        return _renderers[0]().dict_of(self)
+        return renderer().dict_of(self)
 
     def _repr_svg_(self) -> str:
         """Return its drawing, for a notebook."""
-        return _renderers[0]().svg_of(self)
+        return renderer().svg_of(self)
 
     def _repr_html_(self) -> str:
         """Return its words and its drawing, for a notebook."""
-        return _renderers[0]().html_of(self)
+        return renderer().html_of(self)
 
 
 def short(words: str) -> str:

@@ -6,14 +6,12 @@ An engine of one's own is known where a package offers it under the entry point 
 
 from __future__ import annotations
 
-import sys
 from functools import partial
 from importlib import import_module
-from pathlib import Path
 
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError, MissingPart
-from blocksim.common.later import Installed, Later, loaded
+from blocksim.common.later import Installed, Later, loaded_here
 from blocksim.engines.base import Engine
 
 GROUP = "blocksim.engines"
@@ -75,10 +73,7 @@ def engine_named(name: str, field: str = "method") -> Engine:
         return ENGINES[name]
     known = f"one of {', '.join(ENGINES)}, or an engine of your own as module:ENGINE"
     require(":" in name, field, name, known)
-    here = str(Path.cwd())
-    if here not in sys.path:
-        sys.path.append(here)
-    return make_known(loaded(field, name), name)
+    return make_known(loaded_here(field, name), name)
 
 
 def make_known(engine: object, place: str) -> Engine:

@@ -6,7 +6,8 @@ from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from blocksim.common.later import Installed, Later
+from blocksim.common.errors import InputError
+from blocksim.common.later import Installed, Later, loaded_here
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Maker
@@ -39,3 +40,19 @@ KINDS: Later[type[Maker]] = Later(
     beyond=Installed("blocksim.kinds"),
 )
 """All there are: packages offer theirs under the entry point group `blocksim.kinds`."""
+
+
+def own_kind(place: str) -> type[Maker]:
+    """Return a kind of one's own by its place, ``module:CLASS``.
+
+    Raises
+    ------
+    InputError
+        If it cannot be loaded, or is no `Maker`.
+    """
+    from blocksim.blocks.maker import Maker
+
+    found = loaded_here("kind", place)
+    if not (isinstance(found, type) and issubclass(found, Maker)):
+        raise InputError("kind", place, "a Maker of blocksim, as module:CLASS")
+    return found

@@ -24,7 +24,7 @@ class Arcade(Maker):
     about: ClassVar[str] = "several equal arches on free piers, between fixed abutments"
 
     arch: ArchKind = parameter(  # noqa: RUF009 - a frozen arch
-        SEMICIRCLE, "the arch: a table with its kind and parameters", table=True
+        SEMICIRCLE, "the arch: a table with its kind and parameters", nested="table"
     )
     spans: int = count(2, "number of arches", high=100)
     pier_width: float = metres(0.6, "width of the piers", stands="high")

@@ -105,7 +105,7 @@ class ArchOffers(Offers):
         # What moves blocks is loaded where it is asked for.
         from blocksim.arch.reduction import Reduction
 
-        return Reduction.of(self.arch, self.problem.mu)
+        return Reduction.of(self.arch, self.problem.mu, self.problem.assembly)
 
     def threshold(self, over: str) -> Threshold | None:
         """Return what is known of the least thickness."""

@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 import numpy as np
 
 from blocksim.arch.circular import Arch, Weight
-from blocksim.arch.dimensions import At, Dimensions, Line
+from blocksim.arch.dimensions import LINES, At, Dimensions, Line
+from blocksim.arch.limit import least_thickness
 from blocksim.blocks.made import Built
-from blocksim.blocks.maker import Parameter, metres, parameter, parameters_of
+from blocksim.blocks.maker import metres, parameter
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import ETA, FRICTION, HALF_ANGLE, LENGTH, VOUSSOIRS, Range, require
-from blocksim.common.errors import MISSING
+from blocksim.common.checks import (
+    ETA,
+    FRICTION,
+    HALF_ANGLE,
+    HALF_ANGLE_DEG,
+    LENGTH,
+    RATIO,
+    VOUSSOIRS,
+    Range,
+    require,
+)
+from blocksim.common.errors import MISSING, InputError
+from blocksim.common.fields import Field, fields_of
 from blocksim.kinds.archkind import CurvedArch
 from blocksim.kinds.curves import Curve
 from blocksim.kinds.strips import Voussoirs
@@ -23,41 +35,28 @@ from blocksim.kinds.strips import Voussoirs
 if TYPE_CHECKING:
     from blocksim.kinds.archoffers import ArchOffers
 
-HALF_ANGLE_DEG = Range(low=0.06, high=math.nextafter(180, 0), unit="deg")
 ROUND = 360.0
 
 
-SIZES: dict[str, Any] = {"low": LENGTH.low, "high": LENGTH.high, "above": False}
-MEASURES = {
-    "half_angle_deg": Parameter(
-        about="crown to springing, in place of left_deg and right_deg",
-        unit="deg",
-        low=HALF_ANGLE_DEG.low,
-        high=HALF_ANGLE_DEG.high,
-        above=False,
-    ),
-    "eta": Parameter(
-        about="thickness over radius, in place of thickness",
-        low=ETA.low,
-        high=ETA.high,
-        above=False,
-    ),
-    "span": Parameter(
-        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
-    ),
-    "rise": Parameter(
-        about="of the line at", unit="m", low=LENGTH.low, high=LENGTH.high, above=False
-    ),
-    "at": Parameter(
-        about="line that span and rise are of", choices=("intrados", "centreline", "extrados")
-    ),
-}
-"""What an arch can be made by in place of parameters of its kind."""
 SPRINGINGS = "left_deg", "right_deg"
 WEIGHTS: dict[str, Weight] = {"centreline": "centreline", "curved": "sector"}
 """What an arch calls the weights of a kind that it has, too."""
 LEAST_DENSITY = 100.0
 """Weight per volume below which weights are taken for ratios, not for newtons [N/m^3]."""
+FOLLOW = {
+    ("span", "rise"): ("radius", "half_angle"),
+    ("half_angle_deg",): ("half_angle",),
+    ("half_angle",): SPRINGINGS,
+    ("ratio",): ("eta", "thickness"),
+    ("eta",): ("thickness",),
+}
+"""What follows from what else may be given."""
+
+
+def _instead(about: str, known: Range) -> Any:
+    """Make a field that may be given in place of others."""
+    said = Field(about=about, range=known, optional=True)
+    return field(default=None, metadata={Field.__name__: said})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,9 +65,10 @@ class CircularArch(CurvedArch):
 
     It is made in one of three ways: by the angles to its springings (`left_deg`, `right_deg`),
     by its half-angle and thickness-to-radius ratio (`half_angle_deg`, or `half_angle` in
-    radians, and `eta`), or by what can be measured (`span`, `rise` and `thickness` [m]). The
-    first draws supports, which may move; the unit of length of engines is then half its larger
-    side. Of the others it is the radius, and supports are the planes of the springings.
+    radians, and `eta` or `ratio`), or by what can be measured (`span`, `rise` and `thickness`
+    [m]). The first draws supports, which may move; the unit of length of engines is then half
+    its larger side. Of the others it is the radius, and supports are the planes of the
+    springings. All that is known of a symmetric arch is known of it, however it was made.
 
     Parameters
     ----------
@@ -78,6 +78,8 @@ class CircularArch(CurvedArch):
         The same [deg].
     eta : float or None
         Thickness-to-radius ratio.
+    ratio : float or None
+        Thickness over the least one that stands, of the voussoirs as built; it takes friction.
     span, rise : float or None
         Of the line `at`, which stays where it is as the thickness changes [m].
     at : {"intrados", "centreline", "extrados"}
@@ -106,11 +108,16 @@ class CircularArch(CurvedArch):
         choices=("curved", "chord", "centreline"),
     )
     half_angle: float | None = None
-    half_angle_deg: float | None = None
-    eta: float | None = None
-    span: float | None = None
-    rise: float | None = None
-    at: At = "intrados"
+    half_angle_deg: float | None = _instead(
+        "crown to springing, in place of left_deg and right_deg", HALF_ANGLE_DEG
+    )
+    eta: float | None = _instead("thickness over radius, in place of thickness", ETA)
+    ratio: float | None = _instead(
+        "thickness over the least one that stands, as built, in place of thickness", RATIO
+    )
+    span: float | None = _instead("of the line at, in place of radius and springings", LENGTH)
+    rise: float | None = _instead("of the line at", LENGTH)
+    at: str = parameter("intrados", "line that span and rise are of", choices=LINES)
 
     @classmethod
     def of(cls, arch: Arch, friction: float | None = None) -> Self:
@@ -134,7 +141,9 @@ class CircularArch(CurvedArch):
         if self.span is not None or self.rise is not None:
             for name in ("span", "rise"):
                 require(getattr(self, name) is not None, name, MISSING, "given")
-            self._measure(Line(span=self.span or 0, rise=self.rise or 0, at=self.at))
+        line = self.line
+        if line is not None:
+            self._derive("half_angle", line.half_angle)
         elif self.half_angle_deg is not None:
             HALF_ANGLE_DEG.require("half_angle_deg", self.half_angle_deg)
             self._derive("half_angle", math.radians(self.half_angle_deg))
@@ -142,10 +151,17 @@ class CircularArch(CurvedArch):
             HALF_ANGLE.require("half_angle", self.half_angle)
             for name in SPRINGINGS:
                 self._derive(name, math.degrees(self.half_angle))
+        if self.ratio is not None:
+            self._derive("eta", self.ratio * self._least(self.ratio))
+        if line is not None:
+            size = Dimensions(**vars(line), thickness=self.thickness)
+            self._derive(
+                "radius", size.radius if self.eta is None else line.mean_radius(self.eta)
+            )
         if self.eta is not None:
             ETA.require("eta", self.eta)
             self._derive("thickness", self.eta * self.radius)
-        if not self.is_plain:
+        if not self.in_radii:
             super().__post_init__()
         else:
             # Its ranges are wider than those of its kind.
@@ -154,14 +170,26 @@ class CircularArch(CurvedArch):
                 FRICTION.require("friction", self.friction)
             self._check_forces()
 
-    def _measure(self, line: Line) -> None:
-        """Work out what follows from the line that was measured."""
-        if self.eta is None:
-            radius = Dimensions(**vars(line), thickness=self.thickness).radius
-        else:
-            radius = line.mean_radius(self.eta)
-        self._derive("radius", radius)
-        self._derive("half_angle", line.half_angle)
+    def _least(self, ratio: float) -> float:
+        """Return the least thickness over radius that stands, of which a ratio is taken."""
+        RATIO.require("ratio", ratio)
+        if self.half_angle is None or self.weight not in WEIGHTS:
+            allowed = (
+                "left out: it is of symmetric arches by their half-angle, or span and rise"
+            )
+            raise InputError("ratio", ratio, allowed)
+        if self.friction is None:
+            raise InputError("friction", MISSING, "given beside ratio")
+        VOUSSOIRS.require("voussoirs", self.voussoirs)
+        FRICTION.require("friction", self.friction)
+        weight = WEIGHTS[self.weight]
+        least = least_thickness(self.half_angle, self.friction, self.voussoirs, weight).eta
+        if not least:
+            why = "no thickness up to 2 stands" if least is None else "any thickness stands"
+            raise InputError("eta", MISSING, f"given in place of ratio: {why} here")
+        most = ETA.high / least
+        require(ratio <= most, "ratio", ratio, f"at most {most:.6g}, eta = {ETA.high:g}")
+        return least
 
     def _derive(self, name: str, value: float) -> None:
         """Set what follows from others; another value that was given is refused."""
@@ -173,24 +201,18 @@ class CircularArch(CurvedArch):
     def but(self, **changes: Any) -> Self:
         """Return the same with other values; the line that was measured stays where it is."""
         given: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
-        follow = {
-            ("span", "rise"): ("radius", "half_angle"),
-            ("half_angle_deg",): ("half_angle",),
-            ("half_angle",): SPRINGINGS,
-            ("eta",): ("thickness",),
-        }
-        for leading, following in follow.items():
+        for leading, following in FOLLOW.items():
             if getattr(self, leading[0]) is not None:
                 left = leading if {*following} & {*changes} else following
                 given = {name: value for name, value in given.items() if name not in left}
         for name, value in changes.items():
             known = name in type(self).__dataclass_fields__
-            require(known, name, value, f"one of {', '.join(parameters_of(type(self)))}")
+            require(known, name, value, f"one of {', '.join(fields_of(type(self)))}")
         return type(self)(**{**given, **changes})
 
     @property
-    def is_plain(self) -> bool:
-        """Whether it is a symmetric ring by its half-angle, without fill."""
+    def in_radii(self) -> bool:
+        """Whether it is a symmetric ring by its half-angle, without fill, on two planes."""
         ring = self.half_angle is not None and self.weight in WEIGHTS
         return ring and self.fill is None and self.joints != "vertical"
 
@@ -219,24 +241,26 @@ class CircularArch(CurvedArch):
 
     def between_supports(self) -> CircularArch:
         """Return the same by the angles to its springings: with supports that can move."""
-        given = {name: getattr(self, name) for name in parameters_of(type(self))}
+        given = {name: getattr(self, name) for name in fields_of(CurvedArch)}
+        for name in ("radius", *SPRINGINGS):
+            given[name] = getattr(self, name)
         return CircularArch(**given, friction=self.friction, density=self.density)
 
     def problem(self) -> Problem:
         """Return the arch under its own weight and that of its fill."""
         made = super().problem()
-        return replace(made, title="") if self.is_plain else made
+        return replace(made, title="") if self.in_radii else made
 
     def built_of(self, size: float | None = None) -> Built:
         """Make the blocks."""
-        plain = self.shape if self.is_plain and size is None else None
+        plain = self.shape if self.in_radii and size is None else None
         return super().built_of(size) if plain is None else Built(assembly=plain.assembly())
 
     def offers(self, problem: Problem) -> ArchOffers | None:
         """Return what is known of the arch under its own weight, upright or leaning."""
         arch = self.shape
         # Blocks or friction may have been exchanged.
-        mine = arch is not None and self.is_plain and problem.assembly is self.built.assembly
+        mine = self.fill is None and problem.assembly is self.built.assembly
         alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
         still = problem.shaking is None and not problem.is_loaded and not problem.gravity[0]
         if arch is None or not (mine and alike and still):
@@ -250,7 +274,7 @@ class CircularArch(CurvedArch):
         """The line that was measured; None where none was."""
         if self.span is None or self.rise is None:
             return None
-        return Line(span=self.span, rise=self.rise, at=self.at)
+        return Line(span=self.span, rise=self.rise, at=cast("At", self.at))
 
     def mean_radius(self, eta: float) -> float:
         """Return the radius of the centreline at a thickness-to-radius ratio [m].
@@ -263,11 +287,26 @@ class CircularArch(CurvedArch):
     @property
     def length_name(self) -> str:
         """What the unit of length of engines is called."""
-        return "r" if self.is_plain else "L"
+        return "r" if self.in_radii else "L"
+
+    @property
+    def has_size(self) -> bool:
+        """Whether a line of it was measured, or its radius given: 1 stands for none."""
+        return not self.in_radii or self.radius != 1 or self.line is not None
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Half-angle and thickness-to-radius ratio of a symmetric ring, and how it weighs."""
+        if self.shape is None or not self.in_radii:
+            return ()
+        angle = f"\N{GREEK SMALL LETTER ALPHA} = {math.degrees(self.shape.half_angle):.4g}°"
+        ratio = f"\N{GREEK SMALL LETTER ETA} = {self.shape.eta:.4g}"
+        own = self.shape.weight != "centreline"
+        return (angle, ratio, f"weight {self.shape.weight}") if own else (angle, ratio)
 
     def origin(self) -> dict[str, object]:
         """Return what a recording keeps of it."""
-        if self.is_plain and self.shape is not None:
+        if self.in_radii and self.shape is not None:
             return {"kind": self.name, **asdict(self.shape)}
         return super().origin()
 
@@ -322,40 +361,12 @@ def circle(shift: float, radius: float, start: float, end: float) -> Curve:
     )
 
 
-def arch_problem(arch: Arch, mu: float, lean: float = 0.0) -> Problem:
-    """Return the problem of an arch under its own weight.
-
-    Parameters
-    ----------
-    arch : Arch
-    mu : float
-        Friction coefficient of every joint, 1e-6 to 1e6 or inf.
-    lean : float
-        Angle by which gravity leans out of the plane [rad].
-    """
-    FRICTION.require("mu", mu)
-    upright = CircularArch.of(arch, friction=mu).problem()
-    return upright.leaning(lean) if lean else upright
-
-
-def plain_arch(problem: Problem) -> Arch | None:
-    """Return the arch of a problem in whose radius it is measured; None of any other."""
-    maker = problem.maker
-    return maker.shape if isinstance(maker, CircularArch) and maker.is_plain else None
-
-
-def is_plain_arch(problem: Problem) -> bool:
-    """Whether a problem is an arch under its own weight, upright, its joints all alike."""
-    upright = not problem.gravity[0] and not problem.gravity[2]
-    alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
-    return plain_arch(problem) is not None and upright and alike and not problem.is_loaded
-
-
 def weighed_arch(problem: Problem) -> Arch | None:
     """Return the symmetric circular arch of a problem, however it was made, else None.
 
     One whose density was not given is none: its weights are ratios.
     """
     maker = problem.maker
-    known = isinstance(maker, CircularArch) and maker.unit_weight >= LEAST_DENSITY
-    return maker.shape if known or plain_arch(problem) else None  # type: ignore[union-attr]
+    if not isinstance(maker, CircularArch):
+        return None
+    return maker.shape if maker.in_radii or maker.unit_weight >= LEAST_DENSITY else None

@@ -216,13 +216,15 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return table
 
 
-def structure_of(data: object) -> Problem:
+def structure_of(data: object, *own: type[Maker]) -> Problem:
     """Make a problem of what a structure file says.
 
     Parameters
     ----------
     data : object
         A dict: with `blocks`, or with `kind` and its parameters, and the keys of `Around`.
+    *own : type
+        Kinds of one's own.
 
     Raises
     ------
@@ -233,8 +235,10 @@ def structure_of(data: object) -> Problem:
         return structure.structure_of(cast("object", data))
     table = cast("dict[str, Any]", data)
     require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
-    kind = kind_of({key: table[key] for key in table if key not in AROUND}, ALL)
-    return problem_of(kind, around_of({key: table[key] for key in table if key in AROUND}))
+    around = around_of({key: table[key] for key in table if key in AROUND})
+    said = {key: table[key] for key in table if key not in AROUND}
+    forces = {"friction": around.friction, "density": around.density}
+    return problem_of(kind_of(said, (*ALL, *own), forces=forces), around)
 
 
 ALL = tuple(KINDS.values())
@@ -254,8 +258,6 @@ def problem_of(kind: Maker, around: Around) -> Problem:
     Problem
         Dead loads begin with the weight of fill.
     """
-    friction = math.inf if around.friction == "inf" else around.friction
-    kind = replace(kind, density=around.density, friction=friction)
     built = kind.built if around.size is None else kind.built_of(around.size)
     problem = structure.problem_of(around, built.bodies, built.assembly, built.notes)
     return replace(

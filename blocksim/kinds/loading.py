@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 
-from blocksim.arch.limit import least_thickness
-from blocksim.arch.scenario import Scenario, load_scenario, shipped
 from blocksim.blocks.problem import Problem
-from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, read_file, toml_of
 from blocksim.kinds import KINDS
-from blocksim.kinds.circular import arch_problem
 from blocksim.kinds.files import LARGEST_FILES, load_structure
-
-ASIDE = 0.99
-"""Thickness of a scenario that sets none, over its least: it collapses, in one mode."""
+from blocksim.kinds.scenarios import load_scenario, shipped
 
 
 def load(name: AnyPath, *, friction: float | None = None) -> Problem:
@@ -46,7 +39,7 @@ def load(name: AnyPath, *, friction: float | None = None) -> Problem:
     if said in KINDS:
         return KINDS[said](friction=friction).problem()
     if said in shipped() or _is_scenario(said):
-        return _of_scenario(load_scenario(said))
+        return load_scenario(said).problem()
     return load_structure(name, friction=friction)
 
 
@@ -59,14 +52,3 @@ def _is_scenario(path: str) -> bool:
     except ValueError:
         return False
     return "arch" in table and "kind" not in table and "blocks" not in table
-
-
-def _of_scenario(asked: Scenario) -> Problem:
-    if asked.eta is not None:
-        return arch_problem(asked.arch(asked.eta), asked.mu, asked.lean)
-    least = least_thickness(asked.half_angle, asked.mu, asked.voussoirs, asked.weight).eta
-    if not least:
-        raise InputError("scenario", asked.name, "one with a thickness, or a least thickness")
-    built = arch_problem(asked.arch(ASIDE * least), asked.mu, asked.lean)
-    note = f"no thickness was given, so it is {ASIDE:g} of the least as built"
-    return replace(built, notes=(note,))

@@ -31,7 +31,7 @@ class Portal(Maker):
     about: ClassVar[str] = "an arch on two piers or buttresses"
 
     arch: ArchKind = parameter(  # noqa: RUF009 - a frozen arch
-        SEMICIRCLE, "the arch: a table with its kind and parameters", table=True
+        SEMICIRCLE, "the arch: a table with its kind and parameters", nested="table"
     )
     pier_width: float = metres(
         0.6, "width of the piers at the springing, from the intrados outwards", stands="high"

@@ -13,7 +13,7 @@ from blocksim.blocks.record import to_record
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
 from blocksim.kinds import KINDS
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.recording import FORMAT, Recording, read_recording
 
 
@@ -61,5 +61,5 @@ def _renewed(header: dict[str, Any]) -> dict[str, Any]:
     settings.pop("plane_lock", None)
     lean = float(settings.pop("lean", settings.pop("tilt", 0.0)))
     mu = math.inf if header["mu"] == "inf" else float(header["mu"])
-    problem = arch_problem(Arch(**header["arch"]), mu, lean)
+    problem = CircularArch.of(Arch(**header["arch"]), mu).problem().leaning(lean)
     return {**header, "format": FORMAT, "problem": to_record(problem), "settings": settings}

@@ -46,7 +46,7 @@ class Wall(Maker):
         1.0, "length of the first block of the lowest course, in block lengths", high=1.0
     )
     openings: tuple[Opening, ...] = parameter(
-        (), "tables with left, right, from_course and to_course", tables=True
+        (), "tables with left, right, from_course and to_course", nested="tables"
     )
     depth: float = metres(1.0, "depth out of the plane")
 

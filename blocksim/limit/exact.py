@@ -15,6 +15,7 @@ from blocksim.blocks.rows import column
 SLACK = Fraction(1, 10**12)
 """Loads that proofs leave aside, over the weight of each block."""
 NOTHING = Fraction(0)
+Number = int | Fraction
 Vector = list[Fraction]
 Point = tuple[int, int]
 
@@ -22,8 +23,8 @@ Point = tuple[int, int]
 class Exact:
     """A problem in whole and rational numbers.
 
-    Lengths are whole numbers of `grain` metres, a power of two of which all coordinates are
-    multiples; forces are rational numbers of newtons.
+    Lengths are whole numbers of `grain` metres, forces of `force` newtons: powers of two of
+    which all that is given are multiples.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -34,8 +35,12 @@ class Exact:
         ends = np.array([column(joints, "inner"), column(joints, "outer")])
         across = np.array([(0.0, 0.0) if each is None else each.tolist()
                            for each in column(joints, "across")])  # fmt: skip
-        values = [assembly.centres.ravel(), ends.ravel(), across.ravel()]
-        self.grain, whole = whole_numbers(np.concatenate(values).tolist())
+        acting = ((1.0, problem.dead), (problem.load, problem.live))
+        points = [load.point for _, loads in acting for load in loads if load.point is not None]
+        values = [assembly.centres, ends, across, *points]
+        self.grain, whole = whole_numbers(
+            np.concatenate([each.ravel() for each in values]).tolist()
+        )
         pairs = list(zip(whole[::2], whole[1::2], strict=True))
         blocks, count = len(assembly.blocks), len(self.sides)
         self.centres = pairs[:blocks]
@@ -43,43 +48,48 @@ class Exact:
         self.ends = list(zip(first, second, strict=True))
         self.normals: list[Point] = []
         for corner, one, other, up in zip(
-            is_corner, first, second, pairs[blocks + 2 * count :], strict=True
+            is_corner, first, second, pairs[blocks + 2 * count :][:count], strict=True
         ):
             self.normals.append(up if corner else (other[1] - one[1], one[0] - other[0]))
-        self.friction = [
+        self.friction: list[Fraction | None] = [
             None if each == math.inf else Fraction(each) for each in problem.friction.tolist()
         ]
-        self.weights = [
-            Fraction(mass * STANDARD_GRAVITY) for mass in column(assembly.blocks, "mass")
-        ]
+        masses: list[float] = np.asarray(column(assembly.blocks, "mass")).tolist()
+        self.weights = [Fraction(mass * STANDARD_GRAVITY) for mass in masses]
         x, y = (Fraction(each) for each in problem.gravity[:2].tolist())
-        self.pull = [[weight * x, weight * y, NOTHING] for weight in self.weights]
-        for factor, loads in ((1.0, problem.dead), (problem.load, problem.live)):
+        pull = [[weight * x, weight * y, NOTHING] for weight in self.weights]
+        places = iter(pairs[blocks + 3 * count :])
+        for factor, loads in acting:
             for load in loads:
-                self._load(Fraction(factor), load)
+                at = None if load.point is None else next(places)
+                self._load(pull, Fraction(factor), load, at)
+        finest = max(each.denominator for wrench in pull for each in wrench)
+        self.force = Fraction(1, finest)
+        self.pull = [[int(each * finest) for each in wrench] for wrench in pull]
 
-    def _load(self, factor: Fraction, load: Load) -> None:
+    def _load(
+        self, pull: list[Vector], factor: Fraction, load: Load, point: Point | None
+    ) -> None:
         """Add a load: forces in newtons, moments in newtons times the grain."""
         force = [Fraction(each) for each in load.force.tolist()]
         for block in load.blocks:
             times = factor * (self.weights[block] if load.per_weight else 1)
-            x, y, pull = times * force[0], times * force[1], self.pull[block]
-            pull[0] += x
-            pull[1] += y
-            if load.point is not None and not load.per_weight:
-                px, py = (Fraction(each) / self.grain for each in load.point.tolist())
+            x, y, sums = times * force[0], times * force[1], pull[block]
+            sums[0] += x
+            sums[1] += y
+            if point is not None and not load.per_weight:
                 cx, cy = self.centres[block]
-                pull[2] += (px - cx) * y - (py - cy) * x
+                sums[2] += (point[0] - cx) * y - (point[1] - cy) * x
 
     @cached_property
-    def allowed(self) -> list[Vector]:
-        """What may be left on each block."""
+    def allowed(self) -> list[list[int]]:
+        """What may be left on each block, in units of force, and of that times the grain."""
         assembly = self.problem.assembly
         shapes = [np.concatenate(block.polygons) for block in assembly.blocks]
         reach = [float(np.abs(shape - centre).sum(axis=1).max())
                  for shape, centre in zip(shapes, assembly.centres, strict=True)]  # fmt: skip
-        most = [SLACK * weight for weight in self.weights]
-        return [[one, one, one * Fraction(far) / self.grain]
+        most = [SLACK * weight / self.force for weight in self.weights]
+        return [[int(one), int(one), int(one * Fraction(far) / self.grain)]
                 for one, far in zip(most, reach, strict=True)]  # fmt: skip
 
 

@@ -11,23 +11,26 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.common.later import Library
-from blocksim.limit.exact import NOTHING, Exact, Vector
+from blocksim.limit.exact import Exact, Number
 
 if TYPE_CHECKING:
     from scipy import linalg
 else:
     linalg = Library("scipy.linalg")
 
-Column = Sequence[int] | Sequence[Fraction]
+Column = Sequence[Number]
 """Force x, y and moment."""
 
 
-def handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) -> Vector | None:
+def handed_on(
+    exact: Exact, whole: list[int], unbalanced: list[list[int]], forces: Array
+) -> list[Number] | None:
     """Hand on what is left on each block through the strongest joints to a support.
 
     None where the joints on the way cannot take it.
     """
-    parts, left = parts[:], [wrench[:] for wrench in left]
+    parts: list[Number] = [*whole]
+    left: list[list[Number]] = [[*wrench] for wrench in unbalanced]
     room = _room(exact, forces)
     for block, joints in reversed(_ways(exact, room)):
         if not any(left[block]):
@@ -46,9 +49,8 @@ def handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) ->
         about = moment - (x - cx) * v + (y - cy) * u
         p, q = exact.normals[joint]
         square = sign * (p * p + q * q)
-        second = -about / square
-        first = (u * p + v * q) / square - second
-        half = (v * p - u * q) / (2 * square)
+        first, second = Fraction(u * p + v * q + about, square), Fraction(-about, square)
+        half = Fraction(v * p - u * q, 2 * square)
         for at, more in enumerate((first, half, second, half), 4 * joint):
             parts[at] += more
         if other != SUPPORT:
@@ -61,8 +63,8 @@ def handed_on(exact: Exact, parts: Vector, left: list[Vector], forces: Array) ->
 
 def _by_parts(
     exact: Exact,
-    parts: Vector,
-    left: list[Vector],
+    parts: list[Number],
+    left: list[list[Number]],
     room: Array,
     block: int,
     joints: list[int],
@@ -93,7 +95,7 @@ def _by_parts(
         return False
     goal = [-each for each in left[block]]
     found = _triple(goal, b, c), _triple(a, goal, c), _triple(a, b, goal)
-    left[block] = [NOTHING] * PLANAR
+    left[block] = [0] * PLANAR
     for each, above in zip(chosen, found, strict=True):
         (at, other, _), (u, v, moment), more = (
             places[each],
@@ -109,7 +111,7 @@ def _by_parts(
     return True
 
 
-def _triple(a: Column, b: Column, c: Column) -> Fraction | int:
+def _triple(a: Column, b: Column, c: Column) -> Number:
     """Return the determinant of three columns."""
     return (
         a[0] * (b[1] * c[2] - b[2] * c[1])

@@ -20,7 +20,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
-from blocksim.limit.programme import collapse, equilibrium, falling
+from blocksim.limit.capacity import collapse
+from blocksim.limit.programme import equilibrium
 
 FINEST = 1e-9
 """Part of an arc that is not divided further [rad]."""
@@ -143,8 +144,7 @@ class _Arc:
         found = equilibrium(asked)
         if found.exists or found.mechanism is not None:
             return found.mechanism
-        driven = falling(asked)
-        return np.zeros_like(self._loads) if driven is None else driven
+        return np.zeros_like(self._loads)
 
     def _spared(self, mechanism: Array, low: float, high: float) -> list[tuple[float, float]]:
         """Return the parts of an arc on which a mechanism gains no work."""

@@ -45,11 +45,24 @@ class Optimum:
         By how much the least cost grows with the right side of each row.
     unbounded : bool
         Whether nothing limits the cost from below.
+    basis : object
+        HiGHS's own: what is active.
     """
 
     values: Array
     prices: Array
     unbounded: bool
+    basis: Any = None
+
+    @property
+    def basic(self) -> tuple[list[int], list[int]]:
+        """The unknowns and the rows that are basic."""
+        known = highspy.HighsBasisStatus.kBasic
+        columns, rows = (
+            [at for at, each in enumerate(of) if each == known]
+            for of in (self.basis.col_status, self.basis.row_status)
+        )
+        return columns, rows
 
     @property
     def exists(self) -> bool:
@@ -163,6 +176,7 @@ class LinearProgramme:
             values=np.array(solution.col_value),
             prices=np.array(solution.row_dual),
             unbounded=False,
+            basis=self._basis,
         )
 
 

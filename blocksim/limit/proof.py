@@ -7,10 +7,10 @@ the vector between its ends, its normal the same turned by a right angle: no roo
 - *Stands*: forces of the linear programme lie well within their cones, but balance to 1e-10
   only. What is left on each block is handed on, exactly, through the strongest way of joints
   to a support. The sums still lie within the cones, or it is no proof.
-- *Falls*: rates of the linear programme break what joints forbid by 1e-10. Of all motions that
-  one is taken in which every joint opens by as much as the loads do work: rounding cannot close
-  it. Where joints cannot open, as with friction without bound, the equations that hold them
-  shut are solved in rationals (`bodies`).
+- *Falls*: a little of a motion that opens all joints is added to the rates of the linear
+  programme: rounding can close none of them.
+- Where joints cannot take more, or cannot open, as with friction without bound, the programme
+  is solved in rational numbers (`rational`).
 
 `blocksim.verify` checks them and shares no code with this.
 """
@@ -18,23 +18,24 @@ the vector between its ends, its normal the same turned by a right angle: no roo
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
-from blocksim.blocks.problem import Problem
+from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.common.version import __version__
-from blocksim.limit.bodies import motion_that_opens
-from blocksim.limit.cones import Cones
-from blocksim.limit.exact import NOTHING, SLACK, Exact, Vector, whole_numbers
+from blocksim.limit.exact import NOTHING, SLACK, Exact, Number, whole_numbers
 from blocksim.limit.handing import handed_on
+from blocksim.limit.rational import Bodies
 from blocksim.verify import FORMAT, seal
 
 ROUNDED = 1e-15
 """By how much friction is taken less, so that rounding does not exceed it."""
+WEDGED = 1e7
+"""Force, over the most that a block carries, beyond which rest would hang on rounding alone."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,18 +51,21 @@ class Proof:
         Loads that differ from those given by no more are proved as well (`collapses`) or
         instead (`stands`, where it is 0 but for structures that touch their limit): force over
         the weight of each block, moment over that times its reach.
-    forces : list of Fraction
+    forces : list of int or Fraction
         a, b at both ends of each joint: the force a n + b t, where t leads from its first end
         to the second [grains] and n is t turned clockwise; empty where it falls.
+    unit : Fraction
+        Of the forces [N].
     rates : list of three int, for each block
         x, y of its centre and rotation, in any unit; empty where it stands.
     """
 
     exact: Exact
     claim: Literal["stands", "collapses"]
-    tolerance: Fraction
-    forces: Vector
-    rates: list[list[int]]
+    tolerance: Fraction = NOTHING
+    forces: Sequence[Number] = ()
+    unit: Fraction = NOTHING
+    rates: list[list[int]] = field(default_factory=list[list[int]])
 
 
 def proof_record(proof: Proof) -> dict[str, Any]:
@@ -79,7 +83,8 @@ def proof_record(proof: Proof) -> dict[str, Any]:
     }
     if proof.claim == "stands":
         # In newtons over metres, as joints are vectors of metres.
-        parts = [str(each / exact.grain) for each in proof.forces]
+        unit = proof.unit / exact.grain
+        parts = [str(each * unit) for each in proof.forces]
         table["forces"] = [
             [parts[at : at + 2], parts[at + 2 : at + 4]] for at in range(0, len(parts), 4)
         ]
@@ -94,13 +99,13 @@ def proof_record(proof: Proof) -> dict[str, Any]:
     return {**table, "sha256": seal(table)}
 
 
-def proof_of_rest(problem: Problem, forces: Array) -> Proof | None:
+def proof_of_rest(exact: Exact, forces: Array) -> Proof | None:
     """Prove that a problem stands.
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
+    exact : Exact
+        The problem, in its plane.
     forces : (joints, 2, 2) float
         As of `Equilibrium`, which hardly balance.
 
@@ -109,7 +114,7 @@ def proof_of_rest(problem: Problem, forces: Array) -> Proof | None:
     Proof or None
         None where these forces prove nothing.
     """
-    exact = Exact(problem)
+    problem = exact.problem
     joints = problem.assembly.joint_arrays
     # Along vectors of so many grains.
     length = np.where(joints.is_corner, 1.0, joints.length * problem.assembly.size)
@@ -120,47 +125,87 @@ def proof_of_rest(problem: Problem, forces: Array) -> Proof | None:
         most = np.where(np.isinf(mu), math.inf, mu * inside[..., 0] * (1 - ROUNDED))
     inside[..., 1] = np.clip(inside[..., 1], -most, most)
     grain, whole = whole_numbers(inside.ravel().tolist())
-    left = _left(exact, whole, grain)
-    parts = [Fraction(each) * grain for each in whole]
-    handed = handed_on(exact, parts, left, forces)
+    unit = min(grain, exact.force)
+    times, each = int(grain / unit), int(exact.force / unit)
+    whole = [times * part for part in whole]
+    left = _left(exact, whole, each)
+    handed = handed_on(exact, whole, left, forces)
     if handed is not None and _within(exact, handed):
-        return Proof(exact=exact, claim="stands", tolerance=NOTHING, forces=handed, rates=[])
-    for block, wrench in enumerate(left):
+        return Proof(exact=exact, claim="stands", forces=handed, unit=unit)
+    for wrench, allowed in zip(left, exact.allowed, strict=True):
         # Less than is allowed: how far a block reaches is rounded here.
-        if any(2 * abs(w) > most for w, most in zip(wrench, exact.allowed[block], strict=True)):
+        if any(2 * abs(w) > each * most for w, most in zip(wrench, allowed, strict=True)):
             return None
-    return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=parts, rates=[])
+    return Proof(exact=exact, claim="stands", tolerance=SLACK, forces=whole, unit=unit)
 
 
-def proof_of_fall(problem: Problem, cones: Cones, rates: Array | None) -> Proof | None:
+def proof_of_fall(exact: Exact, rates: Array) -> Proof | None:
     """Prove that a problem falls.
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
-    cones : Cones
-    rates : (blocks, 3) float or None
-        As of `Equilibrium`, of a mechanism that joints hardly allow.
+    exact : Exact
+        The problem, in its plane.
+    rates : (blocks, 3) float
+        As of `Equilibrium`, of a mechanism that opens joints by more than round-off.
 
     Returns
     -------
     Proof or None
         None where these rates prove nothing.
     """
-    exact = Exact(problem)
-    for bodies in motion_that_opens(problem, cones, rates):
-        found = _rates(exact, *bodies)
-        if _lawful(exact, found) and _work(exact, found) > 0:
-            return Proof(
-                exact=exact, claim="collapses", tolerance=SLACK, forces=[], rates=found
-            )
+    size = exact.problem.assembly.size / float(exact.grain)
+    _, whole = whole_numbers((rates * [size, size, 1.0]).ravel().tolist())
+    return _of_motion(exact, [whole[at : at + 3] for at in range(0, len(whole), 3)])
+
+
+def proof_in_rationals(exact: Exact, weights: Array, owner: Sequence[int]) -> Proof | None:
+    """Prove that blocks stand or fall by a programme in rational numbers.
+
+    Parameters
+    ----------
+    exact : Exact
+        The problem, in its plane.
+    weights : (blocks,) float
+        What each block carries [mean weights].
+    owner : (blocks,) sequence of int
+        Body of each block; `SUPPORT` where it stays at rest. Blocks of one body move as one:
+        of such only that they fall is proved.
+
+    Returns
+    -------
+    Proof or None
+        None where it is too large, or only wedging by rounding would hold the blocks.
+    """
+    bodies, unit = Bodies(exact, owner), exact.problem.unit_force
+    vertex = bodies.solved(weights * unit)
+    if vertex is None or not vertex.improved():
+        return None
+    if vertex.cost:
+        return _of_motion(exact, bodies.motion(vertex))
+    if len(set(owner)) < len(owner) or SUPPORT in owner:
+        return None
+    forces = bodies.forces(vertex)
+    most = WEDGED * float(weights.max()) * unit / float(exact.force)
+    sizes = [abs(p) + abs(q) for p, q in exact.normals for _ in range(4)]
+    if any(abs(each) * size > most for each, size in zip(forces, sizes, strict=True)):
+        return None
+    return Proof(exact=exact, claim="stands", forces=forces, unit=exact.force)
+
+
+def _of_motion(exact: Exact, rates: list[list[int]]) -> Proof | None:
+    """Prove that blocks fall by a motion, of as many loads besides as it can."""
+    if not _lawful(exact, rates):
+        return None
+    for tolerance in (SLACK, NOTHING):
+        if _work(exact, rates, 2 if tolerance else 0) > 0:
+            return Proof(exact=exact, claim="collapses", tolerance=tolerance, rates=rates)
     return None
 
 
-def _left(exact: Exact, whole: list[int], grain: Fraction) -> list[Vector]:
-    """Return what forces leave on each block."""
-    sums = [[0] * PLANAR for _ in exact.centres]
+def _left(exact: Exact, whole: list[int], each: int) -> list[list[int]]:
+    """Return what forces leave on each block, which is pulled by so many times its pull."""
+    sums = [[each * one for one in pull] for pull in exact.pull]
     for joint, sides in enumerate(exact.sides):
         p, q = exact.normals[joint]
         for end, (x, y) in enumerate(exact.ends[joint]):
@@ -173,42 +218,16 @@ def _left(exact: Exact, whole: list[int], grain: Fraction) -> list[Vector]:
                     wrench[0] += sign * u
                     wrench[1] += sign * v
                     wrench[2] += sign * ((x - cx) * v - (y - cy) * u)
-    return [
-        [one + each * grain for one, each in zip(pull, wrench, strict=True)]
-        for pull, wrench in zip(exact.pull, sums, strict=True)
-    ]
+    return sums
 
 
-def _within(exact: Exact, parts: Vector) -> bool:
+def _within(exact: Exact, parts: Sequence[Number]) -> bool:
     """Tell whether all forces press and lie within friction."""
     for at, (a, b) in enumerate(zip(parts[::2], parts[1::2], strict=True)):
         mu = exact.friction[at // 2]
         if a < 0 or (b and mu is not None and abs(b) > mu * a):
             return False
     return True
-
-
-def _rates(
-    exact: Exact, owner: list[int], points: Array, motions: list[Vector]
-) -> list[list[int]]:
-    """Return rates of blocks from those of bodies about points of theirs; -1 is at rest.
-
-    As whole numbers of any unit: grains, and grains times turns over the grain.
-    """
-    below = math.lcm(*(each.denominator for motion in motions for each in motion))
-    scale = below * exact.grain.denominator, below
-    about = [[Fraction(each) / exact.grain for each in point] for point in points.tolist()]
-    below = math.lcm(*(each.denominator for point in about for each in point))
-    found: list[list[int]] = []
-    for (cx, cy), body in zip(exact.centres, owner, strict=True):
-        if body == SUPPORT:
-            found.append([0] * PLANAR)
-            continue
-        (x, y, turn), (px, py) = motions[body], about[body]
-        x, y, turn = x * scale[0], y * scale[0], turn * scale[1]
-        rates = (x - turn * (cy - py), y + turn * (cx - px), turn)
-        found.append([int(each * below) for each in rates])
-    return found
 
 
 def _lawful(exact: Exact, rates: list[list[int]]) -> bool:
@@ -231,12 +250,10 @@ def _lawful(exact: Exact, rates: list[list[int]]) -> bool:
     return True
 
 
-def _work(exact: Exact, rates: list[list[int]]) -> Fraction:
-    """Return the work of the loads, less what those that are left aside may do."""
-    total = NOTHING
-    for block, rate in enumerate(rates):
-        if any(rate):
-            most = exact.allowed[block]
-            for pull, least, way in zip(exact.pull[block], most, rate, strict=True):
-                total += pull * way - 2 * least * abs(way)
+def _work(exact: Exact, rates: list[list[int]], times: int) -> int:
+    """Return the work of the loads, less so many times what those left aside may do."""
+    total = 0
+    for pulls, allowed, rate in zip(exact.pull, exact.allowed, rates, strict=True):
+        for pull, least, way in zip(pulls, allowed, rate, strict=True):
+            total += pull * way - times * (least + 1) * abs(way)
     return total

@@ -87,10 +87,19 @@ def bracket_lines(answer: Bracket) -> list[str]:
         lines.append(f"  exact   {_number(answer.limit)}{unit} by limit analysis")
     if (many := interval_words(answer)) is not None:
         lines.append(f"  stands  {many}")
+    if answer.method == "limit":
+        lines.append(f"  proof   {ends_proved_words(answer)}")
     if answer.undecided:
         what = "values" if of is None else "ratios"
         lines.append(f"  unsure  {answer.undecided} of {answer.runs} {what} undecided")
     return lines if of is None else [*lines, *_thickness_lines(answer, of)]
+
+
+def ends_proved_words(answer: Bracket) -> str:
+    """Say whether it is proved that it falls to one side of each change, and stands beyond."""
+    if not answer.proved:
+        return "none was found of both sides"
+    return "falls to one side of each change and stands to the other, in rational arithmetic"
 
 
 def _head(answer: Bracket) -> str:

@@ -11,7 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal
 
 import numpy as np
 from numpy.lib.format import read_array_header_1_0, read_magic
@@ -22,7 +22,7 @@ from blocksim.blocks.record import from_record, to_record
 from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError, in_line
 from blocksim.common.files import AnyPath, json_of, json_text, opened, write_whole
-from blocksim.common.shown import Shown
+from blocksim.common.shown import Shown, renderer
 from blocksim.engines.base import Quality, Settings
 
 if TYPE_CHECKING:
@@ -138,6 +138,33 @@ class Recording(Shown):
     def seconds(self, gravity: float) -> Array:
         """Return times in seconds for a gravity in m/s^2."""
         return self.times * math.sqrt(self.assembly.size / gravity)
+
+    def film(
+        self,
+        path: AnyPath,
+        *,
+        view: Literal["2d", "3d"] = "2d",
+        slow: float | None = None,
+        height: int = 720,
+    ) -> None:
+        """Write it as a film, or a frame of it as a picture, as `blocksim render` does.
+
+        Parameters
+        ----------
+        path : Path
+            Ending in .mp4 or .gif for a film, .png, .svg or .pdf for its last frame.
+        view : {"2d", "3d"}
+        slow : float, optional
+            How many times slower than it happened.
+        height : int
+            In pixels; frames are 16:9.
+
+        Raises
+        ------
+        InputError, MachineError
+            If the film is too long or too large, or the file cannot be written.
+        """
+        renderer().film_of(self, path, view=view, slow=slow, height=height)
 
     def save(self, path: AnyPath) -> None:
         """Write a compressed .npz: arrays and one JSON text, nothing executable.

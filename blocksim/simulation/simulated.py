@@ -11,7 +11,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
-from blocksim.common.checks import is_number, require
+from blocksim.common.checks import Range
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.simulation.recording import Recording
@@ -25,48 +25,24 @@ BY_RULE: Overrides = {}
 """None given."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Setting:
-    """Range of a setting that can be given.
-
-    Parameters
-    ----------
-    low, high : float
-        Both allowed.
-    is_whole : bool
-    """
-
-    low: float
-    high: float
-    is_whole: bool = False
-
-    @property
-    def allowed(self) -> str:
-        """The range in words."""
-        return f"a {'whole ' * self.is_whole}number from {self.low:g} to {self.high:g}"
-
-
 SETTINGS = {
-    "step": Setting(low=1e-6, high=0.2),
-    "sweeps": Setting(low=1, high=1e7, is_whole=True),
-    "hold_sweeps": Setting(low=1, high=1e9, is_whole=True),
-    "still": Setting(low=1e-15, high=1e-2),
-    "rest": Setting(low=1e-15, high=1e-2),
+    "step": Range(low=1e-6, high=0.2),
+    "sweeps": Range(low=1, high=1e7, whole=True),
+    "hold_sweeps": Range(low=1, high=1e9, whole=True),
+    "still": Range(low=1e-15, high=1e-2),
+    "rest": Range(low=1e-15, high=1e-2),
 }
 """Of `engines.base.Settings`, which says what each is."""
 
 
 def require_setting(name: str, value: float) -> None:
     """Raise `InputError` unless a setting is within its range."""
-    setting = SETTINGS[name]
-    ok = is_number(value, 0, setting.high) and value >= setting.low
-    ok = ok and not (setting.is_whole and value != int(value))
-    require(ok, f"settings.{name}", value, setting.allowed)
+    SETTINGS[name].require(f"settings.{name}", value)
 
 
 def setting_of(name: str, value: float) -> float:
     """Return the value of a setting, as an `int` where it is a whole number."""
-    return round(value) if SETTINGS[name].is_whole else value
+    return round(value) if SETTINGS[name].whole else value
 
 
 def given_words(settings: Overrides) -> str:

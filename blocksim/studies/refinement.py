@@ -19,7 +19,7 @@ from blocksim.ask.methods import METHODS
 from blocksim.blocks.assembly import displacement
 from blocksim.engines import ENGINES
 from blocksim.engines.base import trusted
-from blocksim.kinds.circular import arch_problem
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.motion import FRAME, MOVED, QUIET
 from blocksim.simulation.observation import observe
 from blocksim.simulation.simulated import Simulation
@@ -134,9 +134,11 @@ def look(arch: Arch, mu: float, method: str, knob: str, value: float) -> Look:
     """
     if knob in {"step", "sweeps"}:
         given = {"step": STEP, "sweeps": ENGINES[method].usual_sweeps, knob: value}
-        return let_go(Simulation.of(arch_problem(arch, mu), method, settings=given))
+        return let_go(
+            Simulation.of(CircularArch.of(arch, mu).problem(), method, settings=given)
+        )
     given = {knob: value} if knob == "hold_sweeps" else {}
-    seen = observe(arch_problem(arch, mu), method, moving=False, settings=given)
+    seen = observe(CircularArch.of(arch, mu).problem(), method, moving=False, settings=given)
     work = ENGINES[method].contacts * (arch.voussoirs + 1) * seen.onset.sweeps
     return Look(verdict=seen.verdict, acceleration=seen.onset.acceleration, work=work)
 

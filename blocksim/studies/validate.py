@@ -8,17 +8,17 @@ from dataclasses import replace
 
 from blocksim.arch import limit
 from blocksim.arch.answers import ArchBracket
-from blocksim.arch.circular import Arch
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
-from blocksim.arch.scenario import Scenario, load_scenario, shipped
 from blocksim.ask.bracket import bracket
 from blocksim.ask.methods import missing
 from blocksim.ask.search import ETA_MAX
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
-from blocksim.kinds.circular import CircularArch, arch_problem
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.scenario import Scenario
+from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.simulation.observation import observe
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, agree, answered
@@ -119,11 +119,11 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
     tol : float, optional
         Relative width of the bracket; by default what the engine says (`validated_to`).
     """
-    if scenario.expected_verdict is not None and scenario.eta is not None:
-        return _judged(scenario, scenario.arch(scenario.eta), engine)
+    if scenario.expected_verdict is not None and scenario.has_thickness:
+        return _judged(scenario, engine)
     started = time.perf_counter()
     asked = bracket(
-        made(scenario),
+        scenario.of(eta=1.0),
         over="thickness",
         method=engine,
         tol=tol or engine_named(engine).validated_to,
@@ -136,13 +136,15 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
     if found.eta_low is not None:
         under = found.eta_low if found.centre is None else found.centre * (1 - ASIDE)
         arch = scenario.arch(under)
-        seen = observe(arch_problem(arch, scenario.mu), engine)
+        seen = observe(CircularArch.of(arch, scenario.mu).problem(), engine)
         in_motion, below = observed_mode(seen.joints_in_motion, arch), seen.verdict
         recording = seen.motion.recording if seen.motion else None
     # Thicker than eta = 2 there is no arch to try.
     if found.centre is not None and found.centre * (1 + ASIDE) <= ETA_MAX:
         over = found.centre * (1 + ASIDE)
-        above = observe(arch_problem(scenario.arch(over), scenario.mu), engine).verdict
+        above = observe(
+            CircularArch.of(scenario.arch(over), scenario.mu).problem(), engine
+        ).verdict
     error = None
     # Where the limit is the thickest arch there is, nothing above it can be tried.
     middle = found.centre or (None if asked.undecided else found.eta_low)
@@ -168,21 +170,10 @@ def validate_one(scenario: Scenario, engine: str, tol: float | None = None) -> V
     )
 
 
-def made(scenario: Scenario) -> CircularArch:
-    """Return what makes the arches of a scenario, at any thickness."""
-    return CircularArch(
-        half_angle=scenario.half_angle,
-        eta=1.0,
-        voussoirs=scenario.voussoirs,
-        weight=scenario.weight,
-        friction=scenario.mu,
-    )
-
-
-def _judged(scenario: Scenario, arch: Arch, engine: str) -> Validation:
+def _judged(scenario: Scenario, engine: str) -> Validation:
     """Compare the verdict on an arch as it is with the one its scenario claims."""
     started = time.perf_counter()
-    seen = observe(arch_problem(arch, scenario.mu, scenario.lean), engine)
+    seen, arch = observe(scenario.problem(), engine), scenario.arch(scenario.maker.eta or 1.0)
     right = seen.verdict is scenario.expected_verdict
     return replace(
         _asked(scenario, engine),
@@ -198,13 +189,14 @@ def _judged(scenario: Scenario, arch: Arch, engine: str) -> Validation:
 
 def _asked(scenario: Scenario, engine: str) -> Validation:
     """Return the row of a scenario that is still to be answered."""
+    arch = scenario.arch(1.0)
     return Validation(
         scenario=scenario.name,
         engine=engine,
-        half_angle=scenario.half_angle,
+        half_angle=arch.half_angle,
         mu=scenario.mu,
-        voussoirs=scenario.voussoirs,
-        weight=scenario.weight,
+        voussoirs=arch.voussoirs,
+        weight=arch.weight,
         modes_published=scenario.expected_modes,
         eta_published=scenario.expected_eta,
         title=scenario.title,
@@ -255,9 +247,8 @@ def _note(scenario: Scenario, found: ArchBracket, engine: str, in_motion: Mode |
         notes.append(f"in motion, 1 % below, the mode is {in_motion}")
     most = get_engine(engine).most_friction
     if scenario.mu > most:
-        there = limit.least_thickness(
-            scenario.half_angle, most, scenario.voussoirs, scenario.weight
-        )
+        arch = scenario.arch(1.0)
+        there = limit.least_thickness(arch.half_angle, most, arch.voussoirs, arch.weight)
         least = "nothing stands" if there.eta is None else f"{there.eta:.6g}, {there.mode}"
         notes.append(f"friction is {most:g} in the engine, where limit analysis says {least}")
     return "; ".join(notes)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, cast
+from typing import Annotated, cast
 
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from blocksim.arch.scenario import infinite
-from blocksim.common.checks import require
+from blocksim.common.checks import infinite, require
 from blocksim.common.errors import MISSING
+from blocksim.common.tables import Written
 
 DRAWN_AT_ONCE = 4096
 """Arches drawn together; a longer random design begins with those of a shorter one."""
@@ -26,7 +26,7 @@ def _as_table(written: object) -> object:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Axis:
+class Axis(Written):
     """Values of one quantity: a list, or a range of evenly spaced ones.
 
     Parameters
@@ -40,8 +40,6 @@ class Axis:
     log : bool
         Evenly spaced in the logarithm.
     """
-
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     values: Annotated[tuple[Number, ...], Field(max_length=10_000)] = ()
     low: Annotated[float, Field(strict=True, allow_inf_nan=False)] | None = None

@@ -9,23 +9,23 @@ from hashlib import blake2b
 from typing import Any, NamedTuple, Protocol, cast
 
 from blocksim.blocks.problem import Problem
-from blocksim.blocks.shaking import LONGEST, SHORTEST, STRONGEST
-from blocksim.common.checks import FACTOR, Range
-from blocksim.kinds.circular import MEASURES, CircularArch
+from blocksim.blocks.shaking import AMPLITUDE, DURATION
+from blocksim.common.checks import FACTOR, TILT_DEG
+from blocksim.common.fields import Field
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of
 
 ARCH = CircularArch.name
 NEEDED = {"half_angle_deg", "mu", "voussoirs", "weight"}
 PLAIN = NEEDED | {"eta", "ratio"}
 """What may be given of an arch that is answered in bulk; a column of their own for each."""
-ACTING: dict[str, Range] = {
-    "load": FACTOR,
-    "tilt_deg": Range(low=-180, high=180, unit="deg"),
-    "amplitude_g": Range(low=0, high=STRONGEST, unit="g"),
-    "duration_s": Range(low=SHORTEST, high=LONGEST, unit="s"),
+ACTING = {
+    "load": Field(about="factor on the live loads", range=FACTOR),
+    "tilt_deg": Field(about="tilt of the table", range=TILT_DEG),
+    "amplitude_g": Field(about="how strongly the ground shakes", range=AMPLITUDE),
+    "duration_s": Field(about="how long it shakes", range=DURATION),
 }
-"""What acts on a structure, and the range of each: factor on the live loads, tilt of the table,
-how strongly and how long the ground shakes."""
+"""What acts on a structure."""
 COLUMNS = {
     "id": "string",
     "kind": "string",
@@ -154,10 +154,7 @@ class Case(NamedTuple):
             given["eta"] = 1.0 if eta is None else eta
             return CircularArch(**given, friction=mu).problem()
         acting = {name: given.pop(name) for name in ACTING if name in given}
-        measures = MEASURES if self.kind == ARCH else ()
-        measured = {name: given.pop(name) for name in measures if name in given}
         problem = structure_of(self._table(given, mu, acting))
-        problem = problem.but(**measured) if measured else problem
         return problem.tilted(math.radians(acting.get("tilt_deg", 0.0)))
 
     def _table(

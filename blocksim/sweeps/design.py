@@ -7,14 +7,15 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, cast
+from typing import Annotated, Any, cast
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator
+from pydantic import Field as Said
 
 from blocksim.ask.methods import METHODS, STATIC
-from blocksim.blocks.maker import Parameter
-from blocksim.common.checks import Range
+from blocksim.common.fields import Field
+from blocksim.common.tables import Written
 from blocksim.engines import NAMES
 from blocksim.simulation.simulated import SETTINGS, setting_of
 from blocksim.sweeps.axis import DRAWN_AT_ONCE, Axis, AxisField, Number
@@ -29,14 +30,12 @@ def _as_list(written: object) -> object:
     return cast("object", written) if isinstance(written, list) else [written]
 
 
-Words = Annotated[
-    tuple[str, ...], Field(min_length=1, max_length=10), BeforeValidator(_as_list)
-]
+Words = Annotated[tuple[str, ...], Said(min_length=1, max_length=10), BeforeValidator(_as_list)]
 Values = Axis | tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class RandomTable:
+class RandomTable(Written):
     """Table `[random]`: draw structures instead of taking every combination.
 
     Parameters
@@ -47,14 +46,12 @@ class RandomTable:
         The same seed draws the same structures.
     """
 
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
-
-    count: Annotated[int, Field(ge=1, strict=True)]
-    seed: Annotated[int, Field(ge=0, strict=True)]
+    count: Annotated[int, Said(ge=1, strict=True)]
+    seed: Annotated[int, Said(ge=0, strict=True)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettingsTable:
+class SettingsTable(Written):
     """Table `[settings]`: of engines, instead of what their rules say; see `Settings`.
 
     Parameters
@@ -70,8 +67,6 @@ class SettingsTable:
     rest : Axis
         Displacement that counts as rest, over the radius.
     """
-
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     step: AxisField | None = None
     sweeps: AxisField | None = None
@@ -116,7 +111,7 @@ class How:
     method: Words = ("auto",)
     band: Number | None = None
     tol: Number = 0.005
-    confirm: Annotated[bool, Field(strict=True)] = True
+    confirm: Annotated[bool, Said(strict=True)] = True
     settings: SettingsTable = SettingsTable()
     random: RandomTable | None = None
 
@@ -130,7 +125,7 @@ class Design(How):
     kind : str
     axes : mapping of str to Axis or tuple of str
         By name: parameters of the kind, `arch.thickness` of its arch, `mu`, and what acts.
-    known : mapping of str to Parameter or Range
+    known : mapping of str to Field
         What each may be.
     rest : mapping
         What all have in common: parameters that are tables, loads, density.
@@ -138,7 +133,7 @@ class Design(How):
 
     kind: str
     axes: Mapping[str, Values]
-    known: Mapping[str, Parameter | Range]
+    known: Mapping[str, Field]
     rest: Mapping[str, Any]
 
     @property
@@ -161,8 +156,7 @@ class Design(How):
 
     def is_whole(self, name: str) -> bool:
         """Whether an axis has whole numbers only."""
-        known = self.known[name]
-        return isinstance(known, Parameter) and known.whole
+        return self.known[name].whole
 
     def cases(self) -> Iterator[Case]:
         """Give the cases one after the other, always in the same order."""
@@ -210,7 +204,7 @@ class Design(How):
         generator = np.random.default_rng(table.seed)
         axes = [(axis, self.is_whole(name)) for name, axis in self.axes.items()]
         own = self.settings.axes.items()
-        axes += [(axis, SETTINGS[name].is_whole) for name, axis in own]
+        axes += [(axis, SETTINGS[name].whole) for name, axis in own]
         for start in range(0, table.count, DRAWN_AT_ONCE):
             drawn: list[list[Any]] = []
             for axis, whole in axes:

@@ -5,55 +5,48 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import Any
 
 from blocksim.arch.circular import WEIGHTS
-from blocksim.arch.scenario import RENAMED, as_said, written_in
 from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES, METHODS
-from blocksim.blocks.maker import Maker, Parameter, parameters_of
+from blocksim.blocks.maker import Maker
 from blocksim.blocks.shaking import SHAPES
 from blocksim.common.checks import (
     FRICTION,
     SMOOTH_OR_ROUGH,
     VOUSSOIRS,
+    WIDTH,
     Range,
-    is_number,
     require,
 )
 from blocksim.common.errors import MISSING, InputError
+from blocksim.common.fields import Field, fields_of
 from blocksim.common.files import AnyPath
+from blocksim.common.tables import Written, as_said
 from blocksim.kinds import KINDS
-from blocksim.kinds.circular import MEASURES, CircularArch
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.scenarios import RENAMED, written_in
 from blocksim.simulation.simulated import require_setting
 from blocksim.sweeps.axis import Axis, AxisField, require_axis
 from blocksim.sweeps.case import ACTING, PLAIN, Value
 from blocksim.sweeps.design import Design, How, Values, Words
 
+BAND = Range(low=0, high=math.inf, above=True, infinite=True)
 LARGEST_DESIGN = 20_000_000
 """Cases of one sweep: their identities are held in memory, about 0.1 kB each."""
 COMMON = ("live", "dead", "move", "density", "shake")
 """Keys of structure files that all cases have in common."""
-RATIO = Parameter(
-    about="thickness over the least of the voussoirs as built",
-    low=1e-6,
-    high=100,
-    above=False,
-)
-BY_ANGLE: dict[str, Parameter] = {
-    **MEASURES,
-    "voussoirs": Parameter(
-        about="how many", low=VOUSSOIRS.low, high=VOUSSOIRS.high, above=False, whole=True
-    ),
-    "weight": Parameter(about="where a voussoir's weight acts", choices=WEIGHTS),
-    "ratio": RATIO,
+BY_ANGLE: dict[str, Field] = {
+    "voussoirs": Field(about="how many", range=VOUSSOIRS),
+    "weight": Field(about="where a voussoir's weight acts", choices=WEIGHTS),
 }
-"""Axes of arches by their half-angle."""
+"""What arches by their half-angle have otherwise than others."""
 USUAL_ARCH = {"voussoirs": 27, "weight": "centreline"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class DesignFile(How):
+class DesignFile(How, Written):
     """What a design file says besides the parameters of its kind.
 
     Parameters
@@ -71,8 +64,6 @@ class DesignFile(How):
     live, dead, move, density, shake : as in structure files
         What all structures have in common.
     """
-
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     mu: AxisField
     kind: str = CircularArch.name
@@ -124,10 +115,10 @@ def design_of(table: Mapping[str, Any]) -> Design:
         In one line: the first key that is wrong, its value, and what is allowed.
     """
     kind = _kind({"kind": CircularArch.name, **table}, "kind")
-    parameters = parameters_of(kind)
+    parameters = fields_of(kind)
     by_angle = kind is CircularArch and ("half_angle_deg" in table or "kind" not in table)
-    if kind is CircularArch:
-        parameters = parameters | (BY_ANGLE if by_angle else MEASURES)
+    if by_angle:
+        parameters = parameters | BY_ANGLE
     _require_known(table, (*KEYS, *parameters), "")
     if by_angle:
         require("half_angle_deg" in table, "half_angle_deg", MISSING, "given (or kind)")
@@ -136,7 +127,7 @@ def design_of(table: Mapping[str, Any]) -> Design:
             table["over"] = "thickness"
     written = as_said(DesignFile, {key: table[key] for key in KEYS if key in table})
     axes, known, rest = _axes(parameters, table)
-    axes["mu"], known["mu"] = written.mu, FRICTION if by_angle else SMOOTH_OR_ROUGH
+    axes["mu"], known["mu"] = written.mu, Field(range=FRICTION if by_angle else SMOOTH_OR_ROUGH)
     if by_angle:
         axes = {name: axes[name] for name in sorted(axes, key=_place)}
     axes |= {name: axis for name in ACTING if (axis := getattr(written, name)) is not None}
@@ -176,26 +167,26 @@ def _require_known(table: Mapping[str, Any], keys: Sequence[str], path: str) -> 
 
 
 def _axes(
-    parameters: Mapping[str, Parameter], table: Mapping[str, Any], path: str = ""
-) -> tuple[dict[str, Values], dict[str, Parameter | Range], dict[str, Any]]:
+    parameters: Mapping[str, Field], table: Mapping[str, Any], path: str = ""
+) -> tuple[dict[str, Values], dict[str, Field], dict[str, Any]]:
     """Tell axes, and what they may be, from what all cases have in common."""
     axes: dict[str, Values] = {}
-    known: dict[str, Parameter | Range] = {}
+    known: dict[str, Field] = {}
     rest: dict[str, Any] = {}
     for key, each in parameters.items():
         name = f"{path}{key}"
         if key not in table:
             continue
         value = table[key]
-        if each.table:
-            require(isinstance(value, Mapping), name, value, "a table with a kind of arch")
-            inside = parameters_of(_kind(value, f"{name}.kind"))
+        if each.nested == "table":
+            require(isinstance(value, Mapping), name, value, each.allowed)
+            inside = fields_of(_kind(value, f"{name}.kind"))
             _require_known(value, ("kind", *inside), f"{name}.")
             more, said, common = _axes(inside, value, f"{name}.")
             axes |= more
             known |= said
             rest[key] = {"kind": value["kind"], **common}
-        elif each.tables:
+        elif each.nested == "tables":
             rest[key] = value
         else:
             of = dict[str, Words] if each.choices else dict[str, AxisField]
@@ -207,8 +198,8 @@ def _axes(
 def _bracketed(kind: type[Maker], rest: Mapping[str, Any]) -> list[str]:
     """Names of the parameters that may be bracketed over."""
     names: list[str] = []
-    for name, known in parameters_of(kind).items():
-        if known.table:
+    for name, known in fields_of(kind).items():
+        if known.nested == "table":
             arch = KINDS[rest.get(name, {}).get("kind", CircularArch.name)]
             names += [f"{name}.{each}" for each in _bracketed(arch, {})]
         elif known.stands is not None:
@@ -259,13 +250,12 @@ def _require_asked(design: Design, kind: type[Maker]) -> None:
     if over is not None:
         names = (*FAMILIES, *_bracketed(kind, design.rest))
         require(over in names, "over", over, f"one of {', '.join(names)}")
-    measured = bool({*axes} & {*MEASURES})
-    choices = [each for each in CHOICES if measured or each != "theory"]
+    choices = [each for each in CHOICES if kind is CircularArch or each != "theory"]
     for word in design.method:
         # A file may name engines that are installed, but no module to be imported.
         own = word in METHODS and word not in METHODS.shipped
         require(word in choices or own, "method", word, f"one of {', '.join(choices)}")
-    require(is_number(design.tol, 0, 0.5), "tol", design.tol, "above 0 and at most 0.5")
+    WIDTH.require("tol", design.tol)
     for name in sorted({*design.method} - {"auto"}) if over is not None else ():
         finest = METHODS[name].finest
         require(design.tol >= finest, "tol", design.tol, f"at least {finest:g} for {name}")
@@ -280,8 +270,7 @@ def _require_asked(design: Design, kind: type[Maker]) -> None:
     if design.band is not None:
         require(over is None, "band", design.band, "left out where brackets are asked")
         require(plain, "band", design.band, "left out: it is of arches by half_angle_deg")
-        band_ok = is_number(design.band, 0, math.inf)
-        require(band_ok, "band", design.band, "above 0 (inf to simulate every arch)")
+        BAND.require("band", design.band)
     cases = design.size
     ok = 0 < cases <= LARGEST_DESIGN
     require(ok, "design", f"{cases} cases", f"at most {LARGEST_DESIGN} cases")

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from itertools import islice
 from typing import Any, BinaryIO, cast
 
-from blocksim.blocks.maker import Parameter, parameters_of
+from blocksim.common.fields import Field, fields_of
 from blocksim.common.files import AnyPath, write_whole
 from blocksim.common.later import require_library
 from blocksim.common.sheets import write_sheet
@@ -117,16 +117,16 @@ def _parameters(row: Mapping[str, object]) -> dict[str, object]:
     return cast("dict[str, object]", row.get("parameters") or {})
 
 
-def _known(kind: str, name: str) -> Parameter | None:
+def _known(kind: str, name: str) -> Field | None:
     """Return what is known of a parameter of a kind, or of the arch in it."""
     last = name.rpartition(".")[2]
     kinds = [KINDS[kind]] if kind in KINDS and last == name else []
-    found = (parameters_of(each).get(last) for each in (*kinds, *KINDS.values()))
+    found = (fields_of(each).get(last) for each in (*kinds, *KINDS.values()))
     return next((each for each in found if each is not None), None)
 
 
-def _type_of(known: Parameter | None) -> str:
-    if known is None or not known.is_number:
+def _type_of(known: Field | None) -> str:
+    if known is None or known.range is None:
         return "string"
     return "int64" if known.whole else "double"
 
@@ -141,7 +141,7 @@ def _held(value: object, kind: str) -> object:
     return number if kind == "double" else int(number)
 
 
-def _column(name: str, known: Parameter | None) -> str:
+def _column(name: str, known: Field | None) -> str:
     return f"{name}_{known.unit}" if known is not None and known.unit else name
 
 
@@ -162,7 +162,7 @@ def _schema(arrow: Any, columns: dict[str, str]) -> Any:
     names = {*columns.values(), "int64", "double"} - {"settings"}
     types = {kind: arrow.type_for_alias(kind) for kind in names}
     fields = [
-        (name, types["int64" if setting.is_whole else "double"])
+        (name, types["int64" if setting.whole else "double"])
         for name, setting in SETTINGS.items()
     ]
     types["settings"] = arrow.struct(fields)

@@ -12,7 +12,7 @@ from blocksim.arch.circular import WEIGHTS, Weight
 from blocksim.arch.limit.halfplanes import FEW, Joints, sliding, turning
 from blocksim.arch.limit.statics import ETA_MAX, least_of, thrust_bounds
 from blocksim.blocks.assembly import Array
-from blocksim.common.checks import require, require_voussoirs
+from blocksim.common.checks import VOUSSOIRS, require
 
 WORKING_SET = 25_000
 """Pairs of joints held at once; their temporaries stay in the cache."""
@@ -183,6 +183,6 @@ def _checked(
         wrong = ~((values > 0) & (values <= upto))
         if wrong.any():
             require(False, field, float(values[wrong].flat[0]), allowed)
-    require_voussoirs(voussoirs)
+    VOUSSOIRS.require("voussoirs", voussoirs)
     require(weight in WEIGHTS, "weight", weight, f"one of {', '.join(WEIGHTS)}")
     return alpha, depth, friction

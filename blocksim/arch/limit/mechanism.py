@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 from blocksim.arch.circular import Arch, crown_width
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
-from blocksim.common.checks import require_friction
+from blocksim.common.checks import ANY_FRICTION
 from blocksim.limit.linear import LinearProgramme
 
 ETA_MAX = 2.0
@@ -123,7 +123,7 @@ def mechanism(arch: Arch, mu: float, *, symmetric: bool = True) -> Mechanism:
     InputError
         If `mu` is out of range.
     """
-    require_friction(mu)
+    ANY_FRICTION.require("mu", mu)
     angles = arch.joint_angles
     half = angles >= 0 if symmetric else np.full(angles.size, True)
     program = conditions(angles[half], arch.eta, mu, arch.centroid_factor, symmetric=symmetric)

@@ -22,7 +22,7 @@ from blocksim.arch.circular import Arch, Weight, crown_width
 from blocksim.arch.limit.halfplanes import Bounds, Joints, least_met, sliding, turning
 from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
-from blocksim.common.checks import require_friction
+from blocksim.common.checks import ANY_FRICTION
 
 ETA_MAX = 2.0
 ROUGHLY = 1e-3
@@ -219,7 +219,7 @@ def slack(arch: Arch, mu: float) -> float:
         line of thrust and friction ``(1 - s) mu``; below 0 where the arch does not
         stand as it is.
     """
-    require_friction(mu)
+    ANY_FRICTION.require("mu", mu)
     share, _ = _least_share(arch, mu, 0.0)
     return 1.0 - share
 
@@ -317,7 +317,7 @@ def least_thickness(
         If a value is out of range.
     """
     Arch(half_angle=half_angle, eta=1.0, voussoirs=voussoirs, weight=weight)
-    require_friction(mu)
+    ANY_FRICTION.require("mu", mu)
     angles = half_joints(half_angle, voussoirs)
     eta, (lower, upper) = least_of(Joints(angles[None]), mu, weight)
     extrados = _places(angles, lower.extrados, upper.extrados)

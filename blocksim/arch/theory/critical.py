@@ -12,7 +12,7 @@ from blocksim.arch.modes import Mode
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.arch.theory.rotation import rotational_mode
 from blocksim.arch.theory.sliding import inner_slidings
-from blocksim.common.checks import require_friction
+from blocksim.common.checks import ANY_FRICTION
 
 CROWN_ETA: dict[Weight, float] = {"centreline": 1.0, "sector": 6 * (math.sqrt(4 / 3) - 1)}
 """Thickness of the arch that overturns with its inner hinge just at the crown."""
@@ -71,7 +71,7 @@ def least_thickness(half_angle: float, mu: float, weight: Weight = "centreline")
         If a value is out of range.
     """
     Arch(half_angle=half_angle, eta=1.0, voussoirs=3, weight=weight)
-    require_friction(mu)
+    ANY_FRICTION.require("mu", mu)
     found = least_thicknesses(half_angle, mu, weight)
     eta, thrust, beta_r, beta_s = (
         None if math.isnan(value) else float(value)

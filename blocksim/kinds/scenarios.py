@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+from pydantic import BeforeValidator, Field
 
-from blocksim.arch.asked import Scenario as Scenario
-from blocksim.arch.dimensions import (
-    Dimensions,
-    Line,
-    friction_of,
-    require_measured,
-    require_unit_weight,
-)
+from blocksim.arch.dimensions import friction_of, require_measured, require_unit_weight
 from blocksim.arch.modes import Mode
-from blocksim.blocks.entries import Density, Length, allowed_words
-from blocksim.common.checks import ETA, FRICTION, VOUSSOIRS, require
+from blocksim.blocks.entries import Density, Length
+from blocksim.common.checks import (
+    ETA,
+    FRICTION,
+    FRICTION_ANGLE,
+    HALF_ANGLE_DEG,
+    LEAN_DEG,
+    VOUSSOIRS,
+    require,
+)
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import AnyPath, read_file, shipped_files, toml_of
+from blocksim.common.tables import Written, as_said
+from blocksim.kinds.scenario import MEASURES, USUAL, Scenario
 from blocksim.simulation.verdict import Verdict
 
 LARGEST_FILE = 64 * 1024
@@ -30,20 +32,15 @@ LARGEST_FILE = 64 * 1024
 
 RENAMED = {"alpha_deg": "half_angle_deg", "tilt_deg": "lean_deg"}
 """Keys that were called otherwise."""
-Table = TypeVar("Table")
 
 
-def infinite(written: object) -> object:
-    """Take the text "inf" for infinity, as JSON has it."""
-    return math.inf if written == "inf" else written
-
-
-Angle = Annotated[float, Field(ge=0.06, lt=180, allow_inf_nan=False, strict=True)]
-Ratio = Annotated[float, Field(ge=ETA.low, le=ETA.high, strict=True)]
+def as_text(written: object) -> object:
+    """Say infinity, which TOML has as a number, as the text that files of JSON have."""
+    return "inf" if written == math.inf else written
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArchTable:
+class ArchTable(Written):
     """Table `[arch]` of a scenario file: by angle and ratio, or by what can be measured.
 
     Either `half_angle_deg` and `eta`, or `span_m`, `rise_m` and `thickness_m`.
@@ -77,11 +74,9 @@ class ArchTable:
         The same [kN/m3].
     """
 
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
-
-    voussoirs: Annotated[int, Field(ge=VOUSSOIRS.low, le=VOUSSOIRS.high, strict=True)]
-    half_angle_deg: Angle | None = None
-    eta: Ratio | None = None
+    voussoirs: Annotated[int, VOUSSOIRS]
+    half_angle_deg: Annotated[float, HALF_ANGLE_DEG] | None = None
+    eta: Annotated[float, ETA] | None = None
     radius: Length | None = None
     span_m: Length | None = None
     rise_m: Length | None = None
@@ -94,7 +89,7 @@ class ArchTable:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactTable:
+class ContactTable(Written):
     """Table `[contact]`: friction of every joint, as a coefficient or as an angle.
 
     Parameters
@@ -105,16 +100,12 @@ class ContactTable:
         The angle whose tangent it is [deg].
     """
 
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
-
-    mu: (
-        Annotated[float, Field(ge=FRICTION.low, strict=True), BeforeValidator(infinite)] | None
-    ) = None
-    friction_angle_deg: Annotated[float, Field(gt=0, le=90, strict=True)] | None = None
+    mu: Annotated[float, FRICTION, BeforeValidator(as_text)] | None = None
+    friction_angle_deg: Annotated[float, FRICTION_ANGLE] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class GravityTable:
+class GravityTable(Written):
     """Table `[gravity]`: how far it leans out of the plane.
 
     Parameters
@@ -123,13 +114,11 @@ class GravityTable:
         [deg]
     """
 
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
-
-    lean_deg: Annotated[float, Field(gt=-90, lt=90, strict=True)] = 0.0
+    lean_deg: Annotated[float, LEAN_DEG] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExpectTable:
+class ExpectTable(Written):
     """Table `[expect]`: what the source says of the continuous arch.
 
     Parameters
@@ -142,15 +131,13 @@ class ExpectTable:
         Of the arch at its own eta, where that is the claim.
     """
 
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
-
     modes: Annotated[tuple[Mode, ...], Field(min_length=1)] = ()
-    eta: Annotated[float, Field(gt=0, le=2, strict=True)] | None = None
+    eta: Annotated[float, ETA] | None = None
     verdict: Verdict | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class ScenarioFile:
+class ScenarioFile(Written):
     """A scenario file as written.
 
     Parameters
@@ -170,8 +157,6 @@ class ScenarioFile:
     quick : bool
         Whether `validate --quick` asks it.
     """
-
-    __pydantic_config__: ClassVar = {"extra": "forbid"}
 
     title: Annotated[str, Field(min_length=1, max_length=200)]
     source: Annotated[str, Field(min_length=1, max_length=500)]
@@ -202,31 +187,24 @@ def load_scenario(name: AnyPath) -> Scenario:
     allowed = "an existing .toml file or a shipped scenario (blocksim scenarios lists them)"
     # As it was given: a name that ends in a slash is no file.
     given = name if path == Path(name) else path
-    written = read_table(given, ScenarioFile, "scenario", allowed)
+    written = as_said(ScenarioFile, written_in(given, "scenario", allowed), str(path), RENAMED)
     return _scenario(path.stem, written, str(path))
 
 
-def read_table(path: AnyPath, schema: type[Table], what: str, allowed: str) -> Table:
-    """Read a TOML file as a dataclass says.
+def written_in(path: AnyPath, what: str, allowed: str) -> dict[str, Any]:
+    """Read a small TOML file.
 
     Parameters
     ----------
-    path : Path
-    schema : type
-        A dataclass; unknown keys are refused where it forbids them.
+    path : path
     what, allowed : str
         What the file is and has to be, for what is said of one that is not.
 
     Raises
     ------
     InputError
-        In one line, with file, field, value and what is allowed.
+        If there is none, or it is no TOML.
     """
-    return as_said(schema, written_in(path, what, allowed), str(path))
-
-
-def written_in(path: AnyPath, what: str, allowed: str) -> dict[str, Any]:
-    """Read a TOML file; as of `read_table`."""
     text = read_file(path, what, allowed, LARGEST_FILE)
     try:
         return toml_of(text)
@@ -234,94 +212,56 @@ def written_in(path: AnyPath, what: str, allowed: str) -> dict[str, Any]:
         raise InputError("file", str(error), "valid TOML", where=str(path)) from None
 
 
-def as_said(schema: type[Table], table: object, where: str | None = None) -> Table:
-    """Check what a file says; as of `read_table`."""
-    try:
-        return _adapter(schema).validate_python(table)
-    except ValidationError as error:
-        raise _first_of(error, where) from None
-
-
-@cache
-def _adapter(schema: type[Table]) -> TypeAdapter[Table]:
-    return TypeAdapter(schema)
-
-
-def _first_of(error: ValidationError, where: str | None) -> InputError:
-    """Turn the first of pydantic's complaints into one line."""
-    errors = error.errors(include_url=False, include_context=False)
-    # A misspelt key shows twice, as unknown and as missing: the first says more.
-    first = min(errors, key=lambda each: each["type"] != "unexpected_keyword_argument")
-    field = ".".join(str(part) for part in first["loc"])
-    if first["type"] == "unexpected_keyword_argument":
-        now = RENAMED.get(str(first["loc"][-1]))
-        if now:
-            return InputError(field, first["input"], f"named {now}", where=where)
-        return InputError(field, first["input"], "left out: there is no such key", where=where)
-    if first["type"] in {"missing", "missing_argument"}:
-        return InputError(field, MISSING, "given", where=where)
-    said = allowed_words(str(first["loc"][-1]), first["type"], first["msg"])
-    return InputError(field, first["input"], said, where=where)
-
-
 def _scenario(name: str, written: ScenarioFile, where: str) -> Scenario:
-    arch, expect = written.arch, written.expect
+    expect = written.expect or ExpectTable()
     try:
-        line, half_angle, eta, radius = _shape(arch)
-        _require_one("contact", written.contact, "mu", "friction_angle_deg")
-        if written.contact.mu is not None:
-            FRICTION.require("contact.mu", written.contact.mu)
-        if arch.unit_weight_kN_per_m3 is not None:
-            _require_one("arch", arch, "unit_weight_kN_per_m3", "specific_weight")
-            require_unit_weight("arch.unit_weight_kN_per_m3", arch.unit_weight_kN_per_m3)
+        given = {**_arch(written.arch), "friction": _friction(written.contact)}
     except InputError as error:
         raise InputError(error.field, error.value, error.allowed, where=where) from None
-    angle, mu = written.contact.friction_angle_deg, written.contact.mu
     return Scenario(
         name=name,
         title=written.title,
         source=written.source,
-        half_angle=half_angle,
-        mu=friction_of(angle) if angle is not None else mu or 0.0,
-        voussoirs=arch.voussoirs,
-        weight=arch.weight or ("centreline" if line is None else "sector"),
-        eta=eta,
-        line=line,
-        radius=radius,
-        depth=arch.depth,
-        specific_weight=1000 * arch.unit_weight_kN_per_m3
-        if arch.unit_weight_kN_per_m3 is not None
-        else arch.specific_weight or 20_000.0,
+        given=given,
         lean=math.radians(written.gravity.lean_deg),
-        expected_modes=expect.modes if expect else (),
-        expected_eta=expect.eta if expect else None,
-        expected_verdict=expect.verdict if expect else None,
+        expected_modes=expect.modes,
+        expected_eta=expect.eta,
+        expected_verdict=expect.verdict,
         quick=written.quick,
     )
 
 
-def _shape(arch: ArchTable) -> tuple[Line | None, float, float | None, float]:
-    """Return the line that was measured, half-angle [rad], eta and mean radius [m]."""
-    measured = {name: getattr(arch, name) for name in ("span_m", "rise_m", "thickness_m", "at")}
-    if all(each is None for each in measured.values()):
-        if arch.half_angle_deg is None:
-            raise InputError("arch.half_angle_deg", MISSING, "given (or span_m and rise_m)")
-        return None, math.radians(arch.half_angle_deg), arch.eta, arch.radius or 1.0
+def _friction(written: ContactTable) -> float:
+    _require_one("contact", written, "mu", "friction_angle_deg")
+    angle, mu = written.friction_angle_deg, written.mu
+    return friction_of(angle) if angle is not None else mu or 0.0
+
+
+def _arch(written: ArchTable) -> dict[str, Any]:
+    """Return the parameters of `CircularArch` that a table says."""
+    table = {name: each for name, each in asdict(written).items() if each is not None}
+    heavy = table.pop("unit_weight_kN_per_m3", None)
+    if heavy is not None:
+        _require_one("arch", written, "unit_weight_kN_per_m3", "specific_weight")
+        require_unit_weight("arch.unit_weight_kN_per_m3", heavy)
+        table["specific_weight"] = 1000 * heavy
+    given = {name.removesuffix("_m"): each for name, each in table.items()}
+    if "specific_weight" in given:
+        given["density"] = given.pop("specific_weight")
+    if not given.keys() & {*MEASURES}:
+        missing = "given (or span_m and rise_m)"
+        require("half_angle_deg" in given, "arch.half_angle_deg", MISSING, missing)
+        return {**USUAL, **given}
     for name in ("half_angle_deg", "eta", "radius"):
         allowed = "left out beside span_m, rise_m and thickness_m"
-        require(getattr(arch, name) is None, f"arch.{name}", getattr(arch, name), allowed)
-    span, rise, thickness = arch.span_m, arch.rise_m, arch.thickness_m
-    if span is None or rise is None:
-        raise InputError("arch.span_m" if span is None else "arch.rise_m", MISSING, "given")
-    line = Line(span=span, rise=rise, at=arch.at or "intrados")
+        require(name not in given, f"arch.{name}", given.get(name), allowed)
+    for name in ("span", "rise"):
+        require(name in given, f"arch.{name}_m", MISSING, "given")
     try:
-        require_measured(line, thickness)
+        require_measured(given)
     except InputError as error:
         raise InputError(f"arch.{error.field}_m", error.value, error.allowed) from None
-    if thickness is None:
-        return line, line.half_angle, None, line.radius
-    found = Dimensions(span=span, rise=rise, thickness=thickness, at=line.at)
-    return line, found.half_angle, found.eta, found.radius
+    return {**USUAL, "weight": "sector", **given}
 
 
 def _require_one(table: str, written: object, one: str, other: str) -> None:

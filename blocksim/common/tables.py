@@ -1,0 +1,108 @@
+"""Tables of files as dataclasses say them: the one place where pydantic checks them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+from typing import Any, ClassVar, TypeVar, cast
+
+from pydantic import TypeAdapter, ValidationError
+
+from blocksim.common.errors import MISSING, InputError
+
+Said = TypeVar("Said")
+UNKNOWN = "unexpected_keyword_argument"
+"""What pydantic calls a key that a table has not."""
+
+
+class Written:
+    """A table of a file, in which no other keys may stand."""
+
+    __pydantic_config__: ClassVar = {"extra": "forbid"}
+
+
+@dataclass(frozen=True)
+class Words:
+    """What is said of a value of several types, in an annotation of it."""
+
+    words: str
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
+        """Return the schema of the type, with these words in place of its complaints."""
+        return {
+            "type": "custom-error",
+            "schema": handler(source),
+            "custom_error_type": "words",
+            "custom_error_message": self.words,
+        }
+
+
+def as_said(
+    schema: type[Said],
+    table: object,
+    where: str | None = None,
+    renamed: Mapping[str, str] = MappingProxyType({}),
+) -> Said:
+    """Check what a table of a file says.
+
+    Parameters
+    ----------
+    schema : type
+        A dataclass.
+    table : object
+    where : str, optional
+        The file.
+    renamed : mapping of str to str
+        Keys that were called otherwise, and their names now.
+
+    Raises
+    ------
+    InputError
+        In one line: the first entry that is wrong, its value, and what is allowed.
+    """
+    try:
+        return _adapter(schema).validate_python(table)
+    except ValidationError as error:
+        raise _first_of(error, table, where, renamed) from None
+
+
+@cache
+def _adapter(schema: type[Said]) -> TypeAdapter[Said]:
+    return TypeAdapter(schema)
+
+
+def _first_of(
+    error: ValidationError, table: object, where: str | None, renamed: Mapping[str, str]
+) -> InputError:
+    """Turn the first of pydantic's complaints into one line."""
+    errors = error.errors(include_url=False, include_context=False)
+    # A misspelt key shows twice, as unknown and as missing: the first says more.
+    same = [each for each in errors if each["loc"][:-1] == errors[0]["loc"][:-1]]
+    first = min(same, key=lambda each: each["type"] != UNKNOWN)
+    missing = first["type"] in {"missing", "missing_argument"}
+    field = _place(first["loc"], table, missing=missing)
+    if first["type"] == UNKNOWN:
+        now = renamed.get(str(first["loc"][-1]))
+        allowed = f"named {now}" if now else "left out: there is no such key"
+        return InputError(field, first["input"], allowed, where=where)
+    if missing:
+        return InputError(field, MISSING, "given", where=where)
+    said = first["msg"].removeprefix("Input should be ")
+    return InputError(field, first["input"], said, where=where)
+
+
+def _place(path: tuple[int | str, ...], table: Any, *, missing: bool) -> str:
+    """Say where an entry stands, without the names of types that pydantic tried there."""
+    field, inside = "", table
+    for at, part in enumerate(path):
+        keys = cast("dict[str, Any]", inside) if isinstance(inside, dict) else {}
+        if isinstance(part, int):
+            field += f"[{part}]"
+            listed = isinstance(inside, list | tuple)
+            inside = cast("list[Any]", inside)[part] if listed else None
+        elif part in keys or (missing and at == len(path) - 1):
+            field += f".{part}" if field else part
+            inside = keys.get(part)
+    return field
