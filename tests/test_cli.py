@@ -80,6 +80,7 @@ def test_options_override_the_scenario() -> None:
 
 
 REPEATED = {
+    *("--level", "--group"),
     *("--with", "--point-load", "--patch-load", "--set", "--figure"),
     *("cite --method", "bracket --out"),
 }
@@ -95,7 +96,7 @@ def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
                 continue
             ways = [*option.opts, *option.secondary_opts]
             value = [] if option.is_flag else ["1"] * option.nargs
-            done = blocksim(name, ways[0], *value, ways[-1], *value)
+            done = blocksim(*name.split(), ways[0], *value, ways[-1], *value)
             if option.multiple:
                 assert REPEATED & {ways[0], f"{name} {ways[0]}"}
                 continue

@@ -214,7 +214,8 @@ def escaping(text: str) -> list[str]:
 
 def known(code: str) -> bool:
     """Tell whether a command named within a sentence exists, with its options."""
-    asked = re.match(r"(?:\$ )?(?:\.venv/bin/)?blocksim ([a-z]\S*)(.*)", code)
+    two = "|".join(name for name in COMMANDS if " " in name)
+    asked = re.match(rf"(?:\$ )?(?:\.venv/bin/)?blocksim ({two}|[a-z]\S*)(.*)", code)
     if not asked:
         return True
     command = app.get_command(Context(app), asked[1]) if asked[1] in COMMANDS else None

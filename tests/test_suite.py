@@ -310,6 +310,12 @@ def test_a_page_is_written_and_a_lost_level_told(tmp_path: Path) -> None:
 
 GOOD = {"scene": "incline-01", "seconds": 0.1, "verdict": "stands"}
 FRAMES = [[[0.0, 0.25, 0.0]]] * 11
+
+
+def posed(frames: list[Any]) -> dict[str, Any]:
+    return {"scene": "incline-01", "seconds": 0, "poses": frames}
+
+
 BROKEN: dict[str, list[Any]] = {
     "empty": [],
     "no JSON": ["stands"],
@@ -331,12 +337,12 @@ BROKEN: dict[str, list[Any]] = {
     "a time below 0": [HEAD, GOOD | {"seconds": -1}],
     "true for a time": [HEAD, GOOD | {"seconds": True}],
     "a misspelt key": [HEAD, GOOD | {"second": 1}],
-    "too few frames": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": FRAMES[1:]}],
-    "too many bodies": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [each * 2 for each in FRAMES]}],
-    "poses in space": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [[[0, 0, 0, 1, 0, 0, 0]]] * 11}],
-    "no number": [HEAD, '{"scene": "incline-01", "seconds": 0, "poses": ' + json.dumps(FRAMES).replace("0.25", "NaN") + "}"],
-    "a text in a pose": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [[["0", 0.25, 0]]] * 11}],
-    "another start": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [[[0.0, 0.0, 0.0]]] * 11}],
+    "too few frames": [HEAD, posed(FRAMES[1:])],
+    "too many bodies": [HEAD, posed([each * 2 for each in FRAMES])],
+    "poses in space": [HEAD, posed([[[0, 0, 0, 1, 0, 0, 0]]] * 11)],
+    "no number": [HEAD, json.dumps(posed(FRAMES)).replace("0.25", "NaN")],
+    "a text in a pose": [HEAD, posed([[["0", 0.25, 0]]] * 11)],
+    "another start": [HEAD, posed([[[0.0, 0.0, 0.0]]] * 11)],
     "nested without end": ["[" * 100_000],
 }  # fmt: skip
 

@@ -17,13 +17,13 @@ from blocksim.suite.score import scored, worse
 
 
 def export(
-    folder: Annotated[Path, Argument(help="Folder for the scenes.", folder=True)],
+    folder: Annotated[Path, Argument(about="Folder for the scenes.", folder=True)],
     level: Annotated[
         list[float] | None,
-        Option(help="Only scenes so far from their limit, in %; repeatable."),
+        Option(about="Only scenes so far from their limit, in %; repeatable."),
     ] = None,
     group: Annotated[
-        list[str] | None, Option(help="Only scenes of a group; repeatable.")
+        list[str] | None, Option(about="Only scenes of a group; repeatable.")
     ] = None,
 ) -> None:
     """Write scenes of which the answer is proved, for engines of any language."""
@@ -33,16 +33,16 @@ def export(
 
 
 def score(
-    answers: Annotated[str, Argument(help="What an engine said: a file of JSON lines.")],
+    answers: Annotated[str, Argument(about="What an engine said: a file of JSON lines.")],
     out: Annotated[
-        Path | None, Option(help="Folder for a page, its rows and JSON.", folder=True)
+        Path | None, Option(about="Folder for a page, its rows and JSON.", folder=True)
     ] = None,
     expect: Annotated[
         str | None,
-        Option(help="A score.json of before: exit code 1 where a level has become worse."),
+        Option(about="A score.json of before: exit code 1 where a level has become worse."),
     ] = None,
     as_json: Annotated[
-        bool, Option(name="--json", help="Print one JSON object, nothing else.")
+        bool, Option(name="--json", about="Print one JSON object, nothing else.")
     ] = False,
 ) -> None:
     """Hold what an engine said of these scenes to the truth."""

@@ -1,6 +1,6 @@
 """blocksim's own methods, by the same files as all others and the public calls.
 
-`python blocksim_engines.py SCENES ANSWERS.jsonl METHOD`, one of limit, direct, pymunk, pybullet,
+`python blocksim_engines.py SCENES ANSWERS.jsonl METHOD`: limit, direct, pymunk, pybullet or
 mujoco. They decide whether blocks stand; scenes in time are left to what moves.
 """
 
@@ -24,7 +24,11 @@ def structure(scene):
                 "id": body["name"],
                 "polygons": body["polygons"],
                 "fixed": body["fixed"],
-                **({} if body["fixed"] else {"weight": body["mass"] * G, "centre": body["centre"]}),
+                **(
+                    {}
+                    if body["fixed"]
+                    else {"weight": body["mass"] * G, "centre": body["centre"]}
+                ),
             }
             for body in scene["bodies"]
         ],

@@ -10,7 +10,10 @@ class Engine:
 
     NAME, VERSION, DIMENSIONS = "Box2D", "2.3 (Box2D 2.3.10)", (2,)
     SETTINGS = {
-        "documented": ("8 velocity and 3 position iterations, 1/60 s", {"step": 1 / 60, "sweeps": (8, 3)}),
+        "documented": (
+            "8 velocity and 3 position iterations, 1/60 s",
+            {"step": 1 / 60, "sweeps": (8, 3)},
+        ),
         "best": ("100 and 20 iterations, 1/480 s", {"step": 1 / 480, "sweeps": (100, 20)}),
     }
 
@@ -27,7 +30,9 @@ class Engine:
             shape = b2PolygonShape(vertices=[tuple(each) for each in local(given, polygon)])
             body.CreateFixture(shape=shape, density=1.0, friction=self.mu, restitution=0.0)
         if not given["fixed"]:
-            body.massData = Box2D.b2MassData(mass=given["mass"], center=(0, 0), I=given["inertia"])
+            body.massData = Box2D.b2MassData(
+                mass=given["mass"], center=(0, 0), I=given["inertia"]
+            )
             body.linearVelocity = tuple(given["velocity"])
             body.angularVelocity = given["spin"]
         return body

@@ -30,7 +30,9 @@ main({
     }
     return {
       add(given) {
-        const body = new CANNON.Body({ mass: given.fixed ? 0 : given.mass, position: vector(given.centre ?? [0, 0]) });
+        // Its hulls have to contain their origin; a fixed body has one, and no centre of its own.
+        given.centre ??= [0, 1].map((axis) => given.polygons[0].reduce((sum, each) => sum + each[axis] / given.polygons[0].length, 0));
+        const body = new CANNON.Body({ mass: given.fixed ? 0 : given.mass, position: vector(given.centre) });
         body.linearDamping = body.angularDamping = 0;
         for (const polygon of given.polygons) {
           const vertices = prism(given, polygon).map(vector);

@@ -22,7 +22,9 @@ class Engine:
         self.builder = drake.DiagramBuilder()
         self.plant, _ = drake.AddMultibodyPlantSceneGraph(self.builder, settings["step"])
         if "sap" in settings:
-            self.plant.set_discrete_contact_approximation(drake.DiscreteContactApproximation.kSap)
+            self.plant.set_discrete_contact_approximation(
+                drake.DiscreteContactApproximation.kSap
+            )
             self.plant.set_penetration_allowance(1e-5)
         self.plant.mutable_gravity_field().set_gravity_vector([*scene["gravity"], 0.0][:3])
         self.folder, self.starts, self.count = tempfile.TemporaryDirectory(), {}, 0
@@ -36,9 +38,15 @@ class Engine:
             about = given["inertia"]
             inertia = np.diag([about] * 3) if isinstance(about, float) else np.array(about)
             unit = drake.UnitInertia(*(np.diag(inertia) / given["mass"]))
-            body = self.plant.AddRigidBody(given["name"], drake.SpatialInertia(given["mass"], [0, 0, 0], unit))
+            body = self.plant.AddRigidBody(
+                given["name"], drake.SpatialInertia(given["mass"], [0, 0, 0], unit)
+            )
             spin = given["spin"] if isinstance(given["spin"], list) else [0, 0, given["spin"]]
-            self.starts[given["name"]] = ([*given["centre"], 0.0][:3], spin, [*given["velocity"], 0.0][:3])
+            self.starts[given["name"]] = (
+                [*given["centre"], 0.0][:3],
+                spin,
+                [*given["velocity"], 0.0][:3],
+            )
         else:
             body = self.plant.world_body()
         for shape in given.get("polygons") or given["polyhedra"]:
@@ -46,7 +54,11 @@ class Engine:
             path = Path(self.folder.name) / f"{self.count}.obj"
             path.write_text(obj(prism(given, shape)))
             self.plant.RegisterCollisionGeometry(
-                body, drake.RigidTransform(), drake.Convex(str(path)), f"shape {self.count}", friction
+                body,
+                drake.RigidTransform(),
+                drake.Convex(str(path)),
+                f"shape {self.count}",
+                friction,
             )
         return given["name"]
 
@@ -54,7 +66,9 @@ class Engine:
         if self.simulator is not None:
             return
         self.plant.Finalize()
-        self.pushes = self.builder.ExportInput(self.plant.get_applied_spatial_force_input_port())
+        self.pushes = self.builder.ExportInput(
+            self.plant.get_applied_spatial_force_input_port()
+        )
         self.diagram = self.builder.Build()
         self.simulator = drake.Simulator(self.diagram)
         context = self.simulator.get_mutable_context()
@@ -62,7 +76,9 @@ class Engine:
         for name, (place, spin, speed) in self.starts.items():
             body = self.plant.GetBodyByName(name)
             self.plant.SetFreeBodyPose(self.inside, body, drake.RigidTransform(place))
-            self.plant.SetFreeBodySpatialVelocity(self.inside, body, drake.SpatialVelocity(spin, speed))
+            self.plant.SetFreeBodySpatialVelocity(
+                self.inside, body, drake.SpatialVelocity(spin, speed)
+            )
         self.simulator.Initialize()
 
     def push(self, name, force, lever):
@@ -89,7 +105,10 @@ class Engine:
         body = self.plant.GetBodyByName(name)
         pose = self.plant.EvalBodyPoseInWorld(self.inside, body)
         speed = self.plant.EvalBodySpatialVelocityInWorld(self.inside, body)
-        place, turn = pose.translation() + late * speed.translational(), pose.rotation().ToQuaternion().wxyz()
+        place, turn = (
+            pose.translation() + late * speed.translational(),
+            pose.rotation().ToQuaternion().wxyz(),
+        )
         if self.scene["dimensions"] == 3:
             return [*place.tolist(), *turn.tolist()]
         return [*place[:2].tolist(), angle(turn.tolist()) + late * float(speed.rotational()[2])]

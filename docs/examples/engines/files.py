@@ -1,8 +1,8 @@
 """Scenes in, answers out: what adapters in Python have in common.
 
-An engine is a class with `NAME`, `VERSION`, `SETTINGS` (documented and best: words and numbers),
-`DIMENSIONS`, and the methods `add(body)`, `step()` and `pose(body)`. `python ENGINE.py SCENES
-ANSWERS.jsonl [best]` answers a folder of scenes.
+An engine is a class with `NAME`, `VERSION`, `SETTINGS` (documented, best: words and numbers),
+`DIMENSIONS`, and the methods `add(body)`, `push(body, force, lever)`, `step()` and `pose(body,
+late)`. `python ENGINE.py SCENES ANSWERS.jsonl [best]` answers a folder of scenes.
 """
 
 import json

@@ -1,7 +1,7 @@
 """MuJoCo, as its users run it, from the suite's MJCF. Set up: `pip install mujoco==4.0.0`."""
 
 import mujoco
-from files import angle, main, prism
+from files import main, prism
 
 
 class Engine:
@@ -36,11 +36,16 @@ class Engine:
                 about = given["inertia"]
                 body.inertia = [about, about, about]
                 for axis, kind in ((0, "SLIDE"), (1, "SLIDE"), (2, "HINGE")):
-                    joint = body.add_joint(name=f"{name} {axis}", type=getattr(mujoco.mjtJoint, f"mjJNT_{kind}"))
+                    joint = body.add_joint(
+                        name=f"{name} {axis}", type=getattr(mujoco.mjtJoint, f"mjJNT_{kind}")
+                    )
                     joint.axis = [float(axis == each) for each in range(3)]
                 self.speeds[name] = [*given["velocity"], given["spin"]]
             else:
-                body.fullinertia = [given["inertia"][i][j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
+                body.fullinertia = [
+                    given["inertia"][i][j]
+                    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+                ]
                 body.add_freejoint(name=f"{name} 0")
                 self.speeds[name] = [*given["velocity"], *given["spin"]]
         for part, shape in enumerate(given.get("polygons") or given["polyhedra"]):
@@ -67,8 +72,12 @@ class Engine:
         body = self.data.body(name)
         at = body.xmat.reshape(3, 3) @ [*lever, 0.0][:3]
         force = [*force, 0.0][:3]
-        body.xfrc_applied[:] = [*force, at[1] * force[2] - at[2] * force[1],
-                                at[2] * force[0] - at[0] * force[2], at[0] * force[1] - at[1] * force[0]]
+        body.xfrc_applied[:] = [
+            *force,
+            at[1] * force[2] - at[2] * force[1],
+            at[2] * force[0] - at[0] * force[2],
+            at[0] * force[1] - at[1] * force[0],
+        ]
 
     def step(self):
         """Go on by one step."""
@@ -84,7 +93,11 @@ class Engine:
         at = self.model.joint(f"{name} 0").dofadr[0]
         u, v, spin = self.data.qvel[at : at + 3]
         turn = float(self.data.qpos[self.model.joint(f"{name} 2").qposadr[0]])
-        return [float(body.xpos[0] + u * late), float(body.xpos[1] + v * late), turn + float(spin * late)]
+        return [
+            float(body.xpos[0] + u * late),
+            float(body.xpos[1] + v * late),
+            turn + float(spin * late),
+        ]
 
 
 if __name__ == "__main__":

@@ -21,16 +21,24 @@ def answer(scene):
     most = max(len(shape) for _, shape in shapes)
     owner = np.array([at for at, _ in shapes])
     centre = np.array([each.get("centre", [0, 0]) for each in bodies], dtype=float)
-    corners = np.array([shape[np.minimum(np.arange(most), len(shape) - 1)] for _, shape in shapes])
+    corners = np.array(
+        [shape[np.minimum(np.arange(most), len(shape) - 1)] for _, shape in shapes]
+    )
     arms = corners - centre[owner][:, None]
-    following = np.array([np.append(shape[1:], np.repeat(shape[:1], most + 1 - len(shape), 0), 0)
-                          for _, shape in shapes])
+    following = np.array(
+        [
+            np.append(shape[1:], np.repeat(shape[:1], most + 1 - len(shape), 0), 0)
+            for _, shape in shapes
+        ]
+    )
     side = following - corners
     length = np.hypot(*side.transpose(2, 0, 1))
     real = length > 0
     normals = np.stack([side[..., 1], -side[..., 0]], -1) / np.where(real, length, 1)[..., None]
     mass = np.array([each.get("mass", np.inf) for each in bodies])
-    inverse = 1 / np.array([[m, m, each.get("inertia", np.inf)] for m, each in zip(mass, bodies)])
+    inverse = 1 / np.array(
+        [[m, m, each.get("inertia", np.inf)] for m, each in zip(mass, bodies)]
+    )
     pose = np.column_stack([centre, np.zeros(len(bodies))])
     speed = np.array([[*each.get("velocity", [0, 0]), each.get("spin", 0)] for each in bodies])
     pull = np.zeros((len(bodies), 3))
@@ -38,16 +46,24 @@ def answer(scene):
     apart = (owner[:, None] == owner) | ((owner >= count)[:, None] & (owner >= count))
     damping = DAMPING * np.sqrt(STIFFNESS * mass[:count].mean())
     names = [each["name"] for each in bodies]
-    pushes = [(names.index(p["body"]), np.array(p["force"]), np.array(p["point"])) for p in scene["pushes"]]
+    pushes = [
+        (names.index(p["body"]), np.array(p["force"]), np.array(p["point"]))
+        for p in scene["pushes"]
+    ]
     found, now = [], 0
     for until in scene["times"]:
         for _ in range(round(until / STEP) - now):
             cos, sin = np.cos(pose[owner, 2]), np.sin(pose[owner, 2])
             turn = np.stack([np.stack([cos, -sin], -1), np.stack([sin, cos], -1)], -2)
-            arm, out = np.einsum("sij,skj->ski", turn, arms), np.einsum("sij,skj->ski", turn, normals)
+            arm, out = (
+                np.einsum("sij,skj->ski", turn, arms),
+                np.einsum("sij,skj->ski", turn, normals),
+            )
             at = pose[owner, None, :2] + arm
-            # a's corner v beyond b's side e, with axes (a, b, v, e); the best side parts them most.
-            beyond = np.einsum("avi,bei->abve", at, out) - np.einsum("bei,bei->be", at, out)[:, None]
+            # Corner v of a beyond side e of b, axes (a, b, v, e).
+            beyond = (
+                np.einsum("avi,bei->abve", at, out) - np.einsum("bei,bei->be", at, out)[:, None]
+            )
             parted = np.where(real, beyond.min(2), -np.inf)
             best, gap = parted.argmax(-1), parted.max(-1)
             a, b = np.nonzero((gap < 0) & (gap >= gap.T - 1e-4) & ~apart)
@@ -60,8 +76,12 @@ def answer(scene):
             a, b, normal, along = owner[a[p]], owner[b[p]], normal[p], along[p]
             point = at[np.nonzero((gap < 0) & (gap >= gap.T - 1e-4) & ~apart)[0][p], v]
             arm_a, arm_b = point - pose[a, :2], point - pose[b, :2]
-            slip = (speed[a, :2] - speed[b, :2] + speed[a, 2:] * np.stack([-arm_a[:, 1], arm_a[:, 0]], -1)
-                    - speed[b, 2:] * np.stack([-arm_b[:, 1], arm_b[:, 0]], -1))
+            slip = (
+                speed[a, :2]
+                - speed[b, :2]
+                + speed[a, 2:] * np.stack([-arm_a[:, 1], arm_a[:, 0]], -1)
+                - speed[b, 2:] * np.stack([-arm_b[:, 1], arm_b[:, 0]], -1)
+            )
             press = np.maximum(0, STIFFNESS * depth[p, v] - damping * (slip * normal).sum(-1))
             rub = -scene["friction"] * press * np.clip((slip * along).sum(-1) / SLIP, -1, 1)
             force = press[:, None] * normal + rub[:, None] * along
@@ -83,8 +103,12 @@ def answer(scene):
 def main(folder, out):
     """Answer all scenes of a folder."""
     with Path(out).open("w") as file:
-        said = {"format": "blocksim answers 1", "engine": "penalty springs", "version": "1",
-                "settings": f"{STIFFNESS:g} N/m, steps of {STEP:g} s"}
+        said = {
+            "format": "blocksim answers 1",
+            "engine": "penalty springs",
+            "version": "1",
+            "settings": f"{STIFFNESS:g} N/m, steps of {STEP:g} s",
+        }
         print(json.dumps(said), file=file)
         for path in sorted(Path(folder).glob("*.json")):
             scene, started = json.loads(path.read_text()), time.perf_counter()

@@ -23,7 +23,9 @@ class Engine:
         bodies = physx.PhysxBodyConfig()
         bodies.sleep_threshold = 0.0
         if "sweeps" in settings:
-            bodies.solver_position_iterations, bodies.solver_velocity_iterations = settings["sweeps"]
+            bodies.solver_position_iterations, bodies.solver_velocity_iterations = settings[
+                "sweeps"
+            ]
         physx.set_body_config(bodies)
         self.system = physx.PhysxCpuSystem()
         self.system.set_timestep(settings["step"])
@@ -34,11 +36,17 @@ class Engine:
         """Add a body; frictions are averaged."""
         mu = self.scene["friction"]
         material = physx.PhysxMaterial(mu, mu, 0.0)
-        kind = physx.PhysxRigidStaticComponent if given["fixed"] else physx.PhysxRigidDynamicComponent
+        kind = (
+            physx.PhysxRigidStaticComponent
+            if given["fixed"]
+            else physx.PhysxRigidDynamicComponent
+        )
         body = kind()
         for shape in given.get("polygons") or given["polyhedra"]:
             corners = np.array(prism(given, shape), dtype=np.float32)
-            hull = physx.PhysxCollisionShapeConvexMesh(vertices=corners, scale=[1, 1, 1], material=material)
+            hull = physx.PhysxCollisionShapeConvexMesh(
+                vertices=corners, scale=[1, 1, 1], material=material
+            )
             body.attach(hull)
         entity = sapien.Entity()
         entity.add_component(body)
@@ -46,7 +54,9 @@ class Engine:
         if not given["fixed"]:
             about = given["inertia"]
             body.mass, body.cmass_local_pose = given["mass"], sapien.Pose()
-            body.inertia = [about] * 3 if isinstance(about, float) else [about[i][i] for i in range(3)]
+            body.inertia = (
+                [about] * 3 if isinstance(about, float) else [about[i][i] for i in range(3)]
+            )
             body.linear_damping = body.angular_damping = 0.0
             body.linear_velocity = [*given["velocity"], 0.0][:3]
             spin = given["spin"]

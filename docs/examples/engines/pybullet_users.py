@@ -13,7 +13,7 @@ class Engine:
     SETTINGS = {
         "documented": ("its defaults: 1/240 s, 50 iterations, hulls", {"step": 1 / 240}),
         "best": (
-            "1/960 s, 300 iterations, solverResidualThreshold 0, contactSlop 1e-5, useMaximalCoordinates",
+            "1/960 s, 300 iterations, residual 0, contactSlop 1e-5, maximal coordinates",
             {"step": 1 / 960, "sweeps": 300},
         ),
     }
@@ -26,28 +26,38 @@ class Engine:
         bullet.setPhysicsEngineParameter(fixedTimeStep=settings["step"])
         if self.best:
             bullet.setPhysicsEngineParameter(
-                numSolverIterations=settings["sweeps"], solverResidualThreshold=0, contactSlop=1e-5
+                numSolverIterations=settings["sweeps"],
+                solverResidualThreshold=0,
+                contactSlop=1e-5,
             )
 
     def add(self, given):
         """Add a body; pybullet multiplies frictions."""
         parts = [prism(given, shape) for shape in given.get("polygons") or given["polyhedra"]]
-        shapes = [bullet.createCollisionShape(bullet.GEOM_MESH, vertices=part) for part in parts]
+        shapes = [
+            bullet.createCollisionShape(bullet.GEOM_MESH, vertices=part) for part in parts
+        ]
         place = [*given.get("centre", [0.0, 0.0]), 0.0][:3]
         made = [
             bullet.createMultiBody(
-                0.0 if given["fixed"] else given["mass"], shape, basePosition=place,
+                0.0 if given["fixed"] else given["mass"],
+                shape,
+                basePosition=place,
                 useMaximalCoordinates=self.best,
             )
             for shape in shapes
         ]
         for body in made:
-            bullet.changeDynamics(body, -1, lateralFriction=math.sqrt(self.scene["friction"]), restitution=0)
+            bullet.changeDynamics(
+                body, -1, lateralFriction=math.sqrt(self.scene["friction"]), restitution=0
+            )
             if self.best:
                 bullet.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
         if not given["fixed"]:
             about = given["inertia"]
-            inertia = [about] * 3 if isinstance(about, float) else [about[i][i] for i in range(3)]
+            inertia = (
+                [about] * 3 if isinstance(about, float) else [about[i][i] for i in range(3)]
+            )
             bullet.changeDynamics(made[0], -1, mass=given["mass"], localInertiaDiagonal=inertia)
             spin = given["spin"] if isinstance(given["spin"], list) else [0, 0, given["spin"]]
             bullet.resetBaseVelocity(made[0], [*given["velocity"], 0.0][:3], spin)

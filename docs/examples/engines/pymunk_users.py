@@ -11,8 +11,14 @@ class Engine:
 
     NAME, VERSION, DIMENSIONS = "pymunk", pymunk.version, (2,)
     SETTINGS = {
-        "documented": ("10 iterations, 1/60 s, collision_slop 0.1", {"step": 1 / 60, "sweeps": 10, "slop": 0.1}),
-        "best": ("100 iterations, 1/960 s, collision_slop 1e-4", {"step": 1 / 960, "sweeps": 100, "slop": 1e-4}),
+        "documented": (
+            "10 iterations, 1/60 s, collision_slop 0.1",
+            {"step": 1 / 60, "sweeps": 10, "slop": 0.1},
+        ),
+        "best": (
+            "100 iterations, 1/960 s, collision_slop 1e-4",
+            {"step": 1 / 960, "sweeps": 100, "slop": 1e-4},
+        ),
     }
 
     def __init__(self, scene, settings):

@@ -1,0 +1,140 @@
+"""What engines say of the suite's scenes: error against time, and how near they stay right.
+
+`python -m analysis.referee OUT --answers FOLDER` scores the files of answers in a folder. It
+writes a row a scene and engine (`referee.csv.gz`), the scores that `blocksim suite score` shows
+beside a new one (`known.json`), and the figure. Without answers all is made of rows kept here.
+"""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import io
+import json
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Annotated, Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+
+from analysis.command import run
+from analysis.rows import write_rows
+from blocksim.cli.arguments import Option
+from blocksim.common.files import make_folder
+from blocksim.suite.answers import Head, read_answers
+from blocksim.suite.export import groups, questions
+from blocksim.suite.score import Row, Score, scored
+
+KEPT = Path(__file__).parent / "figures" / "referee.csv.gz"
+MARKS = "osD^vPX*<>hp"
+NONE = 100.0
+"""Where an engine is drawn that is right at no level [%]."""
+
+
+def scores_of(folder: Path) -> list[Score]:
+    """Score all files of answers in a folder."""
+    asked = questions()
+    scenes = {name: each.scene for name, each in asked.items()}
+    return [
+        scored(*read_answers(path, scenes), asked) for path in sorted(folder.glob("*.jsonl"))
+    ]
+
+
+def rows_of(score: Score) -> list[dict[str, object]]:
+    """Return rows of a score, numbers as short as they are known."""
+    return [
+        asdict(score.head)
+        | {name: _short(value) for name, value in asdict(row).items() if name != "group"}
+        for row in score.rows
+    ]
+
+
+def _short(value: object) -> object:
+    return f"{value:.3g}" if isinstance(value, float) else "" if value is None else value
+
+
+def kept() -> list[Score]:
+    """Read the rows that are kept."""
+    asked = questions()
+    found: dict[Head, list[Row]] = {}
+    with io.TextIOWrapper(gzip.open(KEPT)) as file:
+        for line in csv.DictReader(file):
+            head = Head(**{each.name: line[each.name] for each in fields(Head)})
+            row: dict[str, Any] = {
+                name: float(line[name]) if line[name] else None
+                for name in ("level", "drift", "gain", "asymmetry", "error", "seconds")
+            }
+            row |= {"scene": line["scene"], "answer": line["answer"]}
+            row |= {"stands": None if not line["stands"] else line["stands"] == "True"}
+            row |= {"group": asked[line["scene"]].group}
+            found.setdefault(head, []).append(Row(**row))
+    return [Score(head=head, rows=tuple(rows)) for head, rows in found.items()]
+
+
+def drawn(scores: list[Score]) -> Figure:
+    """Draw error against time, and the nearest level at which each engine is right by group."""
+    names = groups()
+    height = 2.4 + 0.26 * len(scores)
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(13, height), width_ratios=(1, 1.25), layout="constrained"
+    )
+    engines = list(dict.fromkeys(score.head.engine for score in scores))
+    for score in scores:
+        at = engines.index(score.head.engine)
+        best = score.head.settings.startswith("best")
+        colour = plt.get_cmap("tab20")(at % 20)
+        left.loglog(
+            score.seconds, 100 * max(score.wrong, 1e-3), MARKS[at % len(MARKS)], color=colour,
+            markerfacecolor=colour if best else "white", markersize=8,
+            label=f"{score.head.engine}, best" if best else score.head.engine,
+        )  # fmt: skip
+    left.set(xlabel="time of all scenes [s]", ylabel="scenes and levels not right [%]")
+    left.legend(fontsize=7, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.12))
+    left.set_title("Error against time (filled: at its best settings)")
+    cells = np.array([[_level(score, name) for name in names] for score in scores])
+    right.imshow(np.log10(cells), cmap="Blues_r", aspect="auto", vmin=-1.3, vmax=2.3)
+    for (row, column), value in np.ndenumerate(cells):
+        if np.isfinite(value):
+            words = "-" if value == NONE else f"{value:g}"
+            right.text(column, row, words, ha="center", va="center", fontsize=7)
+    right.set_xticks(range(len(names)), names, rotation=60, ha="right")
+    labels = [f"{score.head.engine} ({score.head.settings.split(':')[0]})" for score in scores]
+    right.set_yticks(range(len(scores)), labels, fontsize=7)
+    right.set_title("Nearest level at which all scenes are right [%]")
+    return figure
+
+
+def _level(score: Score, group: str) -> float:
+    if not score.of(group):
+        return np.nan
+    found = score.nearest(group)
+    return NONE if found is None else found
+
+
+def main(
+    out: Path,
+    *,
+    answers: Annotated[Path | None, Option(about="Folder of answers.", folder=True)] = None,
+    quick: bool = False,  # noqa: ARG001 - all studies take it
+) -> list[dict[str, Any]]:
+    """Score answers, or read what is kept, and draw."""
+    make_folder(out)
+    scores = kept() if answers is None else scores_of(answers)
+    scores.sort(key=lambda each: (each.nearest() or NONE, each.wrong))
+    if answers is not None:
+        write_rows(out / KEPT.name, [row for score in scores for row in rows_of(score)])
+    records = [score.record() for score in scores]
+    (out / "known.json").write_text(json.dumps(records, separators=(",", ":")) + "\n")
+    figure = drawn(scores)
+    figure.savefig(out / "referee.png", dpi=100)
+    plt.close(figure)
+    return [
+        {name: each[name] for name in ("engine", "settings", "nearest_level", "wrong")}
+        for each in records
+    ]
+
+
+if __name__ == "__main__":
+    run(main)
