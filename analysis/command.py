@@ -25,6 +25,6 @@ def run(main: Callable[Asked, Found], show: Callable[[Found], object] = str) -> 
         click.echo(show(main(*args, **options)))
 
     needed = signature(main).parameters["out"].default is Parameter.empty
-    folder = Argument(ABOUT, folder=True) if needed else Option(ABOUT, folder=True)
+    folder = Argument(about=ABOUT, folder=True) if needed else Option(about=ABOUT, folder=True)
     command.__annotations__ = {**main.__annotations__, "out": Annotated[Path, folder]}
     command_of(command).main()

@@ -40,7 +40,8 @@ from blocksim.simulation.recording import Recording
 from blocksim.view.arrows import draw_forces, draw_loads
 from blocksim.view.drawing import clipped, save_figure
 from blocksim.view.film import Film
-from blocksim.view.structure import problem_figure
+from blocksim.view.sheet import sheet_of
+from blocksim.view.sheetfigure import SCREEN, sheet_figure
 from blocksim.view.style import FONT, GROUND, INK, LIVE, QUIET, STONE
 from blocksim.view.video import write_film
 
@@ -125,7 +126,7 @@ def main(out: Path, *, quick: bool = False) -> Result:
         rows.append(row)
         seen.append((name, problem, forces, fall))
         verdict = f"stands, by direct and limit ({100 * ASIDE:g} % inside its limit)"
-        picture = problem_figure(problem, verdict=verdict, forces=forces)
+        picture = sheet_figure(sheet_of(problem, verdict=verdict, forces=forces), column=SCREEN)
         with (out / f"{name}.png").open("wb") as file:
             save_figure(picture, file, "png")
         write_film(Film([fall], height=height), out / f"{name}.mp4")

@@ -19,13 +19,13 @@ from blocksim.arch.answers import ArchBracket
 from blocksim.arch.circular import Arch
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.bracket import Bracket
-from blocksim.ask.check import Check
+from blocksim.ask.check import Check, check
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_record
 from blocksim.common.files import AnyPath, json_text
 from blocksim.common.words import printable
-from blocksim.kinds.circular import CircularArch, arch_of
+from blocksim.kinds.circular import CircularArch
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
 from blocksim.report.problems import arch_size_lines, described, size_lines, size_record
@@ -34,6 +34,8 @@ from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from blocksim.view.sheet import Sheet
 
 LABEL = 10
 """Letters of a line of an answer before its words: two blanks and what it is about."""
@@ -143,7 +145,7 @@ def html_of(shown: object) -> str:
 
 
 def _recording_lines(recording: Recording) -> list[str]:
-    return recording_lines(recording, "L" if arch_of(recording.problem) is None else "r")
+    return recording_lines(recording, recording.problem.length_name)
 
 
 def _arch_words(arch: Arch) -> str:
@@ -163,56 +165,44 @@ def _arch_record(arch: Arch) -> dict[str, object]:
     }
 
 
-def _arch_figure(arch: Arch) -> Figure:
-    from blocksim.view.structure import problem_figure
+def _drawn(sheet: Sheet) -> Figure:
+    from blocksim.view.sheetfigure import SCREEN, sheet_figure
 
-    titled = replace(CircularArch.of(arch, math.inf).problem(), title=_arch_words(arch))
+    return sheet_figure(sheet, column=SCREEN)
+
+
+def _arch_figure(arch: Arch) -> Figure:
+    from blocksim.view.sheet import sheet_of
+
     # An arch alone has no friction to tell.
-    return problem_figure(titled, facts=())
+    return _drawn(
+        sheet_of(CircularArch.of(arch, math.inf).problem(), facts=[_arch_words(arch)])
+    )
 
 
 def _problem_figure(problem: Problem) -> Figure:
-    from blocksim.view.structure import problem_figure
+    from blocksim.view.sheet import sheet_of
 
-    return problem_figure(problem)
+    return _drawn(sheet_of(problem))
 
 
 def _check_figure(answer: Check) -> Figure:
-    from blocksim.view.archfigure import arch_figure, picture_of_arch
-    from blocksim.view.structure import problem_figure
+    from blocksim.view.sheet import answer_sheet
 
-    states = tuple(joint.state for joint in answer.joints)
-    verdict = f"{answer.verdict}, by {answer.method}"
-    if answer.arch is None:
-        return problem_figure(
-            answer.problem,
-            verdict=verdict,
-            forces=answer.forces,
-            mechanism=answer.mechanism,
-            states=states,
-        )
-    if answer.method == "limit":
-        return arch_figure([picture_of_arch(answer.arch.shape, answer.problem.mu)])
-    return problem_figure(answer.problem, verdict=verdict, states=states)
+    return _drawn(answer_sheet(answer))
 
 
 def _arch_bracket_figure(of: ArchBracket, answer: Bracket) -> Figure:
-    from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
-
+    """Draw the arch of least thickness."""
     arch, mu = of.shape, answer.problem.mu
     if answer.method == "theory" and of.eta_high is not None:
+        from blocksim.view.archfigure import arch_figure, picture_of_theory
+
         shape = arch.half_angle, mu, arch.weight
         critical = least_thickness(*shape)
         return arch_figure([picture_of_theory(critical, critical.mode, *shape)])
     eta = ETA_MAX if of.eta_high is None else of.eta_high or THIN
-    least = Arch(
-        half_angle=arch.half_angle,
-        eta=eta,
-        voussoirs=arch.voussoirs,
-        weight=arch.weight,
-        depth=arch.depth / arch.radius,
-    )
-    return arch_figure([picture_of_arch(least, mu)])
+    return _check_figure(check(CircularArch.of(replace(arch, eta=eta), mu)))
 
 
 def _bracket_figure(answer: Bracket) -> Figure:

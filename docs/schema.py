@@ -8,7 +8,7 @@ from inspect import getdoc
 from pathlib import Path
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints, is_typeddict
 
-from blocksim.report.schema import BracketRecord, CheckRecord
+from blocksim.report.schema import BracketRecord, CheckRecord, CrossingRecord
 
 PLACE = Path(__file__).resolve().parent / "schema" / "answers.json"
 PLAIN = {
@@ -21,9 +21,9 @@ PLAIN = {
 
 
 def schema() -> dict[str, Any]:
-    """Return the schema: an answer is a check or a bracket."""
+    """Return the schema: an answer is a check, a bracket, or a bracket of a vehicle."""
     found: dict[str, Any] = {}
-    answers = [_of(each, found) for each in (CheckRecord, BracketRecord)]
+    answers = [_of(each, found) for each in (CheckRecord, BracketRecord, CrossingRecord)]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "What blocksim check --json and blocksim bracket --json print",

@@ -65,19 +65,20 @@ def figure() -> Figure:
         axes.add_patch(Polygon(ring, fc=STONE, ec=INK, lw=1.1))
     around = np.linspace(-HALF, HALF, 200)
     axes.plot(np.sin(around), np.cos(around), color=QUIET, lw=0.9, ls=(0, (8, 3, 2, 3)))
-    _thrust(axes, arch)
-    _words(axes, inner, outer)
+    line = _thrust(axes, arch)
+    _words(axes, inner, outer, line)
     return drawn
 
 
-def _thrust(axes: Axes, arch: Arch) -> None:
+def _thrust(axes: Axes, arch: Arch) -> np.ndarray:
     """Draw the safest line of thrust of the sketched arch, and the force at its crown."""
     found = carried_by_arch(arch, CircularArch.of(arch, 0.7).problem()).resultants
     assert found is not None  # noqa: S101
-    axes.plot(*found.point.T, color=THRUST, lw=1.8)
+    axes.plot(*found.point.T, color=THRUST, lw=1.8, gid="thrust")
+    return found.point
 
 
-def _words(axes: Axes, inner: float, outer: float) -> None:
+def _words(axes: Axes, inner: float, outer: float, line: np.ndarray) -> None:
     crown, left = (0.0, outer), point(-HALF, inner)
     label(axes, "crown", (0.0, outer + 0.17), crown)
     label(axes, "extrados", (0.62, 1.12), point(0.36, outer))
@@ -87,7 +88,7 @@ def _words(axes: Axes, inner: float, outer: float) -> None:
     label(axes, "joint", (-1.08, 0.86), point(-0.84 * HALF + 0.03, 1.07))
     label(axes, "springing", (-1.32, 0.54), point(-HALF, 1.06))
     label(axes, "support", (-1.36, 0.22), point(-HALF - 0.1, 1.0))
-    label(axes, "line of thrust", (1.14, 0.98), point(0.6, 1.0))
+    label(axes, "line of thrust", (1.14, 0.98), tuple(line[3 * len(line) // 4].tolist()))
     measure(axes, "", [left, (-left[0], left[1])], 0.0)
     axes.text(0.42, left[1], "span", ha="center", va="center", fontsize=10, color=INK,
               bbox={"fc": "white", "ec": "none", "pad": 1.2})  # fmt: skip

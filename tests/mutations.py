@@ -365,7 +365,7 @@ MUTATIONS = (
     ),
     Mutation(
         "forces do not say of which size they are", "report/problems.py",
-        "    if arch is None or is_metric(arch, at_of(problem)):\n", "    if True:\n",
+        "    if maker is None or problem.has_size:\n", "    if True:\n",
         "test_dimensions.py",
     ),
     Mutation(

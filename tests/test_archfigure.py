@@ -7,12 +7,18 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from blocksim.arch.circular import Arch
 from blocksim.arch.limit.collapse import collapse_of_mode
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory import landmarks, least_thickness
-from blocksim.view.archfigure import arch_figure, picture_of_arch, picture_of_theory
+from blocksim.view.archfigure import ArchPicture, arch_figure, picture_of_theory
 from blocksim.view.drawing import save_figure
+
+
+def least(degrees: float, mu: float) -> ArchPicture:
+    """The arch at its least thickness, in its first mode."""
+    angle = math.radians(degrees)
+    critical = least_thickness(angle, mu)
+    return picture_of_theory(critical, critical.mode, angle, mu)
 
 
 def test_four_modes_at_the_triple_point() -> None:
@@ -49,7 +55,7 @@ def test_mode_that_is_not_possible() -> None:
 
 
 def test_what_moves_and_what_bears_is_within_the_picture() -> None:
-    falls = picture_of_arch(Arch(half_angle=2.18, eta=0.35, voussoirs=14), 0.9)
+    falls = least(125, 0.9)
     (axes,) = arch_figure([falls]).axes
     drawn = np.concatenate([each.get_xy() for each in axes.patches])
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
@@ -61,13 +67,11 @@ def test_what_moves_and_what_bears_is_within_the_picture() -> None:
 def test_figure_is_reproducible(kind: str) -> None:
     files = []
     for _ in range(2):
-        standing = picture_of_arch(Arch(half_angle=1.5, eta=0.3, voussoirs=12), math.inf)
-        falling = picture_of_arch(Arch(half_angle=2.18, eta=0.35, voussoirs=14), 0.9)
-        assert standing.title.startswith("stands")
-        assert falling.title.startswith("collapses, mode ")
-        assert "14 voussoirs as built" in falling.subtitle
+        rough, slides = least(86, math.inf), least(125, 0.9)
+        assert rough.title.startswith("purely rotational [rrr]")
+        assert slides.title.endswith("μ = 0.9 (φ = 42.0°), η = 0.4209")
         file = io.BytesIO()
-        save_figure(arch_figure([standing, falling]), file, kind)
+        save_figure(arch_figure([rough, slides]), file, kind)
         files.append(file.getvalue())
     assert files[0] == files[1]
     assert len(files[0]) > 10_000
@@ -93,10 +97,9 @@ def lines(figure: Figure, name: str) -> list[np.ndarray]:
 
 
 def test_legend_names_what_is_there_only() -> None:
-    """Where it stands there is no mechanism; where it slides and turns, both are named."""
-    stands = arch_figure([picture_of_arch(Arch(half_angle=1.5, eta=0.3, voussoirs=12), 0.9)])
-    assert legend(stands) == {
-        "support", "line of thrust with most strength to spare", "line of friction",
+    """Where it turns only no sliding joint is named; where it slides and turns, both are."""
+    assert legend(arch_figure([least(90, math.inf)])) == {
+        "support", "line of thrust, the only one left", "line of friction", "mechanism", "hinge"
     }  # fmt: skip
     slides = math.radians(110)
     critical = least_thickness(slides, 0.6)
@@ -109,28 +112,18 @@ def test_legend_names_what_is_there_only() -> None:
     assert any("continuous arch" in text.get_text() for text in falls.axes[0].texts)
 
 
-@pytest.mark.parametrize(
-    ("alpha", "mu", "eta", "whole"), [(90, 0.3, 0.1, True), (150, 2.0, 0.9, False)]
-)
-def test_line_of_thrust_is_whole_or_said_to_be_missing(
-    alpha: float, mu: float, eta: float, whole: bool
-) -> None:
-    """Below the least thickness it leaves the arch: a little, or out of the picture."""
-    arch = Arch(half_angle=math.radians(alpha), eta=eta, voussoirs=27)
-    figure = arch_figure([picture_of_arch(arch, mu)])
-    (line,) = lines(figure, "line of thrust")
-    missing = any("too far out to be drawn" in words for words in legend(figure))
-    assert missing is not whole
-    assert bool(line.size) is whole
-    if whole:
-        assert np.isfinite(line).all()
-        ends = np.arctan2(line[:, 0], line[:, 1])[[0, -1]]
-        assert ends == pytest.approx([-arch.half_angle, arch.half_angle], abs=1e-9)
+def test_line_of_thrust_runs_from_springing_to_springing_within_the_arch() -> None:
+    picture = least(90, 0.35)
+    (line,) = lines(arch_figure([picture]), "line of thrust")
+    ends = np.arctan2(line[:, 0], line[:, 1])[[0, -1]]
+    assert ends == pytest.approx([-math.pi / 2, math.pi / 2], abs=1e-9)
+    off = np.abs(np.hypot(*line.T) - 1)
+    assert off.max() == pytest.approx(picture.eta / 2, abs=1e-9)
 
 
 def test_supports_are_where_the_springings_are() -> None:
-    arch = Arch(half_angle=2.0, eta=0.3, voussoirs=12)
-    axes = arch_figure([picture_of_arch(arch, 0.9)]).axes[0]
+    arch = least(115, 0.9)
+    axes = arch_figure([arch]).axes[0]
     supports = [patch for patch in axes.patches if patch.get_label() == "support"]
     assert len(supports) == 2
     for patch in supports:

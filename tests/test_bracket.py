@@ -19,7 +19,7 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.search import ETA_MAX, Answer, Bisection
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch, arch_of
+from blocksim.kinds.circular import CircularArch
 from blocksim.simulation.observation import Held, hold
 from blocksim.simulation.verdict import Verdict
 
@@ -200,7 +200,7 @@ def test_no_ratio_is_held_twice(confirm: bool, monkeypatch: pytest.MonkeyPatch) 
     held: list[float] = []
 
     def counted(problem: Problem, engine: str, **asked: object) -> Held:
-        arch = arch_of(problem)
+        arch = problem.maker.shape
         assert arch
         held.append(arch.eta)
         return hold(problem, engine, **asked)

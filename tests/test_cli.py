@@ -79,7 +79,10 @@ def test_options_override_the_scenario() -> None:
     assert answer["arch"]["mode_theory"] == "srr"
 
 
-REPEATED = {"--with", "--point-load", "--patch-load", "--set", "--figure", "cite --method"}
+REPEATED = {
+    *("--with", "--point-load", "--patch-load", "--set", "--figure"),
+    *("cite --method", "bracket --out"),
+}
 """Options that may be given twice, and are taken as often."""
 
 
@@ -102,7 +105,7 @@ def test_an_option_given_twice_is_taken_twice_or_refused() -> None:
 
 
 def test_options_that_may_be_given_twice_are_taken_twice(tmp_path: Path) -> None:
-    # Axles and patches are in test_road.
+    # Axles and patches are in test_road, what `bracket --out` writes in test_crossing.
     wall = ("check", "wall", "--mu", "1", "--json")
     sizes = ("--with", "courses=2", "--with", "length=3")
     blocks = [

@@ -18,7 +18,6 @@ from blocksim.arch import limit
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import LINES, At, Dimensions, Line, dimensions_of
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import arch_of
 from blocksim.kinds.scenarios import load_scenario
 
 EXACT = 1e-14
@@ -297,7 +296,7 @@ def test_arches_in_metres_are_let_go_and_drawn(tmp_path: Path) -> None:
     options = (*SIZE[:4], "--thickness", "0.2", "--mu", "0.7", "--depth", "2")
     done = inside("simulate", *options, "--seconds", "0.05", "--out", str(run))
     assert done.returncode == 0, done.stderr
-    arch = arch_of(load_recording(run).problem)
+    arch = load_recording(run).problem.maker.shape
     assert arch is not None
     assert (arch.radius, arch.depth) == (pytest.approx(25 / 6 + 0.1), 2)
     picture = tmp_path / "arch.svg"

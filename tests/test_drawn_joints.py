@@ -16,7 +16,8 @@ from running import inside
 
 from blocksim import Assembly, InputError, Problem, Verdict, ask, structure_of
 from blocksim.blocks import regions
-from blocksim.view.structure import problem_figure
+from blocksim.view.sheet import sheet_of
+from blocksim.view.sheetfigure import sheet_figure
 
 Corners = list[tuple[float, float]]
 
@@ -150,7 +151,7 @@ def test_closed_gaps_are_marked_in_the_still(gap: float):
 
 def marks(problem: Problem) -> dict[str, str]:
     """Artists of gaps in the still, by their gid, with their words."""
-    artists = problem_figure(problem).findobj()
+    artists = sheet_figure(sheet_of(problem)).findobj()
     named = {str(each.get_gid()): getattr(each, "get_text", str)() for each in artists}
     return {name: words for name, words in named.items() if name.startswith("gap-")}
 

@@ -433,7 +433,7 @@ BROKEN = {
     "shuffled.dxf": (lambda path: _dxf(path, SQUARE).replace("SECTION", "TCES", 3), "DXF"),
     "binary.dxf": (lambda _: b"AutoCAD Binary DXF\r\n\x1a\x00" + bytes(500), "valid DXF"),
     "nan.dxf": (lambda path: _dxf(path, [(0, 0), (1, 0), (1, 7.125)]).replace("7.125", "nan"),
-                "a finite number"),
+                "must be -1e+09 to 1e+09 m"),
     "words.dxf": (lambda path: _dxf(path, [(0, 0), (1, 0), (1, 7.125)]).replace("7.125", "up"),
                   "valid DXF"),
     "far.dxf": (lambda path: _dxf(path, [(0, 0), (1e300, 0), (1, 1)]), "within 1e+09 m"),

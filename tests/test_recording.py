@@ -18,7 +18,7 @@ from blocksim.blocks.record import to_record
 from blocksim.common.errors import InputError, MachineError
 from blocksim.common.files import make_folder, write_whole
 from blocksim.engines.base import Settings
-from blocksim.kinds.circular import CircularArch, arch_of
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.recorded import load_recording
 from blocksim.simulation.recording import Recording
 
@@ -48,7 +48,7 @@ def test_roundtrip_is_exact(tmp_path: Path) -> None:
     two = load_recording(path)
     assert np.array_equal(one.poses, two.poses)
     assert np.array_equal(one.times, two.times)
-    assert (arch_of(two.problem), two.mu, two.settings) == (ARCH, one.mu, one.settings)
+    assert (two.problem.maker.shape, two.mu, two.settings) == (ARCH, one.mu, one.settings)
     assert to_record(two.problem) == to_record(one.problem)
     assert (two.engine, two.engine_version) == (one.engine, one.engine_version)
     assert two.state_hash == one.state_hash
@@ -115,7 +115,7 @@ def test_every_damaged_byte_is_noticed_or_harmless(tmp_path: Path) -> None:
         else:
             assert np.array_equal(same.poses, recording().poses)
             assert np.array_equal(same.times, recording().times)
-            assert arch_of(same.problem) == ARCH
+            assert same.problem.maker.shape == ARCH
     assert noticed > len(places) / 2
 
 
@@ -288,7 +288,7 @@ def test_older_recordings_of_arches_are_still_read(tmp_path: Path) -> None:
     old = {"step": 0.1, "sweeps": 1, "hold_sweeps": 2, "tilt": 0.3, "plane_lock": False}
     altered(path, format=1, problem=None, arch=asdict(ARCH), mu=0.7, settings=old)
     found = load_recording(path)
-    assert arch_of(found.problem) == ARCH
+    assert found.problem.maker.shape == ARCH
     assert found.mu == 0.7
     assert found.problem.gravity == pytest.approx([0.0, -math.cos(0.3), math.sin(0.3)])
     assert np.array_equal(found.poses, recording().poses)

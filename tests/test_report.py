@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections import Counter
 from dataclasses import replace
@@ -15,7 +14,7 @@ import numpy as np
 import pytest
 from report_rows import ARCH, ROW, rows, sliding
 
-from blocksim.report.motion import KEYS, SHOWN, UNIT, drawing
+from blocksim.report.motion import KEYS, SHOWN, UNIT, joints_of, recorded_drawing
 from blocksim.report.page import report_page, summary
 from blocksim.report.tables import write_results
 from blocksim.simulation.verdict import Verdict
@@ -147,7 +146,7 @@ def test_sentence_counts(changes: dict[str, object], words: str) -> None:
 
 def test_drawing_enlarges_the_motion_recorded() -> None:
     """Sliding down by 0.02 r, evenly in displacement: pose k of 12 is k/12 of 0.13 r."""
-    made = drawing(sliding(), 9.81)
+    made = recorded_drawing(sliding())
     frames = np.array(json.loads(made.frames))
     assert frames.shape == (KEYS + 1, 8, 3)
     assert np.abs(frames[:, :4]).max() == 0
@@ -155,8 +154,8 @@ def test_drawing_enlarges_the_motion_recorded() -> None:
     # Between frames of the recording the motion is linear, not quadratic.
     np.testing.assert_allclose(frames[:, 4:, 1], expected[:, None].repeat(4, 1), atol=0.011)
     assert made.enlarged == pytest.approx(SHOWN / 0.02)
-    assert made.seconds == pytest.approx(2 / math.sqrt(9.81))
-    assert [(round(angle), state) for angle, state in made.joints] == [(0, "slides")]
+    states = [joint.state.value for joint in joints_of(sliding())]
+    assert [each for each in states if each != "closed"] == ["slides"]
 
 
 def test_the_map_is_part_of_the_page(text: str) -> None:
@@ -202,9 +201,9 @@ def test_no_number_is_minus_nothing(error: float, said: str) -> None:
 
 def test_drawing_of_what_stands() -> None:
     still = replace(sliding(), poses=np.repeat(sliding().poses[:1], 11, axis=0))
-    made = drawing(still, 9.81)
+    made = recorded_drawing(still)
     assert made.enlarged is None
-    assert made.joints == ()
+    assert {joint.state.value for joint in joints_of(still)} == {"closed"}
     assert np.abs(np.array(json.loads(made.frames))).max() == 0
     text = report_page([replace(ROW, recording=still)], MAP, {"blocksim": "0.1"})
     assert "nothing moved in" in text

@@ -22,10 +22,11 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.kinds.circular import CircularArch
-from blocksim.limit.programme import collapse, equilibrium
+from blocksim.limit import collapse, equilibrium
 from blocksim.view.arrows import force_words
 from blocksim.view.drawing import clipped, loading_words, outer_sides, save_figure
-from blocksim.view.structure import problem_figure
+from blocksim.view.sheet import sheet_of
+from blocksim.view.sheetfigure import SCREEN, sheet_figure
 from blocksim.view.style import DEAD, LIVE
 
 
@@ -46,6 +47,10 @@ def stack(**more: Any) -> Problem:
     return structure_of(
         {"title": "Three blocks", "friction": 0.6, "blocks": [GROUND, *blocks], **more}
     )
+
+
+def problem_figure(problem: Problem, **known: Any) -> Figure:
+    return sheet_figure(sheet_of(problem, **known), column=SCREEN)
 
 
 def of(figure: Figure, kind: str) -> dict[int, Any]:
@@ -70,8 +75,7 @@ def legend(figure: Figure) -> set[str]:
 
 
 def words(figure: Figure) -> list[str]:
-    axes = figure.axes[0]
-    return [axes.get_title(loc="left"), *(text.get_text() for text in axes.texts)]
+    return [text.get_text() for text in [*figure.texts, *figure.axes[0].texts]]
 
 
 def corners(artist: PathPatch) -> set[tuple[float, float]]:
@@ -98,7 +102,8 @@ def test_blocks_are_where_they_are_and_supports_are_hatched() -> None:
     assert shown[:, 0].min() > -1
     assert legend(figure) == {"support"}
     assert words(figure)[0] == "Three blocks"
-    assert "stands, 3 blocks, μ = 0.6" in words(figure)
+    assert "stands" in words(figure)
+    assert "3 blocks, μ = 0.6 (30.96°), unit weight 1 kN/m³, depth 1 m" in words(figure)
 
 
 def test_thrust_in_a_stack_is_the_weight_above() -> None:
@@ -184,7 +189,7 @@ def test_a_mechanism_is_drawn_as_its_blocks_move() -> None:
             joint.before, joint.after) else JointState.CLOSED
         for joint in problem.assembly.joints
     ]  # fmt: skip
-    figure = problem_figure(problem, mechanism=found.mechanism, states=states)
+    figure = problem_figure(problem, mechanism=found.mechanism, joint_states=states)
     moved = of(figure, "moved")
     assert list(moved) == [2]
     shown = np.array(sorted(corners(moved[2])))
@@ -211,7 +216,7 @@ def test_an_arch_keeps_its_words_and_stands_on_strips() -> None:
     problem = CircularArch.of(arch, 0.7).problem()
     states = [JointState.CLOSED] * 8
     states[3] = JointState.HINGE_EXTRADOS
-    figure = problem_figure(problem, states=states)
+    figure = problem_figure(problem, joint_states=states)
     assert legend(figure) == {"support", "hinge extrados"}
     supports = of(figure, "support")
     assert len(supports) == 2
@@ -278,8 +283,8 @@ def test_structures_of_the_corpus_are_framed(name: str) -> None:
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     assert left < points[:, 0].min() <= points[:, 0].max() < right
     assert bottom < points[:, 1].min() <= points[:, 1].max() < top
-    # The picture is filled: no side has a third of it to spare.
-    assert np.ptp(points, axis=0).max() > 0.6 * min(right - left, top - bottom)
+    # The picture is filled as far as a usual scale allows: half of it at the next smaller one.
+    assert np.ptp(points, axis=0).max() > 0.5 * min(right - left, top - bottom)
     (bar,) = [line for line in axes.lines if line.get_gid() == "scale"]
     length = float(np.ptp(bar.get_xdata()))
     assert f"{length:g} m" in words(figure)

@@ -559,12 +559,12 @@ def test_a_still_has_a_legend_of_what_is_in_it() -> None:
 def test_the_title_says_what_the_motion_shows() -> None:
     still = recording(np.zeros((2, ARCH.voussoirs, 3)), np.array([0.0, 10.0]))
     titles = [
-        next(word for word in drawn_words(Film([each])) if "least thickness" in word)
+        next(word for word in drawn_words(Film([each])) if "factor of safety" in word)
         for each in (falling(), still)
     ]
-    assert titles[0].startswith("collapses, ")
-    assert titles[1].startswith("at rest, ")
-    assert all("least thickness as built" in title for title in titles)
+    told = "geometrical factor of safety 2.856"
+    assert titles[0].startswith(f"collapses, still moving as it ends, {told}")
+    assert titles[1].startswith(f"at rest, {told}")
 
 
 def test_rubble_on_the_floor_is_no_hinge() -> None:
@@ -589,14 +589,16 @@ def test_rubble_on_the_floor_is_no_hinge() -> None:
 
 def test_the_line_of_thrust_is_whole_or_not_there() -> None:
     """From springing to springing, however thin the arch; none where it goes far out."""
-    for degrees, eta, whole in ((90, 0.3, True), (90, 0.005, True), (150, 0.9, False)):
+    for degrees, eta, whole in ((90, 0.3, True), (90, 0.005, True), (165, 0.3, False)):
         arch = replace(ARCH, half_angle=math.radians(degrees), eta=eta, voussoirs=27)
         stage = Stage(recording(np.zeros((2, 27, 3)), np.array([0.0, 1.0]), arch))
         assert len(stage.thrust) == whole
         for line in stage.thrust:
             assert line[0] == pytest.approx(line[-1] * [-1, 1], abs=1e-9)
             assert abs(line[0, 1]) < 1e-9
-            assert np.hypot(*np.diff(line, axis=0).T).max() < 0.02
+            # A corner at each joint.
+            # One below the weight of most voussoirs, too.
+            assert 28 < len(line) <= 2 * 27 + 1
 
 
 def test_an_arch_that_leans_stands_on_its_piers_in_the_plane() -> None:
@@ -656,7 +658,7 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         said[way] = inside("render", *pair, *small).stdout
     assert "simulate --seconds 2 records how it falls" in said["short"]
     assert "simulate --seconds" not in said["long"]
-    assert "(eta 0.1035, direct): it is at rest" in said["long"]
+    assert "η = 0.1035, direct): it is at rest" in said["long"]
     with Image.open(tmp_path / "long.gif") as picture:
         first = np.asarray(picture.convert("RGB")).astype(int)
         picture.seek(picture.n_frames - 1)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from blocksim.blocks.entries import Id, LoadEntry
-from blocksim.blocks.patch import shares
+from blocksim.blocks.patch import Profile
 from blocksim.blocks.polygons import Body
 from blocksim.blocks.problem import Load
 from blocksim.common.checks import require
@@ -79,7 +79,7 @@ class LoadsOf:
         require(low < high, f"{field}.patch", patch, "two places, the left one first")
         require(load.point is None, f"{field}.point", load.point, "left out beside patch")
         polygons = [[np.asarray(each) for each in body.polygons] for body in self._bodies]
-        found = shares(low, high, polygons)
+        found = Profile.of(polygons).along(low, high)
         if found is None:
             raise InputError(f"{field}.patch", patch, "above blocks all along")
         return [

@@ -214,6 +214,16 @@ class Maker(Shown, Table, ABC):
         """What the unit of length of engines is called."""
         return "L"
 
+    @property
+    def has_size(self) -> bool:
+        """Whether its lengths are metres."""
+        return True
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """What it is known by, in words for drawings; nothing where its title says enough."""
+        return ()
+
     def table(self) -> dict[str, object]:
         """Return the parameters as a file has them, with the kind's name."""
         return {"kind": self.name, **super().table()}

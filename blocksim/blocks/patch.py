@@ -1,91 +1,172 @@
-"""Loads at a place or spread evenly over a width: which blocks bear them, and where."""
+"""Loads on what lies uppermost: at a place, along a width, or spread by fill on their way."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.dispersal import Dispersal
 
 Share = tuple[int, float, Array]
 """Body, share of the load, and the point at which that acts [m]."""
 LEVEL = 1e-9
 """Difference in height that counts as none, over the width of all bodies."""
+LEAST = 1e-12
+"""Share of a load that is none; height below the road that counts as so much [m]."""
 
 
-def shares(low: float, high: float, bodies: Sequence[Sequence[Array]]) -> list[Share] | None:
-    """Find what lies uppermost along a width, which bears what is put there.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Profile:
+    """What lies uppermost, seen from above: straight pieces from left to right.
 
     Parameters
     ----------
-    low, high : float
-        Ends of the width, along x [m].
-    bodies : sequence of sequences of (k, 2) float
-        Convex polygons of each body [m], which do not overlap.
+    ends : (pieces, 2, 2) float
+        Left and right end of each [m]. Where there is no body there is no piece.
+    body : (pieces,) int
+    """
 
-    Returns
-    -------
-    list of (int, float, (2,) float) or None
+    ends: Array
+    body: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, bodies: Sequence[Sequence[Array]]) -> Profile:
+        """Find the profile of bodies that do not overlap.
+
+        Parameters
+        ----------
+        bodies : sequence of sequences of (k, 2) float
+            Convex polygons of each body [m].
+        """
+        starts: list[Array] = []
+        owners: list[int] = []
+        for index, body in enumerate(bodies):
+            for polygon in body:
+                edges = np.stack([polygon, np.roll(polygon, -1, axis=0)], axis=1)
+                starts.append(edges[edges[:, 0, 0] != edges[:, 1, 0]])
+                owners += [index] * len(starts[-1])
+        edges = np.concatenate(starts)
+        backward = edges[:, 0, 0] > edges[:, 1, 0]
+        edges[backward] = edges[backward][:, ::-1]
+        slope = (edges[:, 1, 1] - edges[:, 0, 1]) / (edges[:, 1, 0] - edges[:, 0, 0])
+        pieces: list[tuple[int, float, float]] = []
+        # Between corners what lies uppermost stays the same, and its top is straight.
+        for left, right in itertools.pairwise(np.unique(edges[:, :, 0]).tolist()):
+            over = np.flatnonzero((edges[:, 0, 0] <= left) & (edges[:, 1, 0] >= right))
+            if not over.size:
+                continue
+            middle = (left + right) / 2
+            height = edges[over, 0, 1] + slope[over] * (middle - edges[over, 0, 0])
+            top = int(over[height.argmax()])
+            if pieces and pieces[-1][0] == top and pieces[-1][2] == left:
+                pieces[-1] = (top, pieces[-1][1], right)
+            else:
+                pieces.append((top, left, right))
+        edge = np.array([each for each, _, _ in pieces])
+        x = np.array([each[1:] for each in pieces])
+        y = edges[edge, :1, 1] + slope[edge, None] * (x - edges[edge, :1, 0])
+        return cls(ends=np.stack([x, y], axis=-1), body=np.array(owners)[edge])
+
+    def height(self, piece: int, x: float) -> float:
+        """Height of a piece at a place [m]."""
+        (x0, y0), (x1, y1) = self.ends[piece].tolist()
+        return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+
+    def along(self, low: float, high: float) -> list[Share] | None:
+        """Find what bears a load that is spread evenly from one x to another [m].
+
         None where somewhere along the width there is no body.
-    """
-    corners = np.concatenate([polygon for body in bodies for polygon in body])[:, 0]
-    inside = corners[(corners > low) & (corners < high)]
-    # Between corners what lies uppermost stays the same, and its top is straight.
-    edges = np.unique(np.concatenate([[low, high], inside]))
-    found: list[Share] = []
-    for left, right in itertools.pairwise(edges):
-        middle = (left + right) / 2
-        tops = [
-            (_top(polygon, middle), index)
-            for index, body in enumerate(bodies)
-            for polygon in body
-            if polygon[:, 0].min() < middle < polygon[:, 0].max()
-        ]
-        if not tops:
-            return None
-        top, index = max(tops)
-        share = float((right - left) / (high - low))
-        found.append((index, share, np.array([middle, top])))
-    return found
+        """
+        found: list[Share] = []
+        reached = low
+        for piece, ((left, _), (right, _)) in enumerate(self.ends.tolist()):
+            start, end = max(left, low), min(right, high)
+            if start < end:
+                if start > reached:
+                    return None
+                middle, share = (start + end) / 2, (end - start) / (high - low)
+                point = np.array([middle, self.height(piece, middle)])
+                found.append((int(self.body[piece]), share, point))
+                reached = end
+        return found if reached == high else None
 
+    def at(self, x: float) -> list[Share] | None:
+        """Find what bears a load at a place [m].
 
-def shares_at(x: float, bodies: Sequence[Sequence[Array]]) -> list[Share] | None:
-    """Find what lies uppermost at a place, which bears what is put there.
-
-    Parameters
-    ----------
-    x : float
-        The place [m].
-    bodies : sequence of sequences of (k, 2) float
-        As of `shares`; where a body and others behind it are as high, as at a joint, they
-        share it evenly.
-
-    Returns
-    -------
-    list of (int, float, (2,) float) or None
+        Where a body and others behind it are as high, as at a joint, they share it evenly.
         None where there is no body.
-    """
-    corners = np.concatenate([polygon for body in bodies for polygon in body])[:, 0]
-    tops: dict[int, float] = {}
-    for index, body in enumerate(bodies):
-        over = [each for each in body if each[:, 0].min() <= x <= each[:, 0].max()]
-        if over:
-            tops[index] = max(_top(polygon, x) for polygon in over)
-    if not tops:
-        return None
-    least = max(tops.values()) - LEVEL * float(np.ptp(corners))
-    highest = [index for index, top in tops.items() if top >= least]
-    return [(index, 1 / len(highest), np.array([x, tops[index]])) for index in highest]
+        """
+        over = np.flatnonzero((self.ends[:, 0, 0] <= x) & (self.ends[:, 1, 0] >= x)).tolist()
+        if not over:
+            return None
+        tops = {int(self.body[piece]): self.height(piece, x) for piece in over}
+        wide = float(self.ends[-1, 1, 0] - self.ends[0, 0, 0])
+        least = max(tops.values()) - LEVEL * wide
+        highest = [body for body, top in tops.items() if top >= least]
+        return [(body, 1 / len(highest), np.array([x, tops[body]])) for body in highest]
 
+    def enters(self, dispersal: Dispersal) -> Array:
+        """Return where on the road the outermost rays of a load meet corners [m]."""
+        x, y = self.ends.reshape(-1, 2).T
+        aside = dispersal.slope * np.maximum(dispersal.road - y, LEAST)
+        # A load above a step, or a gap, meets it on one side and not on the other.
+        links = np.arange(len(x) - 1)
+        same = np.hypot(np.diff(x), np.diff(y)) <= LEVEL * (x[-1] - x[0])
+        steps = links[(links % 2 == 1) & ~same]
+        beside = x[[0, *steps, *(steps + 1), len(x) - 1]]
+        return np.unique(np.concatenate([x - aside, x + aside, beside]))
 
-def _top(polygon: Array, x: float) -> float:
-    """Height of a polygon's upper side at a place."""
-    following = np.roll(polygon, -1, axis=0)
-    start = np.minimum(polygon[:, 0], following[:, 0])
-    over = (start <= x) & (np.maximum(polygon[:, 0], following[:, 0]) >= x)
-    over &= polygon[:, 0] != following[:, 0]
-    one, two = polygon[over], following[over]
-    height = one[:, 1] + (x - one[:, 0]) / (two[:, 0] - one[:, 0]) * (two[:, 1] - one[:, 1])
-    return float(height.max())
+    def under(self, x: float, dispersal: Dispersal) -> tuple[NDArray[np.int64], Array, Array]:
+        """Find what bears a load on the road at a place, which fill spreads on its way down.
+
+        Each part of the load goes straight along its own ray, to what lies uppermost there, and
+        presses downwards on it. Parts that meet no body go to the ground: shares may sum to
+        less than 1.
+
+        Parameters
+        ----------
+        x : float
+            On the road [m].
+        dispersal : Dispersal
+
+        Returns
+        -------
+        body : (parts,) int
+        share : (parts,) float
+        point : (parts, 2) float
+            [m]
+        """
+        chain, most = self.ends.reshape(-1, 2), dispersal.slope
+        seen = (chain[:, 0] - x) / np.maximum(dispersal.road - chain[:, 1], LEAST)
+        # What lies behind something nearer is hidden: rays go on only past what they missed.
+        right = np.maximum.accumulate(np.clip(seen, 0.0, most))
+        left = np.minimum.accumulate(np.clip(seen, -most, 0.0)[::-1])[::-1]
+        slopes = left + right
+        links = np.flatnonzero((np.diff(slopes) > LEAST * most) & (self._owner >= 0))
+        rays, weights = dispersal.rays(slopes[links, None], slopes[links + 1, None])
+        share = weights.sum(axis=1)
+        one = chain[links]
+        across, up = (chain[links + 1] - one).T[:, :, None]
+        depth = dispersal.road - one[:, 1:]
+        along = (x + rays * depth - one[:, :1]) / (across + rays * up)
+        mean = (weights * along).sum(axis=1) / share
+        point = one + mean[:, None] * (chain[links + 1] - one)
+        return self._owner[links], share, point
+
+    @cached_property
+    def _owner(self) -> NDArray[np.int64]:
+        """Whose each link of the chain is: pieces and steps between them; -1 of a gap."""
+        (x, y) = self.ends.reshape(-1, 2).T
+        upper = (np.arange(len(x) - 1) + (np.diff(y) > 0)) // 2
+        owner = self.body[upper]
+        step = np.arange(len(owner)) % 2 == 1
+        owner[step & (np.diff(x) > LEVEL * (x[-1] - x[0]))] = -1
+        # Pieces follow each other; of a step the upper one bears.
+        owner[~step] = self.body
+        return owner

@@ -12,7 +12,8 @@ import numpy as np
 from blocksim.blocks.acting import Load as Load
 from blocksim.blocks.acting import Move as Move
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
-from blocksim.blocks.road import with_road
+from blocksim.blocks.dispersal import Dispersal
+from blocksim.blocks.road import road_of, with_road
 from blocksim.blocks.shaking import Shaking
 from blocksim.common.checks import (
     FACTOR,
@@ -61,6 +62,8 @@ class Problem(Shown):
     road : tuple of (float, float, float)
         Live loads on the road above, which stay where they are as blocks are made otherwise:
         from one x to another [m], and the weight [N].
+    dispersal : Dispersal or None
+        How fill spreads what stands on the road; None where it goes straight down.
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
         forces have a meaning.
@@ -85,6 +88,7 @@ class Problem(Shown):
     source: str = ""
     maker: Maker | None = None
     road: tuple[tuple[float, float, float], ...] = ()
+    dispersal: Dispersal | None = None
     weighed: bool = True
     notes: tuple[str, ...] = ()
 
@@ -182,12 +186,29 @@ class Problem(Shown):
             dead=(*built.fills, *self.dead[before:]),
             maker=maker,
         )
+        if (road := road_of(remade)) is not None and self.dispersal is not None:
+            remade = replace(remade, dispersal=replace(self.dispersal, road=road))
         return with_road(remade, self.road) if self.road else remade
 
     @property
     def length_name(self) -> str:
         """What the unit of length of engines is called: the radius r, or the size L."""
         return "L" if self.maker is None else self.maker.length_name
+
+    @property
+    def is_arch(self) -> bool:
+        """Whether it is one arch, whose joints follow each other from left to right."""
+        return self.maker is not None and self.maker.is_arch
+
+    @property
+    def has_size(self) -> bool:
+        """Whether lengths are metres, and no multiples of a radius that was not given."""
+        return self.maker is None or self.maker.has_size
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """What its maker is known by, for drawings: half-angle and ratio of an arch."""
+        return () if self.maker is None else self.maker.measures
 
     def with_load(self, load: float) -> Problem:
         """Return the same under another load factor."""

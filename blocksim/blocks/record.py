@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
+from blocksim.blocks.dispersal import Dispersal
 from blocksim.blocks.problem import Load, Move, Problem
 from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH
@@ -101,6 +102,7 @@ def from_record(
         live=live,
         moves=moves,
         shaking=_shaking(given.pop("shaking", None)),
+        dispersal=Dispersal(**spread) if (spread := given.pop("dispersal", None)) else None,
         maker=maker_of(origin),
         road=road,
         notes=tuple(str(each) for each in given.pop("notes")),

@@ -1,10 +1,11 @@
 """Fill and weights on the road above: they go straight down to what lies uppermost.
 
-Nothing is spread on the way, in the fill or elsewhere.
+Fill spreads nothing on the way unless it is said how (`blocks.dispersal`).
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -12,16 +13,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from blocksim.blocks.acting import Load
-from blocksim.blocks.assembly import Assembly
-from blocksim.blocks.patch import shares, shares_at
+from blocksim.blocks.assembly import Array, Assembly
+from blocksim.blocks.dispersal import Dispersal, quadrature
+from blocksim.blocks.patch import Profile, Share
 from blocksim.common.checks import require
+from blocksim.common.errors import InputError
 
 if TYPE_CHECKING:
     from blocksim.blocks.problem import Problem
 
 
 def on_road(
-    assembly: Assembly, weight: float, low: float, high: float, field: str = "patch"
+    assembly: Assembly,
+    weight: float,
+    low: float,
+    high: float,
+    field: str = "patch",
+    dispersal: Dispersal | None = None,
 ) -> tuple[Load, ...]:
     """Return the loads that a weight on the road comes to.
 
@@ -34,30 +42,74 @@ def on_road(
         Where it stands along x, evenly [m]; at one point where both are equal.
     field : str
         What to call it in messages.
+    dispersal : Dispersal, optional
+        How fill spreads it; by default it goes straight down.
 
     Returns
     -------
     tuple of Load
-        A weight on a joint is shared in halves by the blocks on its two sides.
+        A weight on a joint is shared in halves by the blocks on its two sides. What fill hands
+        to supports, or past the blocks, is left out.
 
     Raises
     ------
     InputError
         If it is not above blocks that move all along.
     """
-    bodies = [list(block.polygons) for block in assembly.blocks]
-    grounds = [list(support.polygons) for support in assembly.supports]
-    both = [*bodies, *grounds]
-    found = shares_at(low, both) if low == high else shares(low, high, both)
-    borne = found is not None and all(index < len(bodies) for index, _, _ in found)
+    profile, count = profile_of(assembly), len(assembly.blocks)
+    found = profile.at(low) if low == high else profile.along(low, high)
+    borne = found is not None and all(index < count for index, _, _ in found)
     corners = np.concatenate([block.vertices for block in assembly.blocks])[:, 0]
     allowed = f"above blocks: they reach from x = {corners.min():.6g} to {corners.max():.6g} m"
     given = f"{low:g} m" if low == high else f"{low:g} to {high:g} m"
     require(borne, field, given, allowed)
+    if dispersal is not None:
+        found = _dispersed(profile, low, high, dispersal)
+    return loads_of(found or (), weight, count)
+
+
+def _dispersed(profile: Profile, low: float, high: float, dispersal: Dispersal) -> list[Share]:
+    """Find what bears a load on the road that fill spreads, as `Profile.under`."""
+    if low == high:
+        return list(zip(*profile.under(low, dispersal), strict=True))
+    ends = profile.enters(dispersal)
+    edges = np.unique([low, high, *ends[(ends > low) & (ends < high)]])
+    return [
+        (body, share * weight / (high - low), point)
+        for start, end in itertools.pairwise(edges)
+        for x, weight in zip(*quadrature(start, end), strict=True)
+        for body, share, point in zip(*profile.under(float(x), dispersal), strict=True)
+    ]
+
+
+def profile_of(assembly: Assembly) -> Profile:
+    """Return what lies uppermost: blocks, and after them supports."""
+    bodies = [list(block.polygons) for block in assembly.blocks]
+    return Profile.of([*bodies, *(list(each.polygons) for each in assembly.supports)])
+
+
+def loads_of(shares: Sequence[Share], weight: float, count: int) -> tuple[Load, ...]:
+    """Return what a weight [N] on the road does to blocks, each of them once."""
+    borne: dict[int, list[tuple[float, Array]]] = {}
+    for index, share, point in shares:
+        if index < count:
+            borne.setdefault(index, []).append((share, point))
     return tuple(
-        Load(force=np.array([0.0, -share * weight]), blocks=(index,), point=point)
-        for index, share, point in found or ()
+        Load(
+            force=np.array([0.0, -weight * sum(share for share, _ in parts)]),
+            blocks=(index,),
+            point=np.average([point for _, point in parts], 0, [share for share, _ in parts]),
+        )
+        for index, parts in sorted(borne.items())
     )
+
+
+def road_of(problem: Problem) -> float | None:
+    """Return the height of the road over a structure [m]; None where it has no fill."""
+    maker: Any = problem.maker
+    arch = getattr(maker, "arch", maker)
+    height = getattr(arch, "fill", None)
+    return None if height is None else arch.top + height
 
 
 def with_road(
@@ -87,7 +139,7 @@ def with_road(
     live = [
         each
         for (low, high, weight), name in zip(loads, names, strict=True)
-        for each in on_road(problem.assembly, weight, low, high, name)
+        for each in on_road(problem.assembly, weight, low, high, name, problem.dispersal)
     ]
     return replace(problem, live=tuple(live), road=tuple(loads))
 
@@ -116,6 +168,28 @@ def with_fill(problem: Problem, height: float, share: float) -> Problem:
     path = "" if own else "arch."
     filled = maker.but(**{f"{path}fill": height, f"{path}fill_density": share})
     return problem.remade(filled)
+
+
+def with_dispersal(problem: Problem, words: str) -> Problem:
+    """Return a problem whose fill spreads loads on the road.
+
+    Parameters
+    ----------
+    problem : Problem
+        With fill.
+    words : str
+        As of `Dispersal.of`.
+
+    Raises
+    ------
+    InputError
+        If it is no dispersal, or there is no fill.
+    """
+    road = road_of(problem)
+    if road is None:
+        raise InputError("dispersal", words, "left out, or --fill beside it: there is no fill")
+    spread = replace(problem, dispersal=Dispersal.of(words, road))
+    return with_road(spread, problem.road) if problem.road else spread
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -64,7 +64,7 @@ COMMANDS = {
     ),
     "scenarios": (
         "listing.list_scenarios",
-        "List the scenarios and structures that come with blocksim.",
+        "List the scenarios, structures and vehicles that come with blocksim.",
     ),
     "kinds": (
         "listing.list_kinds",

@@ -10,10 +10,12 @@ from blocksim.ask.bracket import bracket as ask_bracket
 from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
 from blocksim.cli.arguments import Option
+from blocksim.cli.crossing import cross
 from blocksim.cli.options import (
     EXIT_CODES,
     THICKNESS,
     AtJoint,
+    Crossed,
     Given,
     Json,
     Loading,
@@ -75,6 +77,7 @@ def check(
 def bracket(
     given: Given,
     loading: Loading,
+    crossed: Crossed,
     scene: Scene = None,
     over: Over = None,
     within: Within = None,
@@ -85,7 +88,19 @@ def bracket(
     proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
-    """Find where it starts to fall as one parameter changes: how thin an arch can be."""
+    """Find where it starts to fall as one parameter changes: how thin an arch can be.
+
+    Of a vehicle that crosses it is the least load factor, and where it stands then.
+    """
+    if crossed.vehicle is not None:
+        usual = {"--over": over in {None, "load"}, "--within": within is None,
+                 "--method": method in {"auto", "limit"}, "--set": settings is None,
+                 "--reduce": reduce is None}  # fmt: skip
+        cross(problem_asked(scene, given, loading, thick=True), crossed, usual, as_json=as_json)
+        return
+    for option in ("along", "out"):
+        value = getattr(crossed, option)
+        require(value is None, f"--{option}", value, "left out, or --vehicle beside it")
     # The thickness of an arch under its own weight need not be given to be sought.
     sought = over in {None, THICKNESS} and not loading.given and not is_structure(scene)
     for name in ("eta", "ratio") if sought else ():

@@ -43,7 +43,6 @@ from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
-from blocksim.kinds.circular import arch_of
 from blocksim.report.recordings import recording_lines
 from blocksim.simulation.recording import Recording
 
@@ -70,7 +69,7 @@ def simulate(
 ) -> None:
     """Let it go and record its motion."""
     problem = problem_asked(scene, given, loading, thick=True, out=out)
-    size = "L" if arch_of(problem) is None else "r"
+    size = problem.length_name
     out = out or Path()
     require(out.suffix == ".npz", "--out", str(out), "a file name ending in .npz")
     require_place(out)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from blocksim.arch.theory import least_thickness
-from blocksim.ask.check import Check, check
+from blocksim.ask.check import check
 from blocksim.blocks.problem import Problem
 from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import Given, Loading, named_options
@@ -66,27 +66,15 @@ def _write_sheet(
     as_built = "limit or an engine: it is drawn as built"
     require(method != "theory", "--method", method, as_built)
     # Drawing takes a second to import, which other commands need not wait for.
-    from blocksim.view.sheet import sheet_of
+    from blocksim.view.sheet import answer_sheet
     from blocksim.view.sheetdxf import write_dxf
     from blocksim.view.sheetfigure import sheet_figure
 
     with named_options(), progress() as report:
         answer = check(problem, method=method or "auto", progress=report)
-    sheet = sheet_of(
-        problem,
-        verdict=verdict_words(answer),
-        mechanism=answer.mechanism,
-        joint_states=[joint.state for joint in answer.joints],
-    )
+    sheet = answer_sheet(answer)
     if kind == "dxf":
         write_whole(out, lambda file: write_dxf(sheet, file))
         say(f"wrote {out}")
         return
     save_picture(sheet_figure(sheet), out, kind, height)
-
-
-def verdict_words(answer: Check) -> str:
-    """Say the verdict and its method, and how an arch falls of its own weight."""
-    mode = answer.arch and answer.arch.mode
-    named = f", mode {mode}" if mode else ""
-    return f"{answer.verdict.value}{named}, by {answer.method}"

@@ -19,7 +19,6 @@ from blocksim.common.checks import Range, require
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
 from blocksim.engines import NAMES
-from blocksim.kinds.circular import arch_of
 from blocksim.kinds.recorded import load_recording
 from blocksim.report.poses import write_recording_csv, write_recording_json
 from blocksim.report.problems import tilt_and_lean
@@ -154,9 +153,7 @@ def export(out: Path, kind: str, recording: Recording) -> None:
     else:
         write = write_recording_csv if kind == "csv" else write_recording_json
         write_whole(out, lambda file: write(recording, file))
-    # A radius of 1 stands for none given.
-    no_radius = recording.assembly.size == 1 and arch_of(recording.problem)
-    radius = " if r = 1 m" if no_radius else ""
+    radius = "" if recording.problem.has_size else " if r = 1 m"
     say(
         f"wrote {out}: {counted(len(recording.assembly.blocks), 'block')}, "
         f"{counted(len(recording.times), 'frame')}, "
@@ -167,8 +164,7 @@ def export(out: Path, kind: str, recording: Recording) -> None:
 def _motionless(recording: Recording) -> str:
     """Say that nothing is seen to move in a recording, and what to do where it falls."""
     moved = float(recording.displacement.max())
-    built = arch_of(recording.problem)
-    arch = f"eta {built.eta:g}, {recording.engine}" if built else recording.engine
+    arch = ", ".join([*recording.problem.measures, recording.engine])
     if moved > MOVED:
         return (
             f"nothing is seen to move in one recording ({arch}): it ends when it has "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
+from blocksim.blocks.vehicles import shipped_vehicles, vehicle_of
 from blocksim.cli.arguments import Argument
 from blocksim.cli.output import say
 from blocksim.cli.terminal import Table, show
@@ -19,7 +20,7 @@ NUMBERS = {"alpha", "mu", "n", "eta"}
 
 
 def list_scenarios() -> None:
-    """List the scenarios and structures that come with blocksim."""
+    """List the scenarios, structures and vehicles that come with blocksim."""
     table = Table()
     for heading in ("name", "alpha", "mu", "n", "eta", "title", "source"):
         table.add_column(heading, justify="right" if heading in NUMBERS else "left")
@@ -43,6 +44,15 @@ def list_scenarios() -> None:
         size = str(len(problem.assembly.blocks)), f"{problem.mu:.4g}"
         built.add_row(known.name, *size, ", ".join(told), problem.title, problem.source)
     show(built)
+    say("")
+    vehicles = Table()
+    for heading in ("vehicle", "axles", "title", "source"):
+        vehicles.add_column(heading)
+    for name in shipped_vehicles():
+        each = vehicle_of(name)
+        axles = ", ".join(f"{weight / 1e3:g} kN at {x:g} m" for x, weight in each.axles)
+        vehicles.add_row(name, axles, each.title, each.source)
+    show(vehicles)
 
 
 def list_kinds(

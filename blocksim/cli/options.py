@@ -7,7 +7,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 from blocksim.arch.dimensions import LINES, friction_of
 from blocksim.ask.families import FAMILIES
@@ -239,13 +239,21 @@ class Loading:
         Option(
             metavar="X KN",
             about="Weight on the road at x (m from the crown of an arch; else from the "
-            "structure's origin), live. It goes straight down to the block below; fill does "
-            "not spread it. Repeatable: an axle each.",
+            "structure's origin), live. It goes straight down to the block below, or as "
+            "--dispersal says. Repeatable: an axle each.",
         ),
     ] = None
     patch_load: Annotated[
         list[tuple[float, float, float]] | None,
         Option(metavar="X1 X2 KN", about="The same, spread evenly from x1 to x2; repeatable."),
+    ] = None
+    dispersal: Annotated[
+        str | None,
+        Option(
+            metavar="ACROSS:DOWN",
+            about="How fill spreads loads on the road: 1:2, evenly over half the depth to each "
+            "side; or boussinesq, up to 30 deg from the vertical. Not at all if left out.",
+        ),
     ] = None
     load: Annotated[
         float | None,
@@ -282,9 +290,36 @@ class Loading:
     @property
     def on_road(self) -> dict[str, object]:
         """Those that lie on the road; empty where none is given."""
-        names = ("fill", "fill_unit_weight", "point_load", "patch_load")
+        names = ("fill", "fill_unit_weight", "point_load", "patch_load", "dispersal")
         found = {name: getattr(self, name) for name in names}
         return {name: each for name, each in found.items() if each is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossed:
+    """The options of a vehicle that crosses, as given on the command line."""
+
+    heading: ClassVar[str] = "What crosses it"
+
+    vehicle: Annotated[
+        str | None,
+        Option(
+            metavar="NAME|FILE|AXLES",
+            about="Vehicle on the road, both ways: a shipped name (blocksim scenarios), a "
+            ".toml file, or axles in kN at m, as 10@0,10@1.2.",
+        ),
+    ] = None
+    along: Annotated[
+        Literal["road"] | None, Option(about="Where it goes; on the road if left out.")
+    ] = None
+    out: Annotated[
+        list[Path] | None,
+        Option(
+            about="Beside --vehicle, a file to write; repeatable: .csv, load factor and thrust "
+            "at every place; .pdf, .svg, .png, their curve above the worst place; .dxf, the "
+            "drawing at the worst place."
+        ),
+    ] = None
 
 
 def require_given(instead: str = "", /, **options: object) -> None:
@@ -341,6 +376,8 @@ OPTIONS = {
     "thickness",
     "at",
     "fill",
+    "dispersal",
+    "vehicle",
     "shake",
     "amplitude",
     "duration",

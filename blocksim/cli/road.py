@@ -8,7 +8,7 @@ from dataclasses import replace
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.blocks.road import with_fill, with_road
+from blocksim.blocks.road import with_dispersal, with_fill, with_road
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
 from blocksim.cli.options import Given, Loading, named_options, option_of, require_given
 from blocksim.common.checks import require
@@ -64,7 +64,8 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
     blocks = problem.assembly.blocks
     volume = sum(abs(signed_area(part)) * b.depth for b in blocks for part in b.polygons)
     density = sum(block.mass for block in blocks) * STANDARD_GRAVITY / volume
-    in_kilonewtons = [name for name in loading.on_road if name != "fill"]
+    weights = ("fill_unit_weight", "point_load", "patch_load")
+    in_kilonewtons = [name for name in loading.on_road if name in weights]
     if in_kilonewtons and density < LEAST_DENSITY:
         allowed = f"given beside {option_of(in_kilonewtons[0])}: blocks weigh {density:g} N/m3"
         raise InputError("--unit-weight", MISSING, allowed)
@@ -78,6 +79,8 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
         maker = problem.maker
         share = 1.0 if heavy is None or maker is None else 1000 * heavy / maker.unit_weight
         problem = with_fill(problem, height, share)
+    if loading.dispersal is not None:
+        problem = with_dispersal(problem, loading.dispersal)
     placed = [("--point-load", (x, x, weight)) for x, weight in loading.point_load or ()]
     placed += [("--patch-load", load) for load in loading.patch_load or ()]
     for option, (low, high, weight) in placed:

@@ -5,9 +5,9 @@ nothing else. So faces that continue each other, or meet at a corner, never get 
 other's way, however many joints there are on a face.
 
 Where the faces of a joint end at the same place, as voussoirs do, their corners coincide, which
-engines do not bear: there one side reaches beyond the other by a ledge. The contacts are those
-of the shorter side, whose corners are true. Where one face goes on beyond the joint, it is that
-which is longer, and nothing has to be added.
+engines do not bear: there the side of the higher block reaches beyond the other by a ledge. The
+contacts are those of the shorter side, whose corners are true. Where one face goes on beyond
+the joint, it is that which is longer, and nothing has to be added.
 """
 
 from __future__ import annotations
@@ -110,8 +110,8 @@ def _reaches(assembly: Assembly, joint: Joint, faces: Array, carrier: int) -> Ar
         longer = carrier
         least = LEDGE
     else:
-        # A support is as wide as needed, and else the block after the joint.
-        longer = bodies.index(SUPPORT) if SUPPORT in bodies else 1
+        # A support is as wide as needed, else the higher block: a mirror image stays one.
+        longer = bodies.index(SUPPORT) if SUPPORT in bodies else _higher(assembly, bodies)
         least = min(LEDGE, LEDGE_SHARE * length)
     for end, outward in enumerate((-1.0, 1.0)):
         beyond = outward * reach[:, end]
@@ -122,6 +122,12 @@ def _reaches(assembly: Assembly, joint: Joint, faces: Array, carrier: int) -> Ar
             beyond[wide] = beyond[1 - wide] + least
         reach[:, end] = outward * beyond
     return reach
+
+
+def _higher(assembly: Assembly, bodies: tuple[int, int]) -> int:
+    """Tell which of two blocks is the higher one; of two at one height the second."""
+    first, second = assembly.centres[list(bodies), 1] / assembly.size
+    return int(second > first - LEDGE)
 
 
 def _room(assembly: Assembly, joint: Joint, side: int) -> float:

@@ -27,7 +27,7 @@ UNSOLVED = 1e-4
 """Residual of a step that is not taken."""
 PRECISION = 1e-12
 """Yield of contacts left in a moving step [g]."""
-HALVINGS = 3
+HALVINGS = 5
 """How often a step that is not solved is halved."""
 CLOSED = 1e-12
 """Gap that counts as none: round-off of the corners' places."""

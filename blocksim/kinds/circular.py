@@ -289,6 +289,21 @@ class CircularArch(CurvedArch):
         """What the unit of length of engines is called."""
         return "r" if self.in_radii else "L"
 
+    @property
+    def has_size(self) -> bool:
+        """Whether a line of it was measured, or its radius given: 1 stands for none."""
+        return not self.in_radii or self.radius != 1 or self.line is not None
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Half-angle and thickness-to-radius ratio of a symmetric ring, and how it weighs."""
+        if self.shape is None or not self.in_radii:
+            return ()
+        angle = f"\N{GREEK SMALL LETTER ALPHA} = {math.degrees(self.shape.half_angle):.4g}°"
+        ratio = f"\N{GREEK SMALL LETTER ETA} = {self.shape.eta:.4g}"
+        own = self.shape.weight != "centreline"
+        return (angle, ratio, f"weight {self.shape.weight}") if own else (angle, ratio)
+
     def origin(self) -> dict[str, object]:
         """Return what a recording keeps of it."""
         if self.in_radii and self.shape is not None:
@@ -346,17 +361,12 @@ def circle(shift: float, radius: float, start: float, end: float) -> Curve:
     )
 
 
-def arch_of(problem: Problem) -> Arch | None:
-    """Return the arch of a problem in whose radius it is measured; None of any other."""
-    maker = problem.maker
-    return maker.shape if isinstance(maker, CircularArch) and maker.in_radii else None
-
-
 def weighed_arch(problem: Problem) -> Arch | None:
     """Return the symmetric circular arch of a problem, however it was made, else None.
 
     One whose density was not given is none: its weights are ratios.
     """
     maker = problem.maker
-    known = isinstance(maker, CircularArch) and maker.unit_weight >= LEAST_DENSITY
-    return maker.shape if known or arch_of(problem) else None  # type: ignore[union-attr]
+    if not isinstance(maker, CircularArch):
+        return None
+    return maker.shape if maker.in_radii or maker.unit_weight >= LEAST_DENSITY else None

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Block, Joint
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Block, Joint, Support
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Load, Problem
 from blocksim.limit.programme import equilibrium
@@ -188,9 +188,30 @@ class Displaced:
             )
         return replace(
             asked,
-            assembly=replace(asked.assembly, blocks=blocks, joints=tuple(joints)),
+            assembly=replace(
+                asked.assembly,
+                blocks=blocks,
+                joints=tuple(joints),
+                supports=self._supports_at(frame.value),
+            ),
             dead=self._carried_loads(asked.dead, frame),
             live=self._carried_loads(asked.live, frame),
+        )
+
+    def _supports_at(self, value: float) -> tuple[Support, ...]:
+        """Return the supports where they have moved to."""
+        moved = self._placed(value)
+        return tuple(
+            replace(
+                support,
+                polygons=tuple(
+                    _turned(part.T, float(turn)).T + np.array([x, y]) * self.size
+                    for part in support.polygons
+                ),
+            )
+            for support, (x, y, turn) in zip(
+                self._problem.assembly.supports, moved, strict=False
+            )
         )
 
     def _carried_loads(self, loads: tuple[Load, ...], frame: Frame) -> tuple[Load, ...]:

@@ -20,7 +20,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
-from blocksim.limit.programme import collapse, equilibrium
+from blocksim.limit.capacity import collapse
+from blocksim.limit.programme import equilibrium
 
 FINEST = 1e-9
 """Part of an arc that is not divided further [rad]."""

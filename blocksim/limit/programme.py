@@ -1,4 +1,4 @@
-"""One linear programme for any assembly: contact forces, load factor, and the mechanism.
+"""One linear programme for any assembly: contact forces, and the mechanism.
 
 Each end of a joint carries a force within its cone of friction, and all forces balance the
 loads. By the static theorem of limit analysis an assembly can rest where such forces exist
@@ -129,25 +129,6 @@ class Equilibrium:
         return None if self.exists else self.rates
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Collapse:
-    """The largest factor on the live loads at which forces of equilibrium exist.
-
-    Parameters
-    ----------
-    load_factor : float or None
-        None where there is no equilibrium at any factor; inf where no live load is too much.
-    forces : (joints, 2, 2) float or None
-        At collapse; as of `Equilibrium`.
-    mechanism : (blocks, 3) float or None
-        Rates x, y and rotation as the blocks begin to move, the largest of them 1.
-    """
-
-    load_factor: float | None
-    forces: Array | None
-    mechanism: Array | None
-
-
 def equilibrium(problem: Problem) -> Equilibrium:
     """Find forces of equilibrium, all as far inside their cones of friction as possible.
 
@@ -184,7 +165,7 @@ def equilibrium(problem: Problem) -> Equilibrium:
         problem=problem,
         margin=margin,
         parts=_parts(cones, found),
-        rates=_scaled(cones.rates(found.prices)),
+        rates=scaled(cones.rates(found.prices)),
         cones=cones,
     )
 
@@ -192,36 +173,6 @@ def equilibrium(problem: Problem) -> Equilibrium:
 def _parts(cones: Cones, found: Optimum) -> Array:
     """Return all of the parts: what they have in common is theirs, too."""
     return found.values[:-1] + found.values[-1] * cones.bounded
-
-
-def collapse(problem: Problem) -> Collapse:
-    """Find the largest factor on the live loads at which forces of equilibrium exist.
-
-    The problem's own load factor does not matter.
-
-    Parameters
-    ----------
-    problem : Problem
-        In its plane, with live loads.
-
-    Returns
-    -------
-    Collapse
-    """
-    cones = Cones(problem)
-    live = sum((problem.of_load(load) for load in problem.live), np.zeros(cones.shape))
-    dead = problem.with_load(0.0).pull()
-    column = sparse.csc_array(cones.loads(live)[:, None])
-    found = _most(cones, column, -cones.loads(dead), (-math.inf, math.inf))
-    if found.unbounded:
-        return Collapse(load_factor=math.inf, forces=None, mechanism=None)
-    if not found.exists:
-        return Collapse(load_factor=None, forces=None, mechanism=None)
-    return Collapse(
-        load_factor=float(found.values[-1]),
-        forces=cones.forces(found.values[:-1]),
-        mechanism=_scaled(cones.rates(found.prices)),
-    )
 
 
 def settling(problem: Problem, supports: Array) -> Array | None:
@@ -282,7 +233,7 @@ def most_common(cones: Cones, pull: Array, solver: LinearProgramme | None = None
     What all parts have in common comes last in the optimum's values.
     """
     common = sparse.csc_array(cones.balance @ cones.bounded[:, None])
-    return _most(cones, common, -cones.loads(pull), (-TENSION, SPARE), solver)
+    return most(cones, common, -cones.loads(pull), (-TENSION, SPARE), solver)
 
 
 def extreme(
@@ -295,7 +246,7 @@ def extreme(
     )
 
 
-def _most(
+def most(
     cones: Cones,
     column: Any,
     right: Array,
@@ -309,7 +260,7 @@ def _most(
     return (solver or LinearProgramme()).solve(cost, matrix, (right, right), (low, high))
 
 
-def _scaled(rates: Array) -> Array:
+def scaled(rates: Array) -> Array:
     """Rates of the blocks whose largest is 1."""
     largest = float(np.abs(rates).max())
     return rates / largest if largest > 0 else rates

@@ -96,7 +96,7 @@ def bracket_record(answer: Bracket) -> BracketRecord:
 
 def state_words(problem: Problem) -> Callable[[JointState], str]:
     """Return what says a joint's state: only an arch has an intrados and an extrados."""
-    if problem.maker is not None and problem.maker.is_arch:
+    if problem.is_arch:
         return lambda state: state.value
     return lambda state: HINGE if state in HINGED else state.value
 
@@ -151,7 +151,6 @@ def _factor_of_safety(answer: Check, carried: Carried | None) -> float | None:
 def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
     problem = answer.problem
     assembly, words = problem.assembly, state_words(problem)
-    is_arch = problem.maker is not None and problem.maker.is_arch
     found = None if carried is None else carried.resultants
     told: list[JointRecord] = []
     for k, joint in enumerate(assembly.joints):
@@ -164,7 +163,7 @@ def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
                 "b": side_name(assembly, k, 1),
                 "ends": ends,
                 "gap": joint.gap,
-                "angle_deg": math.degrees(seen.angle) if is_arch else None,
+                "angle_deg": math.degrees(seen.angle) if problem.is_arch else None,
                 "state": words(seen.state),
                 "hinge": None if end is None else ends[min(end, len(ends) - 1)],
                 "normal_force": None if found is None else float(found.normal[k]),

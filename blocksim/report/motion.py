@@ -1,7 +1,7 @@
-"""A recording as a drawing that a page can move: outlines, joints, poses in pixels.
+"""Blocks as a drawing that a page can move: outlines, joints, loads, poses in pixels.
 
-The moving run of a check ends when a corner has moved 0.02 r, too little to see. The
-drawing enlarges the motion; the page tells by how much.
+The moving run of a check ends when a corner has moved 0.02 r, too little to see, and a
+mechanism has no size. The drawing enlarges both; the page tells by how much.
 """
 
 from __future__ import annotations
@@ -14,29 +14,34 @@ from dataclasses import dataclass
 import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly
-from blocksim.blocks.joints import JointState, classify
-from blocksim.kinds.circular import arch_of
+from blocksim.blocks.joints import JointState, ObservedJoint, classify
+from blocksim.blocks.problem import Problem
 from blocksim.simulation.recording import Recording
-from blocksim.view.drawing import HINGES, state_of_any
+from blocksim.studies.questions import Drawn
+from blocksim.view.arrows import forces_of
+from blocksim.view.drawing import HINGES, carried, state_of_any
 from blocksim.view.stage import Stage
+from blocksim.view.structure import supports_shown
 
 SHOWN = 0.13
-"""Largest displacement in the drawing [r]."""
+"""Largest displacement in the drawing [size]."""
 KEYS = 12
 """Poses between which the page interpolates."""
 UNIT = 100.0
-"""Pixels of the drawing in a radius."""
+"""Pixels of the drawing in a size."""
 DOT = 0.017
 """Radius of the mark of a hinge, as a share of the drawing."""
 MARGIN = 0.2
-"""Free space around the arch, room for its motion [r]."""
+"""Free space around the blocks, room for their motion [size]."""
 FIRST = 3e-4
-"""Displacement at which the joints are read: the motion still is the mechanism [r]."""
+"""Displacement at which the joints are read: the motion still is the mechanism [size]."""
+LONG, HEAD, GAP = 0.32, 0.1, 0.12
+"""Length of an arrow and of its head, and its distance from the blocks [size]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mark:
-    """A joint that takes part, drawn on one of its blocks or on a footing.
+    """A joint that takes part, drawn on one of its blocks or on a support.
 
     Parameters
     ----------
@@ -81,17 +86,15 @@ class Drawing:
     box : str
         The drawing's viewBox.
     rest : tuple of str
-        Outlines at rest.
+        Outlines at rest, of what moves.
     pieces : tuple of Piece
     footings : tuple of str
     supports : tuple of Mark
         Active joints' faces that stay.
     thrust : tuple of str
-        Line of thrust at rest.
+        Lines of thrust at rest.
     arrows : tuple of Arrow
         Forces besides gravity, and gravity where it does not pull straight down.
-    ground : float or None
-        Level of the ground, where there is one.
     dot : float
         Radius of the mark of a hinge.
     frames : str
@@ -107,93 +110,15 @@ class Drawing:
     supports: tuple[Mark, ...]
     thrust: tuple[str, ...]
     arrows: tuple[Arrow, ...]
-    ground: float | None
     dot: float
     frames: str
     enlarged: float | None
 
 
-@dataclass(frozen=True, kw_only=True)
-class ArchDrawing(Drawing):
-    """The drawing of a recording of an arch.
-
-    Parameters
-    ----------
-    seconds : float
-        Length of the motion, in seconds of the arch.
-    eta : float or None
-        Of an arch.
-    radius : float
-        Of the arch; its radius in metres.
-    joints : tuple of (float, str)
-        Angle [deg] and state of each joint that takes part.
-    """
-
-    seconds: float
-    eta: float | None
-    radius: float
-    joints: tuple[tuple[float, str], ...]
-
-
-def drawing(recording: Recording, gravity: float) -> ArchDrawing:
-    """Turn a recording into a drawing."""
-    stage = Stage(recording)
-    assembly = stage.assembly
-    displaced = recording.displacement
-    moves = bool(displaced[-1] > FIRST)
-    enlarged = SHOWN / float(displaced[-1]) if moves else None
-    late = np.flatnonzero(displaced > FIRST)
-    states = (
-        classify(assembly, recording.poses[late[0]])
-        if moves
-        else classify(assembly, recording.poses[0], least=math.inf)
-    )
-    outlines = [block.vertices / assembly.size for block in assembly.blocks]
-    frames = _frames(recording, enlarged or 0.0)
-    marks = marks_of(assembly, [joint.state for joint in states])
-    arrays = assembly.joint_arrays
-    rest = np.concatenate([arrays.ends[:, 0], arrays.ends[::-1, 1]])
-    corners = np.concatenate([rest, *stage.footings])
-    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
-    low[1] = stage.ground - MARGIN / 4
-    last = frames[-1]
-    arch = arch_of(recording.problem)
-    return ArchDrawing(
-        box=box_of(low, high),
-        rest=(points(rest),),
-        pieces=tuple(
-            Piece(
-                outlines=(points(outline),),
-                centre=place_of(block.centre / assembly.size),
-                marks=marks[index],
-                moved=transform(last[index], place_of(block.centre / assembly.size)),
-            )
-            for index, (block, outline) in enumerate(
-                zip(assembly.blocks, outlines, strict=True)
-            )
-        ),
-        footings=tuple(points(footing) for footing in stage.footings),
-        supports=marks[SUPPORT],
-        thrust=tuple(points(piece[::8]) for piece in stage.thrust),
-        arrows=(),
-        ground=round(-stage.ground * UNIT, 2),
-        dot=dot_of(low, high),
-        frames=json.dumps(frames, separators=(",", ":")),
-        enlarged=enlarged,
-        seconds=float(recording.seconds(gravity)[-1]),
-        eta=arch.eta if arch else None,
-        radius=recording.assembly.size,
-        joints=tuple(
-            (math.degrees(joint.angle), joint.state.value)
-            for joint in states
-            if joint.state is not JointState.CLOSED
-        ),
-    )
-
-
-def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
-    """Poses spread evenly over the way moved, enlarged, y downwards."""
+def recorded_drawing(recording: Recording) -> Drawing:
+    """Draw a recording, its poses spread evenly over the way moved."""
     displaced: Array = np.maximum.accumulate(recording.displacement)
+    enlarged = SHOWN / float(displaced[-1]) if displaced[-1] > FIRST else None
     places = np.arange(len(displaced), dtype=np.float64)
     wanted = np.linspace(0.0, float(displaced[-1]), KEYS + 1)
     # Frames at rest share a displacement; the later of them counts.
@@ -203,13 +128,82 @@ def _frames(recording: Recording, enlarged: float) -> list[list[list[float]]]:
     share = (where - earlier)[:, None, None]
     poses = recording.poses[earlier] * (1 - share) + recording.poses[later] * share
     moved = (poses - recording.poses[0])[..., :PLANAR]
-    drawn: Array = moved * [enlarged * UNIT, -enlarged * UNIT, -math.degrees(enlarged)]
-    # Adding zero turns -0 into 0.
-    return (drawn.round(2) + 0.0).tolist()
+    states = [joint.state for joint in joints_of(recording)]
+    return _drawing(recording.problem, states, moved, enlarged, Stage(recording).thrust)
 
 
-def marks_of(
-    assembly: Assembly, states: Sequence[JointState], *, is_arch: bool = True
+def mechanism_drawing(drawn: Drawn) -> Drawing:
+    """Draw a structure, moved along its mechanism where it has one."""
+    blocks = drawn.problem.assembly.blocks
+    still = np.zeros((1, len(blocks), PLANAR))
+    if drawn.rates is None:
+        return _drawing(drawn.problem, drawn.states, still, None)
+    rates, size = drawn.rates[:, :PLANAR], drawn.problem.assembly.size
+    scale = SHOWN / max(
+        float(np.hypot(*carried(block.vertices / size, block.centre / size, rate).T).max())
+        for block, rate in zip(blocks, rates, strict=True)
+    )
+    moved = np.concatenate([still, rates[None]])
+    return _drawing(drawn.problem, drawn.states, moved, scale)
+
+
+def joints_of(recording: Recording) -> tuple[ObservedJoint, ...]:
+    """Return what each joint does as the motion of a recording starts; closed where none."""
+    displaced = recording.displacement
+    if displaced[-1] <= FIRST:
+        return classify(recording.assembly, recording.poses[0], least=math.inf)
+    first = int(np.flatnonzero(displaced > FIRST)[0])
+    return classify(recording.assembly, recording.poses[first])
+
+
+def _drawing(
+    problem: Problem,
+    states: Sequence[JointState],
+    moved: Array,
+    enlarged: float | None,
+    thrust: Sequence[Array] = (),
+) -> Drawing:
+    """Draw blocks; `moved` is how far from rest they are, (frames, blocks, 3) in sizes."""
+    assembly, size = problem.assembly, problem.assembly.size
+    outlines = [tuple(part / size for part in block.polygons) for block in assembly.blocks]
+    corners = np.concatenate([part for each in outlines for part in each])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    feet = [part / size for parts in supports_shown(problem) for part in parts]
+    lines = _lines(problem, low, high)
+    shown = np.concatenate([corners, *feet, *(line for _, line in lines)])
+    low, high = shown.min(axis=0) - MARGIN, shown.max(axis=0) + MARGIN
+    wide, tall = (high - low) * UNIT
+    # Downwards is positive on a page; adding zero turns -0 into 0.
+    frames = moved * (enlarged or 0.0) * [UNIT, -UNIT, -math.degrees(1.0)]
+    frames = (frames.round(2) + 0.0).tolist()
+    marks = _marks(assembly, states, is_arch=problem.is_arch)
+    centres = [_place(block.centre / size) for block in assembly.blocks]
+    return Drawing(
+        box=f"{low[0] * UNIT:.1f} {-high[1] * UNIT:.1f} {wide:.1f} {tall:.1f}",
+        rest=tuple(_points(part) for each in outlines for part in each) if enlarged else (),
+        pieces=tuple(
+            Piece(
+                outlines=tuple(map(_points, outline)),
+                centre=centre,
+                marks=marks[index],
+                moved=_transform(pose, centre),
+            )
+            for index, (outline, centre, pose) in enumerate(
+                zip(outlines, centres, frames[-1], strict=True)
+            )
+        ),
+        footings=tuple(map(_points, feet)),
+        supports=marks[SUPPORT],
+        thrust=tuple(map(_points, thrust)),
+        arrows=tuple(_arrow(what, line) for what, line in lines),
+        dot=round(DOT * float(max(wide, tall)), 1),
+        frames=json.dumps(frames, separators=(",", ":")),
+        enlarged=enlarged,
+    )
+
+
+def _marks(
+    assembly: Assembly, states: Sequence[JointState], *, is_arch: bool
 ) -> dict[int, tuple[Mark, ...]]:
     """Collect the marks of active joints by block, `SUPPORT` for the footings."""
     found: dict[int, list[Mark]] = {
@@ -220,39 +214,65 @@ def marks_of(
         if state is JointState.CLOSED:
             continue
         end = HINGES.get(state)
-        hinge = None if end is None else place_of(ends[joint, end])
-        line = points(ends[joint])
+        hinge = None if end is None else _place(ends[joint, end])
         look = (state if is_arch else state_of_any(state)).value
         # The dot is drawn with the later of the two blocks, in front of both.
         owner = max(int(before[joint]), int(after[joint]))
         for block in (int(before[joint]), int(after[joint])):
             dot = hinge if block == owner else None
-            found[block].append(Mark(state=look, line=line, hinge=dot))
+            found[block].append(Mark(state=look, line=_points(ends[joint]), hinge=dot))
     return {block: tuple(marks) for block, marks in found.items()}
 
 
-def box_of(low: Array, high: Array) -> str:
-    """Return the viewBox of what is drawn between two corners."""
-    wide, tall = (high - low) * UNIT
-    return f"{low[0] * UNIT:.1f} {-high[1] * UNIT:.1f} {wide:.1f} {tall:.1f}"
+def _lines(problem: Problem, low: Array, high: Array) -> list[tuple[str, Array]]:
+    """Return what acts besides gravity, by the blocks it acts on, from tail to tip [size].
+
+    A force on every block, and gravity that does not pull straight down, are one arrow
+    beside the structure.
+    """
+    size, found = problem.assembly.size, list[tuple[str, Array]]()
+
+    def beside(what: str, force: Array) -> tuple[str, Array]:
+        way = LONG * force / np.hypot(*force)
+        # Left of what pushes to the right, above what pulls down.
+        side = float(low[0]) - GAP if force[0] >= 0 else float(high[0]) + GAP
+        tip = np.array([side, (low[1] + high[1]) / 2 + max(0.0, -float(way[1])) / 2])
+        return what, np.array([tip - way, tip])
+
+    for what, loads in (("dead", problem.dead), ("live", problem.live)):
+        for load in loads:
+            if load.per_weight or len(load.blocks) > 1:
+                found.append(beside(what, load.force))
+                continue
+            for place, force in forces_of(problem, load):
+                tip = place / size
+                found.append((what, np.array([tip - LONG * force / np.hypot(*force), tip])))
+    pull = problem.gravity[:2]
+    if abs(pull[0]) > 1e-9:
+        found.append(beside("gravity", pull))
+    return found
 
 
-def dot_of(low: Array, high: Array) -> float:
-    """Return the radius of the mark of a hinge in a drawing between two corners."""
-    return round(DOT * UNIT * float((high - low).max()), 1)
+def _arrow(what: str, line: Array) -> Arrow:
+    tail, tip = line
+    along = (tip - tail) / np.hypot(*(tip - tail))
+    across = np.array([-along[1], along[0]])
+    back = tip - HEAD * along
+    head = np.array([tip, back + 0.4 * HEAD * across, back - 0.4 * HEAD * across])
+    return Arrow(what=what, shaft=_points(np.array([tail, back])), head=_points(head))
 
 
-def place_of(point: Array) -> tuple[float, float]:
+def _place(point: Array) -> tuple[float, float]:
     """Return where a point is drawn."""
     return round(float(point[0]) * UNIT, 2), round(-float(point[1]) * UNIT, 2)
 
 
-def points(line: Array) -> str:
+def _points(line: Array) -> str:
     """Return points as those of a polyline."""
-    return " ".join("{:g},{:g}".format(*place_of(point)) for point in line)
+    return " ".join("{:g},{:g}".format(*_place(point)) for point in line)
 
 
-def transform(pose: Sequence[float], centre: tuple[float, float]) -> str:
+def _transform(pose: Sequence[float], centre: tuple[float, float]) -> str:
     """Say how a piece is moved: shift x, y, and turn about its centre [deg]."""
     x, y, turn = pose
     return f"translate({x:g} {y:g}) rotate({turn:g} {centre[0]:g} {centre[1]:g})"

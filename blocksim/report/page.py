@@ -16,9 +16,10 @@ from blocksim.engines import engine_named
 from blocksim.report.answerwords import ratio
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_map
-from blocksim.report.motion import ArchDrawing, drawing
+from blocksim.report.motion import Drawing, joints_of, recorded_drawing
 from blocksim.report.structurepart import shown_structures
 from blocksim.report.structurewords import summary_of_structures
+from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import Unasked, Validation, disagreements, numbered
 from blocksim.studies.questions import NEAR, SLOWLY, StructureRow
@@ -44,7 +45,9 @@ class Result:
     found: str
     bracket: str
     error: str
-    drawing: ArchDrawing | None
+    drawing: Drawing | None
+    caption: str
+    words: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,16 +193,40 @@ def _result(row: Validation, anchor: str) -> Result:
         bracket = f"{low:.6g} to {high:.6g}"
     ends = [eta for eta in (low, high) if eta is not None]
     nothing = not ends or (high is None and row.eta_limit is None)
+    # Nothing stands: there is no least thickness to be aside of.
+    thickest = low is not None and high is None
+    caption, words = ("", "") if row.recording is None else _told(row.recording, thickest)
     return Result(
         row=row,
         anchor=anchor,
-        # Nothing stands: there is no least thickness to be aside of.
-        thickest=low is not None and high is None,
+        thickest=thickest,
         found=bracket if row.verdict else "none" if nothing else ratio(fmean(ends)),
         bracket=bracket,
         error="-" if row.error is None else _percent(row.error, "+.3f"),
-        drawing=None if row.recording is None else drawing(row.recording, GRAVITY),
+        drawing=None if row.recording is None else recorded_drawing(row.recording),
+        caption=caption,
+        words=words,
     )
+
+
+def _told(recording: Recording, thickest: bool) -> tuple[str, str]:
+    """Say what is drawn: a caption, and words for those who do not see it."""
+    drawn, seconds = recorded_drawing(recording), float(recording.seconds(GRAVITY)[-1])
+    where = "the thickest arch there is" if thickest else (
+        f"{_percent(ASIDE)} below the bracket's centre"
+    )  # fmt: skip
+    moved = f"nothing moved in {seconds:.2f} s" if drawn.enlarged is None else (
+        f"motion enlarged {drawn.enlarged:.0f} times; it took {seconds:.2f} s"
+    )  # fmt: skip
+    known = "".join(f"{each}, " for each in recording.problem.measures[1:2])
+    active = [
+        f"{math.degrees(joint.angle):+.1f}° {STATES[joint.state]}"
+        for joint in joints_of(recording)
+        if joint.state is not JointState.CLOSED
+    ]
+    words = f"Joints that take part, from the left springing to the right: {', '.join(active)}."
+    caption = f"{known}{where}; {moved} (r = {recording.assembly.size:g} m)"
+    return caption, words if active else "Nothing moves."
 
 
 def _percent(share: float, digits: str = "g") -> str:

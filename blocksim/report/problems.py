@@ -12,7 +12,7 @@ from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
 from blocksim.blocks.shaking import shaking_record
 from blocksim.common.words import counted
-from blocksim.kinds.circular import CircularArch, arch_of, weighed_arch
+from blocksim.kinds.circular import CircularArch, weighed_arch
 
 if TYPE_CHECKING:
     from blocksim.report.schema import ProblemRecord
@@ -57,6 +57,7 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
         "weight_kN": weight_of(problem) / 1000,
         "fill_m": None if fill is None else fill.height,
         "fill_weight_kN": None if fill is None else fill.weight / 1000,
+        "dispersal": None if problem.dispersal is None else problem.dispersal.words,
         "live_weight_kN": 0.0 - _live(problem) / 1000,
     }
     if not problem.weighed:
@@ -120,7 +121,8 @@ def size_lines(problem: Problem) -> list[str]:
     if live and any(load.point is not None for load in problem.live):
         said.append(f"live loads {live / 1000:.6g} kN times {problem.load:g}")
     if said:
-        said.append("straight down to the blocks below: fill spreads no load")
+        none = "straight down to the blocks below: fill spreads no load"
+        said.append(none if problem.dispersal is None else problem.dispersal.words)
         lines.append(f"  road    {', '.join(said)}")
     return lines
 
@@ -153,10 +155,10 @@ def arch_size_lines(arch: Arch, mu: float | None = None, at: At | None = None) -
 
 def unit_lines(problem: Problem) -> list[str]:
     """Return of which size forces are, in words, where an arch is told in radii."""
-    arch = arch_of(problem)
-    if arch is None or is_metric(arch, at_of(problem)):
+    maker = problem.maker
+    if maker is None or problem.has_size:
         return []
-    heavy = arch.specific_weight / 1000
+    heavy = maker.unit_weight / 1000
     return [f"  unit    no size was given: forces are those of r = 1 m and {heavy:.6g} kN/m3"]
 
 
@@ -221,7 +223,5 @@ def described(problem: Problem) -> str:
         )
     if problem.shaking is not None:
         said.append(problem.shaking.words)
-    arch = arch_of(problem)
-    metric = arch is None or is_metric(arch, at_of(problem))
-    said.append(f"L = {assembly.size:g} m" if metric else "L = r")
+    said.append(f"L = {assembly.size:g} m" if problem.has_size else "L = r")
     return ", ".join(said)

@@ -40,6 +40,7 @@ class ProblemRecord(TypedDict):
     weight_kN: float | None
     fill_m: float | None
     fill_weight_kN: float | None
+    dispersal: str | None
     live_weight_kN: float
 
 
@@ -229,3 +230,29 @@ class BracketRecord(TypedDict):
     splits: int | None
     wall_s: float
     arch: ArchBracketRecord | None
+
+
+class PlaceRecord(TypedDict):
+    """Where a vehicle stands, and what is borne there; thrust is at the crown."""
+
+    heading: Literal["right", "left"]
+    position_m: float
+    axles_m: list[float]
+    load_factor: Number
+    thrust_min_kN: Number | None
+    thrust_max_kN: Number | None
+
+
+class CrossingRecord(TypedDict):
+    """Answer of `bracket --vehicle`: the least load factor lies between `low` and `high`."""
+
+    version: str
+    vehicle: str
+    axles: list[list[float]]
+    source: str
+    low: Number
+    high: Number
+    worst: PlaceRecord
+    places: list[PlaceRecord]
+    problem: ProblemRecord
+    wall_s: float

@@ -8,12 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blocksim.arch import limit, theory
+from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
-from blocksim.kinds.circular import arch_of, weighed_arch
-from blocksim.kinds.offers import offers_of
+from blocksim.kinds.circular import weighed_arch
 from blocksim.limit import reactions, resultants
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import joint_names, tilt_and_lean
@@ -101,13 +100,8 @@ def _friction(problem: Problem) -> tuple[str, str]:
 def load_words(problem: Problem) -> list[str]:
     """Say what acts."""
     words = ["Own weight acts at each block's centre of mass."]
-    arch = arch_of(problem)
-    if arch is not None:
-        at = {
-            "centreline": "at the centroid of the voussoir's part of the centreline",
-            "sector": "at the centroid of the voussoir",
-        }
-        words = [f"Own weight acts {at[arch.weight]}."]
+    if getattr(problem.maker, "weight", "") == "centreline":
+        words = ["Own weight acts at the centroid of each voussoir's part of the centreline."]
     if fill_of(problem) is not None:
         words.append("Fill is weight alone: it does not press from the side.")
     elif problem.dead:
@@ -148,23 +142,22 @@ def factor_facts(answer: Check, sheet: Sheet) -> list[Fact]:
     problem, carried = answer.problem, sheet.carried
     facts: list[Fact] = []
     if carried is not None:
-        facts += _margin_facts(problem, carried)
+        facts += _margin_facts(carried, of_thickness=answer.arch is not None)
     if answer.load_factor is not None:
         at = f"asked at {problem.load:g}; " if problem.load else ""
         value = "∞" if math.isinf(answer.load_factor) else f"{answer.load_factor:.6g}"
         facts.append(Fact("load factor", value, f"{at}largest factor on the live loads"))
-    arch = arch_of(problem)
-    if arch is not None and _is_known(problem) and carried is not None:
-        facts += _least_facts(problem)
+    if answer.arch is not None:
+        facts += _least_facts(answer.arch)
     return facts
 
 
-def _margin_facts(problem: Problem, carried: Carried) -> list[Fact]:
-    factor, plain = carried.geometrical_factor, _is_known(problem)
+def _margin_facts(carried: Carried, *, of_thickness: bool) -> list[Fact]:
+    factor = carried.geometrical_factor
     said = "nothing suffices" if factor is None else (
         f"more than {LARGEST:g}" if factor > LARGEST else f"{factor:.5g}"
     )  # fmt: skip
-    what = "thickness over the least that stands, as built" if plain else (
+    what = "thickness over the least that stands, as built" if of_thickness else (
         "joints' width over what a line of thrust needs, about their middles"
     )  # fmt: skip
     if factor == math.inf:
@@ -185,18 +178,14 @@ def _margin_facts(problem: Problem, carried: Carried) -> list[Fact]:
     return facts
 
 
-def _least_facts(problem: Problem) -> list[Fact]:
-    arch = arch_of(problem)
-    assert arch is not None  # noqa: S101
-    built = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight)
-    whole = theory.least_thickness(arch.half_angle, problem.mu, arch.weight)
+def _least_facts(arch: ArchAnswer) -> list[Fact]:
     facts: list[Fact] = []
     for whose, least, mode in (
-        ("as built", built.eta, built.mode),
-        ("continuous arch", whole.eta, whole.mode),
+        ("as built", arch.eta_limit, arch.mode_limit),
+        ("continuous arch", arch.eta_theory, arch.mode_theory),
     ):
         said = "none up to η = 2" if least is None else (
-            f"{length_words(least * arch.radius)} (η = {least:.5g})" if least else "any"
+            f"{length_words(least * arch.shape.radius)} (η = {least:.5g})" if least else "any"
         )  # fmt: skip
         falls = f", in mode {mode.value}" if mode and least else ""
         facts.append(Fact("least thickness", said, f"{whose}{falls}"))
@@ -281,8 +270,3 @@ def _percent(share: float) -> str:
 def force_words(unit: ForceUnit) -> str:
     """Say in what forces are told."""
     return f"forces in {unit.name}" + (f"; {unit.note}" if unit.note else "")
-
-
-def _is_known(problem: Problem) -> bool:
-    """Whether an arch stands upright under its own weight, of which its statics know."""
-    return arch_of(problem) is not None and problem.is_planar and bool(offers_of(problem))

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from blocksim.arch import limit
 from blocksim.arch.modes import Mode
 from blocksim.ask.check import Check, check
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
-from blocksim.kinds.circular import CircularArch, arch_of
+from blocksim.kinds.offers import offers_of
 from blocksim.limit import equilibrium
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
-from blocksim.report.mechanism import mechanism_drawing
-from blocksim.report.motion import Drawing
+from blocksim.report.motion import Drawing, mechanism_drawing
 from blocksim.report.problems import joint_names
 from blocksim.report.sheetfacts import (
     MOST,
@@ -34,7 +32,7 @@ from blocksim.simulation.verdict import Verdict
 from blocksim.studies.questions import Drawn
 from blocksim.view import style
 from blocksim.view.drawing import save_figure, state_of_any, words_of
-from blocksim.view.sheet import Sheet, sheet_of
+from blocksim.view.sheet import Sheet, answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
 
 COLUMN = (182.0, 128.0)
@@ -74,13 +72,9 @@ def structure_page(
         HTML that loads nothing.
     """
     problem = answer.problem
-    sheet = sheet_of(
-        problem,
-        mechanism=answer.mechanism,
-        joint_states=[joint.state for joint in answer.joints],
-    )
+    sheet = answer_sheet(answer)
     file = io.BytesIO()
-    save_figure(sheet_figure(sheet, column=COLUMN), file, "svg")
+    save_figure(sheet_figure(sheet, column=COLUMN, bare=True), file, "svg")
     picture, dark = inline_picture(file.getvalue(), "sheet", "img")
     headings, reactions = reaction_table(sheet)
     rows = joint_rows(sheet)
@@ -144,10 +138,9 @@ def _verdicts(answer: Check, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
 def _active(answer: Check) -> list[Fact]:
     """Joints that take part as it falls."""
     problem = answer.problem
-    is_arch = arch_of(problem) is not None
     names = joint_names(problem.assembly)
     return [
-        Fact(names[index], words_of(joint.state, is_arch=is_arch)[0], str(index))
+        Fact(names[index], words_of(joint.state, is_arch=problem.is_arch)[0], str(index))
         for index, joint in enumerate(answer.joints)
         if joint.state is not JointState.CLOSED
     ]
@@ -166,16 +159,14 @@ def _fall(answer: Check) -> Fall | None:
     if factor is not None and 0 < factor < float("inf") and not problem.shaking:
         over = problem.with_load(factor * (1 + 1e-3))
         return _asked(over, f"how it would start to fall at load factor {factor:.4g}")
-    arch = arch_of(problem)
-    if arch is None or problem.is_loaded or not problem.is_planar or problem.shaking:
+    offers = offers_of(problem) if problem.is_planar else None
+    least = None if offers is None else offers.threshold("thickness")
+    if least is None or not least.exact:
         return None
-    least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
-    if not least:
-        return None
-    thin = CircularArch.of(replace(arch, eta=BELOW * least), problem.mu).problem()
-    metres = least * arch.radius
-    words = f"how it would start to fall at its least thickness as built, {metres:.3f} m"
-    return _asked(replace(thin, gravity=problem.gravity), words)
+    words = "how it would start to fall at its least thickness as built"
+    return _asked(
+        least.problem(BELOW * least.exact), f"{words}, {least.value(least.exact):.3f} m"
+    )
 
 
 def _asked(problem: Problem, words: str) -> Fall | None:
@@ -190,7 +181,7 @@ def _asked(problem: Problem, words: str) -> Fall | None:
 def _shown(drawn: Drawn, caption: str) -> Fall:
     names = joint_names(drawn.problem.assembly)
     active = [
-        f"{names[index]} {words_of(state, is_arch=False)[0]}"
+        f"{names[index]} {words_of(state, is_arch=drawn.problem.is_arch)[0]}"
         for index, state in enumerate(drawn.states)
         if state is not JointState.CLOSED
     ]

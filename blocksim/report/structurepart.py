@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from blocksim.report.mechanism import mechanism_drawing
-from blocksim.report.motion import Drawing
+from blocksim.report.motion import Drawing, mechanism_drawing
 from blocksim.report.structurewords import error_of, found_of, question_of
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.questions import StructureRow

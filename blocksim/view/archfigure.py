@@ -1,6 +1,6 @@
 # matplotlib's own annotations leave keyword arguments open.
 # pyright: reportUnknownMemberType=false
-"""An arch with its lines of thrust and friction and its mechanism (Figs 13-25)."""
+"""An arch at its least thickness: its only lines of thrust and friction, how it moves."""
 
 from __future__ import annotations
 
@@ -19,9 +19,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Polygon
 
-from blocksim.arch.circular import Arch, Weight
+from blocksim.arch.circular import Weight
 from blocksim.arch.limit.collapse import collapse_of_mode
-from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.critical import Critical, inner_sliding
 from blocksim.arch.theory.equations import normal_force
@@ -82,35 +81,6 @@ class ArchPicture:
     angles: Array
     rates: Array
     motions: Array
-
-
-def picture_of_arch(arch: Arch, mu: float) -> ArchPicture:
-    """Picture of an arch of voussoirs as it is, standing or not.
-
-    Where it falls, the lines are those of the equilibrium that asks for the least extra
-    strength, and leave the arch.
-    """
-    found = mechanism(arch, mu)
-    stands = not found.rates.any()
-    state = (
-        "stands" if stands else f"collapses, mode {found.mode}" if found.mode else "collapses"
-    )
-    weight = "" if arch.weight == "centreline" else f", weight {arch.weight}"
-    return ArchPicture(
-        title=f"{state}: {figures_of(arch.half_angle, arch.eta, mu)}",
-        subtitle=f"{arch.voussoirs} voussoirs as built, by limit analysis{weight}",
-        line=" with most strength to spare" if stands else " that lacks least strength",
-        half_angle=arch.half_angle,
-        eta=arch.eta,
-        mu=mu,
-        weight=arch.weight,
-        thrust=found.thrust,
-        crown_moment=found.crown_moment,
-        joints=arch.joint_angles,
-        angles=found.angles,
-        rates=found.rates,
-        motions=found.motions,
-    )
 
 
 def picture_of_theory(

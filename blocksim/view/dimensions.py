@@ -10,7 +10,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.kinds.archkind import CurvedArch
-from blocksim.kinds.circular import CircularArch, arch_of
+from blocksim.kinds.circular import CircularArch
 from blocksim.view.units import length_words
 
 OFF, ARC_OFF = 8.0, 6.0
@@ -114,7 +114,7 @@ def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length |
     scale : float
         Of the drawing: a millimetre on paper is so many millimetres.
     """
-    if is_arch(problem):
+    if problem.is_arch:
         return _of_arch(problem, shown, scale)
     low, high = shown.min(axis=0), shown.max(axis=0)
     away = OFF * scale / 1e3
@@ -138,12 +138,6 @@ def dimensions_of(problem: Problem, shown: Array, scale: float) -> list[Length |
             along=np.array([0.0, 1.0]),
         ),
     ]
-
-
-def is_arch(problem: Problem) -> bool:
-    """Whether it is one arch, whose joints follow each other from left to right."""
-    kind = problem.maker
-    return kind is not None and kind.is_arch
 
 
 def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angle]:
@@ -182,9 +176,6 @@ def _of_arch(problem: Problem, shown: Array, scale: float) -> list[Length | Angl
 
 def _top(problem: Problem, crown: Array) -> Array:
     """Highest point of the intrados, which the chord of a keystone is below [m]."""
-    arch = arch_of(problem)
-    if arch is not None:
-        return np.array([0.0, arch.radius - arch.thickness / 2])
     kind = problem.maker
     if isinstance(kind, CircularArch) and min(kind.left_deg, kind.right_deg) >= 0:
         return np.array([0.0, kind.radius - kind.thickness / 2])
@@ -193,9 +184,6 @@ def _top(problem: Problem, crown: Array) -> Array:
 
 def thickness_of(problem: Problem) -> float | None:
     """Thickness of an arch that is as thick everywhere [m]."""
-    arch = arch_of(problem)
-    if arch is not None:
-        return arch.thickness
     kind = problem.maker
     return kind.thickness if isinstance(kind, CurvedArch) else None
 
@@ -223,12 +211,9 @@ def _thickness(problem: Problem) -> list[Length | Angle]:
 
 def half_angle_of(problem: Problem) -> float | None:
     """Half-angle of embrace of a symmetric circular arch [rad]."""
-    arch = arch_of(problem)
-    if arch is not None:
-        return arch.half_angle
     kind = problem.maker
     if isinstance(kind, CircularArch) and kind.left_deg == kind.right_deg:
-        return math.radians(kind.right_deg)
+        return kind.half_angle or math.radians(kind.right_deg)
     return None
 
 

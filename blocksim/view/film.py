@@ -14,18 +14,19 @@ from numpy.typing import NDArray
 from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.joints import JointState
 from blocksim.common.words import counted, printable
-from blocksim.kinds.circular import arch_of
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
 from blocksim.view.drawing import (
     ARCH_WORDS,
     friction_words,
+    loading_words,
     round_length,
     words_of,
 )
-from blocksim.view.filmwords import against, digits_of, fitting, slowness, verdict_words
+from blocksim.view.filmwords import digits_of, fitting, slowness, verdict_words
 from blocksim.view.planar import PlanarView
+from blocksim.view.sheet import factor_words
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import INK, QUIET, THRUST
@@ -36,7 +37,6 @@ BEFORE, AFTER = 0.8, 1.2
 TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT = 74.0, 44.0
-ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 
 
 class View(Protocol):
@@ -119,9 +119,7 @@ class Film:
         self._flat = view == "2d"
         self._stages = [Stage(_enlarged(recording, enlarge)) for recording in recordings]
         # An arch of which no radius was given is shown in units of it.
-        self.metric = any(
-            stage.assembly.size != 1 or not stage.is_arch for stage in self._stages
-        )
+        self.metric = any(recording.problem.has_size for recording in recordings)
         self.moves = [stage.moves for stage in self._stages]
         self.speed = max(stage.speed for stage in self._stages)
         self.seconds = self._duration()
@@ -269,19 +267,11 @@ class Film:
     def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
         """Say what it is, outcome, loading and engine, above a panel."""
         size, problem = self._size, stage.recording.problem
-        arch, blocks = arch_of(problem), len(stage.assembly.blocks)
-        count = counted(blocks, "block")
-        facts = [verdict, *against(stage.recording)]
-        if arch:
-            head = (
-                f"{ALPHA} = {math.degrees(arch.half_angle):.4g}°   η = {arch.eta:.4g}   "
-                f"{friction_words(problem.mu)}   n = {arch.voussoirs}"
-            )
-        elif problem.title:
-            head = printable(problem.title)
-            facts[1:1] = [count, friction_words(problem.mu)]
-        else:
-            head = f"{count}   {friction_words(problem.mu)}"
+        built = [*problem.measures, counted(len(stage.assembly.blocks), "block")]
+        built.append(friction_words(problem.mu))
+        facts = [verdict, *(loading_words(problem) or factor_words(stage.carried))]
+        head = printable(problem.title) or "   ".join(built)
+        facts[1:1] = built if problem.title else []
         facts[1:1] = ["still moving as it ends"] if stage.speed and not self._is_mode else []
         run = stage.recording
         below = printable(f"{', '.join(facts)}   {run.engine} {run.engine_version}")

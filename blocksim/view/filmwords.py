@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import math
 
-from blocksim.arch import limit
-from blocksim.kinds.circular import arch_of
 from blocksim.simulation.motion import MOVED, UNMOVED
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.shaken import outcome
 from blocksim.simulation.verdict import Verdict
 from blocksim.view.canvas import width_of
-from blocksim.view.drawing import loading_words
 
 LENGTH = 6.0
 """How long the motion takes in a film whose slowness is not given, about [s]."""
@@ -30,9 +27,9 @@ def verdict_words(recording: Recording, verdict: Verdict | None = None) -> str:
         return Verdict.COLLAPSES.value
     if moved <= UNMOVED:
         return "at rest"
-    if arch_of(recording.problem) is None:
-        return f"has moved {moved * recording.assembly.size:.1g} m"
-    return f"has moved {moved:.1g} r"
+    if not recording.problem.has_size:
+        return f"has moved {moved:.1g} r"
+    return f"has moved {moved * recording.assembly.size:.1g} m"
 
 
 def fitting(words: str, size: float, wide: float, *, bold: bool = False) -> str:
@@ -42,28 +39,6 @@ def fitting(words: str, size: float, wide: float, *, bold: bool = False) -> str:
         # Measuring is slow: cut in proportion.
         kept = kept[: min(len(kept) - 2, int(len(kept) * wide / have))].rstrip() + "…"
     return kept
-
-
-def against(recording: Recording) -> list[str]:
-    """Say what it is up against: gravity that tilts or leans, loads; an arch its own weight."""
-    problem = recording.problem
-    words = loading_words(problem)
-    arch = arch_of(problem)
-    if words or arch is None:
-        return words
-    least = limit.least_thickness(arch.half_angle, problem.mu, arch.voussoirs, arch.weight).eta
-    if least is None:
-        return ["no thickness stands"]
-    return [_share(arch.eta / least) if least else "any thickness stands"]
-
-
-def _share(ratio: float) -> str:
-    """Say how thick the arch is compared with the thinnest of these voussoirs that stands."""
-    if ratio >= 2:
-        return f"{ratio:.3g} times the least thickness as built"
-    off = abs(ratio - 1) * 100
-    shown = f"{off:.2g}" if off < 10 else f"{off:.0f}"
-    return f"{shown} % {'above' if ratio >= 1 else 'below'} the least thickness as built"
 
 
 def slowness(seconds: float) -> float:

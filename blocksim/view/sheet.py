@@ -9,23 +9,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from blocksim.ask.carried import carried_of
+from blocksim.ask.check import Check
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
-from blocksim.common.words import printable
-from blocksim.kinds.circular import arch_of
+from blocksim.common.words import counted, printable
 from blocksim.limit import Reaction, reactions
 from blocksim.limit.carried import Carried
 from blocksim.view.drawing import friction_words, loading_words
 from blocksim.view.structure import supports_shown
-from blocksim.view.thrustlines import is_chained, thrust_lines, thrust_of
+from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines, thrust_of
 from blocksim.view.units import ForceUnit, force_unit, unit_weight
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 7.5)
 """Scales that are drawn to, times powers of ten."""
-AWAY = 0.35
-"""Distance from the blocks beyond which a line of thrust is not drawn [largest side]."""
 LARGEST = 1e3
 """Geometrical factor of safety from which on joints need no width to speak of."""
 MANY = 6
@@ -107,9 +104,11 @@ def sheet_of(
     verdict: str = "",
     mechanism: Array | None = None,
     joint_states: Sequence[JointState] | None = None,
+    forces: Array | None = None,
     carried: Carried | None = None,
+    facts: Sequence[str] | None = None,
 ) -> Sheet:
-    """Collect what is drawn of a problem.
+    """Collect what is drawn of a problem, and of an answer to a question about it.
 
     Parameters
     ----------
@@ -119,19 +118,25 @@ def sheet_of(
     mechanism : (blocks, 3) float, optional
         Rates x, y (in units of the size) and rotation; drawn enlarged.
     joint_states : sequence of JointState, optional
+    forces : (joints, 2, 2) float, optional
+        Contact forces to draw where nothing is known of what it carries.
     carried : Carried, optional
-        What `carried_of` found, where it was asked already.
+        What it carries, as of `carried_of`: lines of thrust, reactions.
+    facts : sequence of str, optional
+        What is said below the title, instead of what it is built of.
     """
-    carried = carried or carried_of(problem)
     unit = force_unit(problem)
-    found = {} if carried is None else _statics(problem, carried, unit)
-    facts = [verdict, *(_factor_words(carried) if carried else [])]
+    found: dict[str, Any] = {"forces": forces}
+    if carried is not None:
+        found |= _statics(problem, carried, unit)
+    said = [verdict, *factor_words(carried)]
+    about = [built_words(problem), [unit.note]] if facts is None else [list(facts)]
     return Sheet(
         problem=problem,
         title=title_of(problem),
         facts=tuple(
             printable(", ".join(word for word in words if word))
-            for words in (facts, built_words(problem), [unit.note])
+            for words in (said, *about)
             if any(words)
         ),
         unit=unit,
@@ -140,6 +145,20 @@ def sheet_of(
         supports=tuple(tuple(parts) for parts in supports_shown(problem)),
         carried=carried,
         **found,
+    )
+
+
+def answer_sheet(answer: Check) -> Sheet:
+    """Collect what is drawn of an answer."""
+    mode = answer.arch and answer.arch.mode
+    named = f", mode {mode}" if mode else ""
+    return sheet_of(
+        answer.problem,
+        verdict=f"{answer.verdict.value}{named}, by {answer.method}",
+        mechanism=answer.mechanism,
+        joint_states=[joint.state for joint in answer.joints],
+        forces=answer.forces if answer.problem.is_planar else None,
+        carried=answer.carried,
     )
 
 
@@ -171,7 +190,8 @@ def _statics(problem: Problem, carried: Carried, unit: ForceUnit) -> dict[str, A
             "reactions": borne if len(borne) < MANY else (),
         }
     line = _line(problem, "safest", "that lacks least strength", forces, None, unit)
-    return {"lines": (line,) if line.paths and _near(problem, line) else ()}
+    shown = bool(line.paths) and near_blocks(problem, line.paths)
+    return {"forces": None, "lines": (line,) if shown else ()}
 
 
 def _line(
@@ -201,35 +221,24 @@ def _range_words(problem: Problem, carried: Carried, unit: ForceUnit) -> str:
     return f"thrust {low} to {unit.words(greatest)}"
 
 
-def _near(problem: Problem, line: ThrustLine) -> bool:
-    """Whether a line that leaves the blocks stays near them."""
-    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    slack = AWAY * float((high - low).max())
-    points = np.concatenate(line.paths)
-    return bool(((points > low - slack) & (points < high + slack)).all())
-
-
 def title_of(problem: Problem) -> str:
     """Return the title of a problem, or say what it is."""
     if problem.title and problem.title != (problem.maker and problem.maker.name):
         return printable(problem.title)
     if problem.title:
         return problem.title.replace("-", " ").capitalize()
-    if arch_of(problem) is not None:
-        return "Circular arch"
+    if problem.maker is not None:
+        return problem.maker.name.replace("-", " ").capitalize()
     return "Structure of blocks"
 
 
 def built_words(problem: Problem) -> list[str]:
     """Say of what it is built, and what acts on it."""
-    arch, count = arch_of(problem), len(problem.assembly.blocks)
-    noun = "voussoir" if arch else "block"
-    words = [f"{count} {noun}{'s' * (count != 1)}", friction_words(problem.mu)]
+    noun = "voussoir" if problem.is_arch else "block"
+    words = [*problem.measures, counted(len(problem.assembly.blocks), noun)]
+    words.append(friction_words(problem.mu))
     if 0 < problem.mu < math.inf:
         words[-1] += f" ({math.degrees(math.atan(problem.mu)):.4g}°)"
-    if arch is not None and arch.weight != "centreline":
-        words.append(f"weight {arch.weight}")
     heavy = unit_weight(problem)
     if heavy is not None:
         words.append(f"unit weight {heavy / 1e3:.4g} kN/m\N{SUPERSCRIPT THREE}")
@@ -239,15 +248,13 @@ def built_words(problem: Problem) -> list[str]:
     return words + loading_words(problem)
 
 
-def _factor_words(carried: Carried) -> list[str]:
-    """Say the geometrical factor of safety."""
-    factor = carried.geometrical_factor
+def factor_words(carried: Carried | None) -> list[str]:
+    """Say the geometrical factor of safety, where it is known."""
+    factor = None if carried is None else carried.geometrical_factor
     # Of a wall or a flat arch it says nothing.
-    return (
-        []
-        if factor is None or factor > LARGEST
-        else [f"geometrical factor of safety {factor:.4g}"]
-    )
+    if factor is None or factor > LARGEST:
+        return []
+    return [f"geometrical factor of safety {factor:.4g}"]
 
 
 def scale_for(span: Array, room: Array) -> float:

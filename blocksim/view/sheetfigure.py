@@ -36,6 +36,8 @@ from blocksim.view.style import FONT, FRICTION, INK, MODES, QUIET, THRUST
 
 INCH = 25.4
 """In millimetres."""
+SCREEN = (190.0, 150.0)
+"""Width and most height of a drawing in a notebook [mm]."""
 REACTION = 14.0
 """Length of the arrow of the largest reaction [mm]."""
 LONG = 26.0
@@ -50,7 +52,9 @@ LINES = {
 """Colour and dashes of each line of thrust."""
 
 
-def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> Figure:
+def sheet_figure(
+    sheet: Sheet, *, column: tuple[float, float] | None = None, bare: bool = False
+) -> Figure:
     """Draw a sheet; its pdf and svg are to scale where they are printed at 100 %.
 
     Every artist has a `gid` that says what it is: `block-3`, `support-0`, `joint-5`,
@@ -60,8 +64,10 @@ def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> 
     ----------
     sheet : Sheet
     column : (width, height), optional
-        Of a column of a page that it is put into [mm], the height at most: without the
-        title, as the page says it. By default it is a page of A4, across or upright.
+        Of a column that it is put into [mm], the height at most. By default it is a page of
+        A4, across or upright.
+    bare : bool
+        Without title, facts and version: a page says them.
 
     Returns
     -------
@@ -95,7 +101,7 @@ def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> 
         points = np.concatenate(shown)
         low, high = points.min(axis=0), points.max(axis=0)
         entries = _entries(axes)
-        layout = layout_of(sheet, low, high, len(entries), column)
+        layout = layout_of(sheet, low, high, len(entries), column, bare=bare)
         figure.set_size_inches(layout.paper.width / INCH, layout.paper.height / INCH)
         axes.set_xlim(float(layout.low[0]), float(layout.high[0]))
         axes.set_ylim(float(layout.low[1]), float(layout.high[1]))
@@ -106,7 +112,7 @@ def sheet_figure(sheet: Sheet, *, column: tuple[float, float] | None = None) -> 
                 _draw_angle(axes, each, layout)
         _draw_thrust(axes, sheet, layout, float(high[1]))
         _draw_reactions(axes, sheet, layout, float(low[1]))
-        _draw_words(figure, axes, sheet, layout, bare=column is not None)
+        _draw_words(figure, axes, sheet, layout, bare=bare)
         if entries:
             at = layout.edge / layout.paper.width, layout.edge / layout.paper.height
             figure.legend(entries.values(), entries.keys(), loc="lower left", frameon=False,
@@ -252,14 +258,14 @@ def _draw_words(
         figure.text(x / paper.width, y / paper.height, literal(words), **style)  # type: ignore[arg-type]
 
     if not bare:
-        level = paper.height - MARGIN
+        level = paper.height - layout.edge
         title = textwrap.shorten(sheet.title, int((paper.width - 2 * MARGIN) / 2.4))
-        write(MARGIN, level - 4, title, fontsize=12, weight="bold", color=INK)
+        write(layout.edge, level - 4, title, fontsize=12, weight="bold", color=INK)
         level -= TITLE
         for fact in sheet.facts:
             for line in wrapped(fact, paper):
                 level -= LINE
-                write(MARGIN, level + 2, line, color=QUIET, fontsize=SMALL)
+                write(layout.edge, level + 2, line, color=QUIET, fontsize=SMALL)
     length = round_length(45 * mm)
     right = float(layout.high[0]) - layout.edge * mm
     level = float(layout.low[1]) + layout.bar * mm

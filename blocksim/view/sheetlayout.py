@@ -89,6 +89,8 @@ def layout_of(
     high: Array,
     entries: int,
     column: tuple[float, float] | None,
+    *,
+    bare: bool,
 ) -> Layout:
     """Choose paper and scale so that all has room, and lay the drawing in the middle of it."""
     above, below = ABOVE, BELOW if sheet.reactions else BARE + SIDE / 2
@@ -101,7 +103,7 @@ def layout_of(
         bar = edge + (LINE if paper.width > WIDE else rows + LINE)
         foot = max(edge + rows, bar + LINE) + 2
         lines = sum(len(wrapped(fact, paper)) for fact in sheet.facts)
-        head = edge + TITLE + LINE * lines + 2 if column is None else 0.0
+        head = edge + TITLE + LINE * lines + 2 if not bare else 0.0
         room = np.array([paper.width - 2 * (edge + SIDE), tall - head - foot - above - below])
         scale = scale_for(high - low, room)
         drawn = 1e3 * (high - low) / scale

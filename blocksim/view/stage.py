@@ -13,15 +13,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blocksim.ask.carried import carried_of
+from blocksim.ask.check import SOUGHT
 from blocksim.blocks.assembly import SUPPORT, Array, Joint, displacement
 from blocksim.blocks.joints import JointState, classify
 from blocksim.engines.ground import ground_level, piers
-from blocksim.kinds.circular import arch_of
+from blocksim.limit.carried import Carried
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
-from blocksim.view.archfigure import lines_of, picture_of_arch
 from blocksim.view.drawing import Part, clipped, outer_parts
-from blocksim.view.placing import Placing, depth_of
+from blocksim.view.placing import Placing, depth_of, distance_of
+from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
 
 FEWEST = 4
 """Sides of a footing, and of a block at least."""
@@ -37,6 +39,8 @@ BESIDE, ABOVE = 0.25, 0.1
 """How far beyond the blocks supports are shown, sidewards and upwards [r]."""
 SAMPLES = 500
 """Most frames that are looked at for what a film needs to know beforehand."""
+DIGITS = 9
+"""Of a line of thrust [size]."""
 STILL, GONE = 2e-3, 3e-2
 """Displacements between which the line of thrust fades: it is of the arch at rest [r]."""
 
@@ -86,7 +90,7 @@ class Stage:
     grain : float
         Distance from block to block.
     is_arch : bool
-        Whether it is an arch about x = 0.
+        Whether its joints have an intrados and an extrados.
     middle : float
         Of the blocks at rest, along x.
     """
@@ -96,10 +100,10 @@ class Stage:
         self.assembly = recording.assembly
         size = self.assembly.size
         self.depth = float(self.assembly.depths.max())
-        self.is_arch = arch_of(recording.problem) is not None
+        self.is_arch = recording.problem.is_arch
         rest = np.concatenate([block.vertices for block in self.assembly.blocks]) / size
         self._low, self._high = rest.min(axis=0), rest.max(axis=0)
-        self.middle = 0.0 if self.is_arch else float(self._low[0] + self._high[0]) / 2
+        self.middle = float(self._low[0] + self._high[0]) / 2
         self.ground = ground_level(self.assembly) / size
         self.footings, self._bearing = self._standing()
         corners = max(FEWEST, *(len(each) for each in self.footings))
@@ -192,13 +196,23 @@ class Stage:
         return bool(self._displaced.max() > SEEN)
 
     @cached_property
+    def carried(self) -> Carried | None:
+        """What it carries at rest; None where that is not known, or takes long to find."""
+        problem = self.recording.problem
+        small = problem.is_arch or len(self.assembly.joints) <= SOUGHT
+        return carried_of(problem) if small else None
+
+    @cached_property
     def thrust(self) -> tuple[Array, ...]:
-        """Line of thrust of the arch at rest, by limit analysis, (k, 2); none if not whole."""
-        arch = arch_of(self.recording.problem)
-        if arch is None or not self.recording.problem.is_planar:
+        """Lines of thrust at rest, by limit analysis, (k, 2); none that leave the picture."""
+        problem, carried = self.recording.problem, self.carried
+        if carried is None or carried.forces is None or not is_chained(problem):
             return ()
-        line, _ = lines_of(picture_of_arch(arch, self.recording.mu))
-        return () if line is None else (line[np.isfinite(line).all(axis=1)],)
+        paths = thrust_lines(problem, carried.forces)
+        if not paths or not near_blocks(problem, paths):
+            return ()
+        # Last digits, which differ by who found the forces, move no pixel.
+        return tuple((path / self.assembly.size).round(DIGITS) for path in paths)
 
     @cached_property
     def states(self) -> tuple[JointState, ...]:
@@ -337,7 +351,10 @@ class Stage:
         for frame in self._shown if self.moves else ():
             time = float(self.recording.times[frame])
             seen = classify(self.assembly, self.recording.poses[frame], least=SEEN)
+            faces = self._placing.faces(frame, frame, 0.0)[..., :2]
+            # Turned far, blocks may have left each other though neither end seems open.
             apart = np.array([joint.state is JointState.OPEN for joint in seen])
+            apart |= distance_of(faces[:, 0], faces[:, 1]) > SEEN
             parted = np.minimum(parted, np.where(apart, time, np.inf))
             held = np.zeros(blocks + 1, dtype=bool)
             for side in (before, after):

@@ -1,20 +1,15 @@
 # matplotlib's own annotations leave keyword arguments open.
 # pyright: reportUnknownMemberType=false
-"""A still of any structure: blocks, supports, loads, contact forces, mechanism, joints."""
+"""What stills are drawn of: supports, blocks, gaps that were closed, mechanism, joints."""
 
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Sequence
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
@@ -22,113 +17,31 @@ from blocksim.blocks.assembly import SUPPORT, Array, Joint
 from blocksim.blocks.closing import closed_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
-from blocksim.common.words import counted
-from blocksim.kinds.circular import arch_of
-from blocksim.view.arrows import draw_forces, draw_gravity, draw_loads
 from blocksim.view.drawing import (
     HINGES,
     carried,
     clipped,
-    friction_words,
-    literal,
-    loading_words,
     outer_sides,
-    round_length,
     words_of,
 )
 from blocksim.view.style import (
-    FONT,
     GAP,
     GROUND,
     INK,
     MECHANISM,
     PAPER,
-    QUIET,
     STONE,
 )
 
 MOVED, AROUND = 0.08, 0.06
 """Shares of the larger side of what is drawn: the largest displacement, and how much of a
 support is shown beyond the blocks."""
-MARGIN = 0.03
 FAINT = 1e-6
 """Share of the largest rate below which there is none."""
-WIDE, TALL = 7.6, (1.6, 8.0)
-"""Size of the axes [inches]: their width, and range of their height."""
-SIDE_OF_TEXT = 2.2
-"""Widest that a narrow structure is drawn over its height."""
 HATCH = "////"
 SEEN, SIZED = 1e-3, 20
 """Share of a joint's length from which on the gap it closes is marked, for rounding is not; and
 how many have their size beside them, the largest ones."""
-LINE = 72
-"""Letters in a line of a title."""
-
-
-def problem_figure(
-    problem: Problem,
-    *,
-    verdict: str = "",
-    forces: Array | None = None,
-    mechanism: Array | None = None,
-    states: Sequence[JointState] | None = None,
-    facts: Sequence[str] | None = None,
-) -> Figure:
-    """Draw a structure as it was built, and what is known of it.
-
-    Every artist has a `gid` that says what it is: `block-3`, `support-0`, `joint-5`,
-    `gap-5`, `gap-size-5`, `hinge-5`, `force-5`, `dead-0`, `live-0`, `moved-3`, `gravity`,
-    `scale`.
-
-    Parameters
-    ----------
-    problem : Problem
-    verdict : str
-        What is said of it below the title.
-    forces : (joints, 2, 2) float, optional
-        Contact forces, as `Equilibrium.forces` has them.
-    mechanism : (blocks, 3) float, optional
-        Rates x, y (in units of the size) and rotation, as `Equilibrium.mechanism` and
-        `Collapse.mechanism` have them; drawn enlarged to a readable size.
-    states : sequence of JointState, optional
-        Of each joint.
-    facts : sequence of str, optional
-        What is said below the title instead of friction and loading.
-
-    Returns
-    -------
-    Figure
-    """
-    assembly = problem.assembly
-    corners = np.concatenate([block.vertices for block in assembly.blocks])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    extent = float((high - low).max())
-    with mpl.rc_context({**FONT, "hatch.linewidth": 0.7}):
-        figure = Figure(layout=ConstrainedLayoutEngine(h_pad=0.2, w_pad=0.12))
-        FigureCanvasAgg(figure)
-        axes = figure.add_subplot()
-        axes.set_aspect("equal")
-        axes.axis("off")
-        # What is drawn so far has to find place in the picture.
-        shown = [corners, *draw_supports(axes, problem)]
-        width = edge_width(problem, extent)
-        draw_blocks(axes, problem, width)
-        if mechanism is not None:
-            shown += draw_mechanism(axes, problem, mechanism, extent)
-        if states is not None:
-            draw_states(axes, problem, states)
-        if forces is not None:
-            shown += draw_forces(axes, problem, forces, extent)
-        shown += draw_loads(axes, problem, extent)
-        shown += draw_gravity(axes, problem, np.concatenate(shown))
-        _frame(figure, axes, np.concatenate(shown))
-        _title(axes, problem, verdict, facts)
-        handles, names = axes.get_legend_handles_labels()
-        entries = dict(zip(names, handles, strict=True))
-        figure.legend(
-            entries.values(), entries.keys(), loc="outside lower center", ncols=3, frameon=False
-        )
-    return figure
 
 
 def edge_width(problem: Problem, extent: float) -> float:
@@ -277,11 +190,10 @@ def draw_mechanism(
 
 def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> None:
     """Colour joints that take part; dots mark the ends that stay closed, bars what slides."""
-    is_arch = arch_of(problem) is not None
     for index, (joint, state) in enumerate(zip(problem.assembly.joints, states, strict=True)):
         if state is JointState.CLOSED:
             continue
-        words, tone = words_of(state, is_arch=is_arch)
+        words, tone = words_of(state, is_arch=problem.is_arch)
         ends = np.array([joint.inner, joint.outer])
         # A corner on a face has no length to colour.
         axes.plot(*ends.T, color=tone, lw=3.2, zorder=6, solid_capstyle="butt", label=words,
@@ -290,41 +202,3 @@ def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> N
         if state in HINGES and not joint.is_corner:
             axes.plot(*ends[HINGES[state]], "o", ms=6, mfc="white", mec=tone, mew=1.6,
                       zorder=7, gid=f"hinge-{index}")  # fmt: skip
-
-
-def _frame(figure: Figure, axes: Axes, shown: Array) -> None:
-    """Frame what is drawn, with a scale bar below it."""
-    low, high = shown.min(axis=0), shown.max(axis=0)
-    span = high - low
-    margin = MARGIN * float(span.max())
-    left, right = float(low[0]) - margin, float(high[0]) + margin
-    bottom, top = float(low[1]) - margin, float(high[1]) + margin
-    # A tower is as wide as its title.
-    spare = (top - bottom) / SIDE_OF_TEXT - (right - left)
-    left, right = left - max(0.0, spare / 2), right + max(0.0, spare / 2)
-    tall = float(np.clip(WIDE * (top - bottom) / (right - left), *TALL))
-    figure.set_size_inches(WIDE, tall + 1.3)
-    inch = max((top - bottom) / tall, (right - left) / WIDE)
-    length = round_length(0.25 * float(span.max()))
-    level = bottom - 0.12 * inch
-    bar = np.array([[low[0], level], [low[0] + length, level]])
-    axes.plot(*bar.T, color=INK, lw=1.5, marker="|", ms=7, gid="scale", clip_on=False)
-    axes.annotate(f"{length:g} m", bar.mean(axis=0), xytext=(0, -12), ha="center",
-                  textcoords="offset points", annotation_clip=False)  # fmt: skip
-    axes.set_xlim(left, right)
-    axes.set_ylim(level - 0.25 * inch, top)
-
-
-def _title(axes: Axes, problem: Problem, verdict: str, told: Sequence[str] | None) -> None:
-    blocks = len(problem.assembly.blocks)
-    count = counted(blocks, "block")
-    title = textwrap.fill(literal(problem.title) or count, LINE)
-    axes.set_title(title, fontsize=10.5, pad=20)
-    facts = [
-        verdict,
-        count if problem.title else "",
-        *([friction_words(problem.mu), *loading_words(problem)] if told is None else told),
-    ]
-    below = ", ".join(word for word in facts if word)
-    axes.annotate(below, (0, 1), xytext=(0, 8), xycoords="axes fraction",
-                  textcoords="offset points", color=QUIET, va="baseline")  # fmt: skip

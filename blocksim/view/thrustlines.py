@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
-from blocksim.limit import resultants
+from blocksim.limit import Resultants, resultants
 
 FAINT = 1e-6
 """Share of the largest force below which a joint carries nothing."""
@@ -16,6 +18,11 @@ MEETING = 2
 """Bodies that a block of a chain touches."""
 CHAINED = 0.75
 """Share of such blocks from which on a structure has lines of thrust that can be read."""
+
+PARALLEL = 1e-9
+"""Sine of the angle between forces below which a block bears nothing between them."""
+AWAY = 0.35
+"""Distance from the blocks beyond which a line of thrust is not drawn [largest side]."""
 
 
 def thrust_of(problem: Problem, forces: Array, joint: int) -> float:
@@ -38,10 +45,13 @@ def is_chained(problem: Problem) -> bool:
 
 
 def thrust_lines(problem: Problem, forces: Array) -> list[Array]:
-    """Follow the force from joint to joint, through the points at which it crosses them.
+    """Follow the force from joint to joint, along its lines of action.
 
-    A block on which several blocks lie hands what each of them brings on to all that
-    bear it.
+    Within a block of two joints it goes along the force of the one to where it meets that of
+    the other, on the line of action of the block's weight and loads: it leaves each joint in
+    the direction of its force. Where they do not meet between the joints it goes straight.
+    A block on which several blocks lie hands what each of them brings on to all that bear it,
+    straight from joint to joint.
 
     Parameters
     ----------
@@ -80,7 +90,30 @@ def thrust_lines(problem: Problem, forces: Array) -> list[Array]:
                 through.setdefault(other, set()).add(block)
     # A line goes on where it comes from one block and leads into another.
     passed = {joint for joint in links if len(links[joint]) == len(through[joint]) == MEETING}
-    return [carried.point[path] for path in _paths(links, passed)]
+    chained = {
+        frozenset(joint for joint, _ in touching) for touching in at if len(touching) == MEETING
+    }
+    return [_along(carried, path, chained) for path in _paths(links, passed)]
+
+
+def _along(carried: Resultants, path: Sequence[int], chained: set[frozenset[int]]) -> Array:
+    """Return the corners of a line through joints: their points, and where forces meet."""
+    corners: list[Array] = []
+    for one, other in pairwise(path):
+        start, stop = carried.point[one], carried.point[other]
+        corners.append(start)
+        ahead, back = carried.force[one], carried.force[other]
+        turn = float(ahead[0] * back[1] - ahead[1] * back[0])
+        if frozenset((one, other)) not in chained or abs(turn) <= PARALLEL * float(
+            np.hypot(*ahead) * np.hypot(*back)
+        ):
+            continue
+        way = stop - start
+        along = float(way[0] * back[1] - way[1] * back[0]) / turn
+        meet = start + along * ahead
+        if 0 < float((meet - start) @ way) < float(way @ way):
+            corners.append(meet)
+    return np.array([*corners, carried.point[path[-1]]])
 
 
 def _paths(links: dict[int, list[int]], passed: set[int]) -> list[list[int]]:
@@ -102,3 +135,12 @@ def _paths(links: dict[int, list[int]], passed: set[int]) -> list[list[int]]:
             if len(path) > 1:
                 paths.append(path)
     return paths
+
+
+def near_blocks(problem: Problem, paths: Sequence[Array]) -> bool:
+    """Whether lines that leave the blocks stay near them."""
+    corners = np.concatenate([block.vertices for block in problem.assembly.blocks])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    slack = AWAY * float((high - low).max())
+    points = np.concatenate(paths)
+    return bool(((points > low - slack) & (points < high + slack)).all())

@@ -8,11 +8,8 @@ import numpy as np
 
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.kinds.circular import arch_of
 
 KILO = 1e3
-NOT_GIVEN = (0.8, 1.25)
-"""Unit weights that are the 1 N/m3 of files without any: true ones are thousands [N/m^3]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,21 +56,17 @@ def unit_weight(problem: Problem) -> float | None:
 
     The median, where blocks differ; None where none was given.
     """
-    arch, kind = arch_of(problem), problem.maker
-    if arch is not None:
-        return arch.specific_weight
-    low, high = NOT_GIVEN
-    if kind is not None:
-        density = kind.unit_weight
-        return None if low <= density <= high else density
+    if not problem.weighed:
+        return None
+    if problem.maker is not None:
+        return problem.maker.unit_weight
     weights = [
         block.mass
         * STANDARD_GRAVITY
         / (sum(abs(signed_area(part)) for part in block.polygons) * block.depth)
         for block in problem.assembly.blocks
     ]
-    middle = float(np.median(weights))
-    return None if low <= middle <= high else middle
+    return float(np.median(weights))
 
 
 def number(value: float) -> str:

@@ -6,6 +6,7 @@
 const built = (() => {
   const ETA_MAX = 2;
   const HOPELESS = 1e6; // times its strength, and an arch still falls
+  const NOTHING = 1e-15; // a least thickness that is round-off: any thickness stands
   const MODES = ["rrr", "ss", "srr", "rrs", "rsr", "rs", "r"];
   const FEW = 200; // halvings that reach the last bit of any thickness that matters
 
@@ -125,7 +126,7 @@ const built = (() => {
   function leastThickness(halfAngle, mu, voussoirs, weight = "centreline") {
     const joints = half(halfAngle, voussoirs);
     const does = (eta) => stands(joints, eta, mu, theory.levelOf(eta, weight));
-    const eta = !does(ETA_MAX) ? null : does(0) ? 0 : smallest(does, 0, ETA_MAX);
+    const eta = !does(ETA_MAX) ? null : does(NOTHING) ? 0 : smallest(does, 0, ETA_MAX);
     const last = eta ?? ETA_MAX;
     const ends = bounds(joints, last, mu, theory.levelOf(last, weight));
     const found = named(eta === 0 ? [] : activeJoints(ends), halfAngle, voussoirs);

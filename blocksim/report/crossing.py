@@ -1,0 +1,117 @@
+"""A vehicle that crosses a structure, as text, JSON and a table."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, BinaryIO
+
+from blocksim.common.sheets import write_sheet
+from blocksim.common.version import __version__
+from blocksim.limit.margins import crown
+from blocksim.report.problems import described, joint_names, problem_record, size_lines
+
+if TYPE_CHECKING:
+    from blocksim.ask.crossing import Crossing, Place
+    from blocksim.report.schema import CrossingRecord, PlaceRecord
+
+
+def crossing_lines(answer: Crossing) -> list[str]:
+    """Return what a vehicle comes to, in words."""
+    problem, worst, vehicle = answer.problem, answer.worst, answer.vehicle
+    axles = ", ".join(f"{x:.6g}" for x in worst.axles)
+    turned = ", heading left" if worst.heading == "left" else ""
+    said = f"least {answer.load_factor:.9g}, with axles at {axles} m{turned}"
+    if math.isinf(answer.load_factor):
+        said = "inf: nothing that the vehicle weighs is too much"
+    lines = [
+        f"LOAD FACTOR: {said}  (limit, {answer.wall_s:.2g} s)",
+        f"  what    {described(problem)}",
+        *size_lines(problem),
+        f"  vehicle {vehicle.words}",
+        f"  bound   at least {answer.low:.9g} everywhere, also between the "
+        f"{len(answer.places)} places that were asked",
+    ]
+    if vehicle.source:
+        lines.append(f"  source  {vehicle.source}")
+    found = [
+        (ends, place)
+        for ends, place in zip(answer.thrusts, answer.places, strict=True)
+        if ends is not None
+    ]
+    joint = crown(problem)
+    if found and joint is not None:
+        least, most = min(found, key=_low), max(found, key=lambda each: each[0][1])
+        where = joint_names(problem.assembly)[joint]
+        lines.append(
+            f"  thrust  at {where}, of all places asked: least {least[0][0] / 1e3:.6g} kN "
+            f"({_at(least[1])}), greatest {most[0][1] / 1e3:.6g} kN ({_at(most[1])})"
+        )
+    return lines
+
+
+def _low(found: tuple[tuple[float, float], Place]) -> float:
+    return found[0][0]
+
+
+def _at(place: Place) -> str:
+    return "axles at " + ", ".join(f"{x:.4g}" for x in place.axles) + " m"
+
+
+def crossing_record(answer: Crossing) -> CrossingRecord:
+    """Return what a vehicle comes to as a dict for JSON."""
+    records = _records(answer)
+    worst = next(
+        record
+        for record, place in zip(records, answer.places, strict=True)
+        if place is answer.worst
+    )
+    return {
+        "version": __version__,
+        "vehicle": answer.vehicle.title,
+        "axles": [[place, weight / 1e3] for place, weight in answer.vehicle.axles],
+        "source": answer.vehicle.source,
+        "low": answer.low,
+        "high": answer.load_factor,
+        "worst": worst,
+        "places": records,
+        "problem": problem_record(answer.problem),
+        "wall_s": answer.wall_s,
+    }
+
+
+def _records(answer: Crossing) -> list[PlaceRecord]:
+    found: list[PlaceRecord] = []
+    for place, ends in zip(answer.places, answer.thrusts, strict=True):
+        least, most = (None, None) if ends is None else ends
+        found.append(
+            {
+                "heading": "left" if place.heading == "left" else "right",
+                "position_m": place.position,
+                "axles_m": list(place.axles),
+                "load_factor": place.load_factor,
+                "thrust_min_kN": None if least is None else least / 1e3,
+                "thrust_max_kN": None if most is None else most / 1e3,
+            }
+        )
+    return found
+
+
+def write_places(answer: Crossing, file: BinaryIO) -> None:
+    """Write load factor and thrust at every place as CSV."""
+    axles = [f"axle_{index + 1}_m" for index in range(len(answer.vehicle.axles))]
+    names = ["heading", "position_m", *axles, "load_factor", "thrust_min_kN", "thrust_max_kN"]
+    write_sheet(
+        file,
+        names,
+        (
+            [
+                record["heading"],
+                record["position_m"],
+                *record["axles_m"],
+                record["load_factor"],
+                record["thrust_min_kN"],
+                record["thrust_max_kN"],
+            ]
+            for record in _records(answer)
+        ),
+    )

@@ -1,0 +1,59 @@
+"""What pictures claim: what is drawn is where it says, and what has parted looks parted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from runpy import run_path
+
+import numpy as np
+import pytest
+
+from blocksim.ask.check import check
+from blocksim.ask.families import family_of
+from blocksim.kinds.known import load_known
+from blocksim.view.placing import distance_of
+from blocksim.view.sheet import answer_sheet
+
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+@pytest.mark.parametrize(
+    ("way", "apart"), [((0.0, 0.6), 0.6), ((0.5, 0.0), 0.0), ((1.6, 0.0), 0.6)]
+)
+def test_faces_that_left_each_other_are_apart_either_way(
+    way: tuple[float, float], apart: float
+) -> None:
+    """A face of 1 m, moved off, along itself, and beyond its end."""
+    face = np.array([[[0.0, 0.0], [1.0, 0.0]]])
+    assert distance_of(face, face + way)[0] == pytest.approx(apart, abs=1e-12)
+
+
+def test_supports_that_have_spread_bear_the_blocks_where_they_are() -> None:
+    """Each springing lies on the face of its support, 1 % of the span further apart."""
+    known = load_known("spread_90_12_20").problem
+    moved = family_of(known, "spread").at(0.01)
+    for problem, span in ((known, 0.94), (moved, 0.95)):
+        left, right = (np.concatenate(each.polygons) for each in problem.assembly.supports)
+        assert right[:, 0].min() - left[:, 0].max() == pytest.approx(span, abs=1e-9)
+    for joint in moved.assembly.springings:
+        corners = np.concatenate(moved.assembly.supports[joint.support or 0].polygons)
+        near = np.abs(corners[:, None] - [joint.inner, joint.outer]).max(axis=-1).min(axis=0)
+        assert near.max() < 1e-6
+
+
+def test_a_line_of_thrust_leaves_a_gable_along_its_reaction() -> None:
+    sheet = answer_sheet(check(load_known("gable").problem))
+    (safest,) = [each for each in sheet.lines if each.name == "safest"]
+    (path,) = safest.paths
+    path = path if path[0, 0] < path[-1, 0] else path[::-1]
+    reaction = sheet.reactions[0].force
+    way = path[1] - path[0]
+    angles = [np.degrees(np.arctan2(each[1], each[0])) for each in (way, reaction)]
+    assert angles[0] == pytest.approx(angles[1], abs=1e-6)
+
+
+def test_the_sketch_points_at_its_line_of_thrust() -> None:
+    (axes,) = run_path(str(DOCS / "sketch.py"))["figure"]().axes
+    (line,) = [each.get_xydata() for each in axes.lines if each.get_gid() == "thrust"]
+    (words,) = [each for each in axes.texts if each.get_text() == "line of thrust"]
+    assert np.hypot(*(line - words.xy).T).min() < 1e-12

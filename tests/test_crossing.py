@@ -1,0 +1,218 @@
+"""Vehicles that cross, held against linear programmes of a bridge put together apart."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from own_bridge import Bridge
+from running import inside
+from scipy.integrate import quad
+
+from blocksim.blocks.dispersal import Dispersal
+from blocksim.blocks.patch import Profile
+
+EIGHT = Bridge(span=8.0, rise=3.0, thick=0.45, count=31, fill=0.5)
+"""Eight metres clear under half a metre of fill."""
+NEAR = 1e-9
+"""How far beside a joint an axle is put, to stand on one voussoir alone [m]."""
+
+
+def asked(bridge: Bridge, vehicle: str, *more: str) -> dict[str, Any]:
+    done = inside("bracket", *bridge.options(), "--vehicle", vehicle, "--json", *more)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def at(bridge: Bridge, axles: Any, weights: Any) -> float:
+    """Load factor of axles straight down, by the bridge's own programme."""
+    live = sum(weight * bridge.wheel(x) for x, weight in zip(axles, weights, strict=True))
+    return bridge.factor(live) if np.any(live) else math.inf
+
+
+def test_the_bogie_that_was_worked_out_by_hand() -> None:
+    """10 kN and 10 kN, 1.2 m apart, at -1 and -2.2 m: 5.7439; a worse place is near."""
+    assert at(EIGHT, (-2.2, -1.0), (10, 10)) == pytest.approx(5.7439, abs=5e-5)
+    found = asked(EIGHT, "10@0,10@1.2")
+    assert found["low"] == pytest.approx(found["high"], rel=1e-9)
+    assert found["high"] < 5.7439
+    axles = np.array(found["worst"]["axles_m"])
+    beside = [at(EIGHT, axles + shift, (10, 10)) for shift in (-NEAR, NEAR)]
+    assert min(beside) == pytest.approx(found["high"], rel=1e-7)
+
+
+def scan(bridge: Bridge, offsets: Any, weights: Any, places: int) -> float:
+    """The least load factor of so many places, evenly and beside every joint, by scipy."""
+    tops = bridge.high[:, 0]
+    even = np.linspace(tops[0], tops[-1], places)
+    beside = (tops[:, None] - np.array(offsets)).ravel()
+    every = np.concatenate([even, beside - NEAR, beside + NEAR])
+    return min(at(bridge, x + np.array(offsets), weights) for x in every)
+
+
+def bridges(count: int) -> list[Bridge]:
+    """Bridges of all shapes that stand; seeds that fall under their fill are passed over."""
+    draw, found = np.random.default_rng(39), list[Bridge]()
+    while len(found) < count:
+        span = float(draw.uniform(2, 20))
+        each = Bridge(
+            span=span,
+            rise=span * float(draw.uniform(0.12, 0.5)),
+            thick=span * float(draw.uniform(0.05, 0.12)),
+            count=int(draw.integers(7, 40)),
+            fill=float(draw.uniform(0, 0.1)) * span,
+            mu=float(draw.uniform(0.4, 1.0)),
+            heavy_fill=float(draw.uniform(12, 22)),
+        )
+        if each.factor(np.zeros((each.count, 3))) == math.inf:
+            found.append(each)
+    return found
+
+
+def test_the_worst_place_of_a_wheel_is_found_not_sampled() -> None:
+    for bridge in bridges(3):
+        found = asked(bridge, "10@0")
+        assert found["high"] == pytest.approx(scan(bridge, [0.0], [10.0], 40), rel=1e-6)
+
+
+@pytest.mark.long
+def test_ten_bridges_agree_with_a_scan_of_five_thousand_places() -> None:
+    for bridge in bridges(10):
+        found = asked(bridge, "10@0")
+        assert found["high"] == pytest.approx(scan(bridge, [0.0], [10.0], 5000), rel=1e-6)
+
+
+def test_a_lopsided_vehicle_goes_both_ways() -> None:
+    bridge = Bridge(span=5.0, rise=1.4, thick=0.4, count=9, fill=0.2)
+    found = asked(bridge, "30@0,10@1.5")
+    assert {place["heading"] for place in found["places"]} == {"right", "left"}
+    ahead = scan(bridge, [0.0, 1.5], [30.0, 10.0], 60)
+    behind = scan(bridge, [0.0, -1.5], [30.0, 10.0], 60)
+    assert found["high"] == pytest.approx(min(ahead, behind), rel=1e-6)
+    # The bridge is symmetric: neither way is worse.
+    assert ahead == pytest.approx(behind, rel=1e-6)
+
+
+DENSITIES = {
+    "1:2": (lambda _: 1.0, 0.5),
+    "boussinesq": (
+        lambda t: 2 / math.pi / (1 + t * t) ** 2,
+        math.tan(math.pi / 6),
+    ),
+}
+"""Share of a load along rays of each slope, before it is scaled to carry all of it."""
+
+
+@pytest.mark.parametrize("dispersal", ["1:2", "boussinesq"])
+def test_fill_spreads_a_wheel(dispersal: str) -> None:
+    """The bound holds wherever one looks, and the place that was found is as bad as said."""
+    bridge = Bridge(span=6.0, rise=1.5, thick=0.4, count=11, fill=0.6)
+    density, most = DENSITIES[dispersal]
+    whole = quad(density, -most, most)[0]
+
+    def factor(x: float) -> float:
+        live = 10 * bridge.spread(x, lambda t: density(t) / whole, most)
+        return bridge.factor(live)
+
+    found = asked(bridge, "10@0", "--dispersal", dispersal)
+    (x,) = found["worst"]["axles_m"]
+    assert factor(x) == pytest.approx(found["high"], rel=1e-7)
+    assert found["high"] / found["low"] == pytest.approx(1.0, abs=1.1e-6)
+    places = np.concatenate([np.linspace(-2.5, 2.5, 30), x + np.linspace(-0.01, 0.01, 5)])
+    assert min(map(factor, places)) >= found["low"] * (1 - 1e-8)
+    assert found["high"] > asked(bridge, "10@0")["high"]
+
+
+def test_boussinesq_on_level_ground_is_his_pressure() -> None:
+    """Below a line load on a level top, 2 Q / (pi z) cos^4, cut off and made whole again."""
+    edges = [-5.0, -0.4, 0.1, 0.7, 5.0]
+    blocks = [
+        [np.array([[a, -1.0], [b, -1.0], [b, 0.0], [a, 0.0]])]
+        for a, b in itertools.pairwise(edges)
+    ]
+    depth, most = 1.3, math.tan(math.pi / 6)
+    body, share, point = Profile.of(blocks).under(0.0, Dispersal.of("boussinesq", road=depth))
+
+    def pressure(x: float) -> float:
+        return 2 / (math.pi * depth) * (depth / math.hypot(x, depth)) ** 4
+
+    whole = quad(pressure, -most * depth, most * depth)[0]
+    for each, part, place in zip(body, share, point, strict=True):
+        low, high = np.clip(edges[each : each + 2], -most * depth, most * depth)
+        assert part == pytest.approx(quad(pressure, low, high)[0] / whole, rel=1e-10)
+        turn = quad(lambda x: x * pressure(x), low, high)[0] / whole
+        assert part * place[0] == pytest.approx(turn, abs=1e-10)
+        assert place[1] == pytest.approx(0.0, abs=1e-12)
+    assert share.sum() == pytest.approx(1.0, rel=1e-12)
+
+
+KINDS = [
+    ("pointed-arch", "--with", "fill=0.1"),
+    ("arcade",),
+    ("portal",),
+    ("elliptic-arch",),
+]
+
+
+@pytest.mark.parametrize("subject", KINDS, ids=lambda each: each[0])
+def test_every_kind_is_crossed(subject: tuple[str, ...]) -> None:
+    """At the worst place the load factor is that of the same axles as point loads beside it."""
+    done = inside(
+        "bracket", *subject, "--mu", "0.7", "--unit-weight", "20", "--vehicle", "5@0", "--json"
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    (x,) = found["worst"]["axles_m"]
+    factors = []
+    for place in (x - 1e-7, x + 1e-7):
+        said = inside(
+            *("bracket", *subject, "--mu", "0.7", "--unit-weight", "20", "--over", "load"),
+            *("--point-load", repr(place), "5", "--json"),
+        )
+        if said.returncode == 0:
+            factors.append(json.loads(said.stdout)["limit"])
+    assert min(factors) == pytest.approx(found["high"], rel=1e-5)
+
+
+def test_files_are_written_in_one_call(tmp_path: Path) -> None:
+    done = inside(
+        *("bracket", *EIGHT.options(), "--vehicle", "lm1", "--along", "road"),
+        *("--out", "e.csv", "--out", "e.svg", "--out", "e.dxf"),
+        cwd=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    rows = list(csv.DictReader((tmp_path / "e.csv").read_text().splitlines()))
+    assert min(float(row["load_factor"]) for row in rows) == pytest.approx(
+        asked(EIGHT, "lm1")["high"], rel=1e-9
+    )
+    picture = (tmp_path / "e.svg").read_text()
+    assert all(name in picture for name in ('id="factor-right"', 'id="worst"', "moved-"))
+    assert "least" in done.stdout
+    assert "EN 1991-2" in done.stdout
+    assert (tmp_path / "e.dxf").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--vehicle", "nothing"), "one of"),
+        (("--vehicle", "10@x"), "10@0,10@1.2"),
+        (("--vehicle", "-1@0"), "above 0"),
+        (("--vehicle", "10@0", "--over", "mu"), "--over"),
+        (("--vehicle", "10@0", "--point-load", "0", "1"), "left out"),
+        (("--vehicle", "10@0", "--dispersal", "sideways"), "across:down"),
+        (("--out", "e.csv"), "--vehicle beside it"),
+        (("--along", "road"), "--vehicle beside it"),
+    ],
+)
+def test_what_is_no_crossing_is_refused(arguments: tuple[str, ...], words: str) -> None:
+    done = inside("bracket", *EIGHT.options(), *arguments)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
