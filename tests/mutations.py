@@ -274,7 +274,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sizes have no low end", "common/checks.py",
-        "return self.low <= size <= self.high or other", "return size <= self.high or other",
+        "return inside and value <= self.high and", "return value <= self.high and",
         "test_strange_input.py",
     ),
     Mutation(
@@ -418,7 +418,7 @@ MUTATIONS = (
         "    axes.update_datalim(points)\n", "", "test_archfigure.py",
     ),
     Mutation(
-        "a ratio of nothing is divided by", "cli/question.py", "if not least:",
+        "a ratio of nothing is divided by", "kinds/circular.py", "if not least:",
         "if least is None:", "test_cli.py",
     ),
     Mutation(

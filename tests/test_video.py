@@ -678,7 +678,7 @@ def test_side_by_side_of_short_recordings_says_how_to_see_more(tmp_path: Path) -
         (("RUN", "--slow", "0"), "--slow = 0.0: must be above 0"),
         (("RUN", "--method", "direct"), "--method = 'direct': must be left out"),
         (("RUN", "--time", "1"), "--time = 1.0: must be left out of a film"),
-        (("RUN", "--time", "-1"), "--time = -1.0: must be 0 or above"),
+        (("RUN", "--time", "-1"), "--time = -1.0: must be 0 or more"),
         (("RUN", "--beside", "none.npz"), "an existing .npz file"),
         (("--alpha", "90", "--mu", "0.3"), "eta is missing"),
         (("semicircle", "--method", "limit"), "--method = 'limit'"),

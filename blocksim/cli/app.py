@@ -50,6 +50,14 @@ COMMANDS = {
         "studies.chart",
         "Chart the error of every method, from coarse to fine, against time and work.",
     ),
+    "suite export": (
+        "refereeing.export",
+        "Write scenes of which the answer is proved, for engines of any language.",
+    ),
+    "suite score": (
+        "refereeing.score",
+        "Hold what an engine said of these scenes to the truth.",
+    ),
     "sweep": (
         "sweeping.sweep",
         "Ask about many arches. A run that was killed goes on where it was.",
@@ -79,7 +87,7 @@ COMMANDS = {
         "Print BibTeX of blocksim, of the paper, and of what methods rest on.",
     ),
 }
-"""File and function of each command, and the first line of its help."""
+"""File and function of each command, which may be two words, and the first line of its help."""
 
 
 COMPLETES = "_BLOCKSIM_COMPLETE"
@@ -91,6 +99,18 @@ class Commands(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - as called
         """Return the names, in the order of the help."""
         return list(COMMANDS)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find a command by its first word, or by two."""
+        two = " ".join(args[:2])
+        if two in COMMANDS:
+            args = [two, *args[2:]]
+        following = [name for name in COMMANDS if name.startswith(f"{args[0]} ")]
+        if following and not ctx.resilient_parsing:
+            ctx.fail(f"{args[0]} must be one of: {', '.join(following)}")
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         """Write the commands and what they are for."""

@@ -72,12 +72,22 @@ EngineOption = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class RenderOptions:
-    """How recordings are shown."""
+    """How recordings are shown.
+
+    Raises
+    ------
+    InputError
+        If the height is out of range.
+    """
 
     view: Literal["2d", "3d"]
     slow: float | None
     time: float | None
     height: int
+
+    def __post_init__(self) -> None:
+        """Check the height."""
+        require_height(self.height)
 
 
 def require_height(height: int) -> None:

@@ -186,7 +186,7 @@ class CircularArch(CurvedArch):
         least = least_thickness(self.half_angle, self.friction, self.voussoirs, weight).eta
         if not least:
             why = "no thickness up to 2 stands" if least is None else "any thickness stands"
-            raise InputError("ratio", ratio, f"left out for eta: {why} here")
+            raise InputError("eta", MISSING, f"given in place of ratio: {why} here")
         most = ETA.high / least
         require(ratio <= most, "ratio", ratio, f"at most {most:.6g}, eta = {ETA.high:g}")
         return least

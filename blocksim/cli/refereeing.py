@@ -1,0 +1,61 @@
+"""The commands of the suite: scenes for engines, and the score of what they say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import click
+
+from blocksim.cli.arguments import Argument, Option
+from blocksim.cli.output import answer_with, say
+from blocksim.report.referee import known_scores, read_score, score_lines, write_score
+from blocksim.suite.answers import read_answers
+from blocksim.suite.export import chosen, questions
+from blocksim.suite.export import export as export_scenes
+from blocksim.suite.score import scored, worse
+
+
+def export(
+    folder: Annotated[Path, Argument(help="Folder for the scenes.", folder=True)],
+    level: Annotated[
+        list[float] | None,
+        Option(help="Only scenes so far from their limit, in %; repeatable."),
+    ] = None,
+    group: Annotated[
+        list[str] | None, Option(help="Only scenes of a group; repeatable.")
+    ] = None,
+) -> None:
+    """Write scenes of which the answer is proved, for engines of any language."""
+    scenes = chosen(level or (), group or ())
+    count = export_scenes(folder, scenes)
+    say(f"wrote {', '.join(f'{many} {name}' for name, many in count.items())} to {folder}")
+
+
+def score(
+    answers: Annotated[str, Argument(help="What an engine said: a file of JSON lines.")],
+    out: Annotated[
+        Path | None, Option(help="Folder for a page, its rows and JSON.", folder=True)
+    ] = None,
+    expect: Annotated[
+        str | None,
+        Option(help="A score.json of before: exit code 1 where a level has become worse."),
+    ] = None,
+    as_json: Annotated[
+        bool, Option(name="--json", help="Print one JSON object, nothing else.")
+    ] = False,
+) -> None:
+    """Hold what an engine said of these scenes to the truth."""
+    before = None if expect is None else read_score(expect)
+    asked = questions()
+    head, said = read_answers(answers, {name: each.scene for name, each in asked.items()})
+    found = scored(head, said, asked)
+    record = found.record()
+    paths = [] if out is None else write_score(found, out)
+    answer_with(record, score_lines(record, known_scores()), as_json=as_json)
+    if paths and not as_json:
+        say("wrote " + ", ".join(map(str, paths)))
+    lost = () if before is None else worse(record, before)
+    for sentence in lost:
+        click.echo(f"blocksim: {sentence}", err=True)
+    raise click.exceptions.Exit(int(bool(lost)))

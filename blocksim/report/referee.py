@@ -1,0 +1,135 @@
+"""The score of an engine as lines, JSON, rows and a page, beside all engines known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, cast
+
+from blocksim.common.checks import require
+from blocksim.common.dates import made_at
+from blocksim.common.files import (
+    AnyPath,
+    json_of,
+    json_text,
+    make_folder,
+    read_file,
+    shipped_files,
+    write_whole,
+)
+from blocksim.common.sheets import sheet_of
+from blocksim.common.version import __version__
+from blocksim.report.environment import environment
+from blocksim.suite.families import LEVELS
+from blocksim.suite.score import MOST, Row, Score
+
+LARGEST = 1 << 22
+"""Bytes of a score.json."""
+MEDIANS = ("drift", "gain", "asymmetry", "error")
+
+
+def known_scores() -> list[dict[str, Any]]:
+    """Return the scores of the engines that are known, as `Score.record` does."""
+    path = shipped_files("suite/known.json").get("known")
+    return [] if path is None else json_of(path.read_bytes())
+
+
+def read_score(path: AnyPath) -> dict[str, Any]:
+    """Read a score.json of before.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    allowed = "a score.json as blocksim suite score writes it"
+    text = read_file(path, "--expect", allowed, LARGEST)
+    found: Any = None
+    try:
+        found = json_of(text)
+        groups = cast("dict[str, dict[str, Any]]", found["groups"])
+        levels = [found["nearest_level"], *(each["nearest_level"] for each in groups.values())]
+        fits = all(level is None or level in LEVELS for level in levels)
+    except (ValueError, TypeError, KeyError, AttributeError):
+        fits = False
+    require(fits, "--expect", str(path), allowed)
+    return found
+
+
+def level_words(level: float | None) -> str:
+    """Say a level; none is a dash."""
+    return "-" if level is None else f"{level:g} %"
+
+
+def score_lines(record: Mapping[str, Any], known: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Tell a score in lines: the one number, then a line a group."""
+    head = f"{record['engine']} {record['version']} ({record['settings']})"
+    found = [
+        f"RIGHT TO {level_words(record['nearest_level'])} of the limit  ({head})",
+        f"  of all  {100 * (1 - record['wrong']):.1f} % right, in {record['seconds']:g} s",
+    ]
+    width = max(map(len, record["groups"]))
+    for name, group in record["groups"].items():
+        cells = [
+            f"{level} %: {right}/{right + false + left}"
+            for level, (right, false, left) in group["levels"].items()
+        ]
+        nearest = level_words(group["nearest_level"])
+        found.append(f"  {name:{width}}  {nearest:>6}  right  {', '.join(cells)}")
+    found += [
+        f"  {name:{width}}  {record[f'median_{name}']:g} in the median"
+        for name in MEDIANS
+        if record[f"median_{name}"] is not None
+    ]
+    found += [
+        f"  beside  {each['engine']} {each['version']} ({each['settings']}): "
+        f"{level_words(each['nearest_level'])}, {100 * (1 - each['wrong']):.1f} % right"
+        for each in known
+    ]
+    return found
+
+
+def write_score(score: Score, folder: AnyPath) -> list[Path]:
+    """Write score.html, score.json and rows.csv into a folder.
+
+    Raises
+    ------
+    InputError, MachineError
+        If they cannot be written.
+    """
+    folder = Path(folder)
+    make_folder(folder)
+    record = score.record()
+    rows = [list(asdict(row).values()) for row in score.rows]
+    contents = {
+        "score.html": score_page([record, *known_scores()]).encode(),
+        "score.json": f"{json_text(record, indent=1)}\n".encode(),
+        "rows.csv": sheet_of(list(Row.__dataclass_fields__), rows),
+    }
+    for name, text in contents.items():
+        write_whole(folder / name, lambda file, text=text: file.write(text))
+    return [folder / name for name in contents]
+
+
+def score_page(records: Sequence[Mapping[str, Any]]) -> str:
+    """Write a page on several engines, the first of which it is about.
+
+    Returns
+    -------
+    str
+        HTML that loads nothing.
+    """
+    pages = environment()
+    pages.filters["level"] = level_words
+    groups = list(dict.fromkeys(name for record in records for name in record["groups"]))
+    return pages.get_template("score.html").render(
+        records=records,
+        about=records[0],
+        groups=groups,
+        levels=[f"{level:g}" for level in LEVELS],
+        medians=MEDIANS,
+        most=f"{100 * MOST:g}",
+        version=__version__,
+        made=made_at(),
+    )

@@ -1,0 +1,367 @@
+"""The referee: its scenes, their answers by other means, and what it takes from strangers."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from running import inside
+from scipy.integrate import quad
+from scipy.optimize import linprog
+from shapely.geometry import Polygon
+
+from blocksim import check
+from blocksim.suite.export import questions
+from blocksim.suite.families import LEVELS, Family, Question, families
+from blocksim.suite.timed import Motion
+
+G = 9.81
+STANDING = {name: each for name, each in questions().items() if isinstance(each, Question)}
+MOVING = {name: each for name, each in questions().items() if isinstance(each, Motion)}
+NEAREST = [each for each in STANDING.values() if each.level == LEVELS[-1]]
+
+
+def by_name(values: list[Question]) -> Any:
+    return pytest.mark.parametrize("asked", values, ids=lambda each: each.name)
+
+
+@by_name(NEAREST)
+def test_answers_next_to_the_limit_are_proved(asked: Question) -> None:
+    answer = check(asked.problem, method="limit")
+    assert answer.verdict.value == ("stands" if asked.stands else "collapses")
+    assert answer.proved
+
+
+def by_contact_forces(scene: dict[str, Any]) -> bool:
+    """Whether forces at corners on faces balance a scene's file: a programme of its own.
+
+    It reads what engines read, finds contacts by distance, and knows nothing of blocksim.
+    """
+    bodies = [each for each in scene["bodies"] if not each["fixed"]]
+    place = {each["name"]: at for at, each in enumerate(bodies)}
+    load = np.zeros((len(bodies), 3))
+    for at, body in enumerate(bodies):
+        load[at, :2] = body["mass"] * np.array(scene["gravity"])
+    for push in scene["pushes"]:
+        at = place[push["body"]]
+        arm, force = np.subtract(push["point"], bodies[at]["centre"]), np.array(push["force"])
+        load[at] += [*force, arm[0] * force[1] - arm[1] * force[0]]
+    shapes = [(each, np.array(s)) for each in scene["bodies"] for s in each["polygons"]]
+    columns = []
+    for one, face in shapes:
+        for start, end in zip(face, np.roll(face, -1, axis=0), strict=True):
+            length = math.dist(start, end)
+            along = (end - start) / length
+            normal = np.array([along[1], -along[0]])
+            for other, corners in shapes:
+                if other is one or (one["fixed"] and other["fixed"]):
+                    continue
+                over = (corners - start) @ along
+                # Corners that meet at a point, beside each other, bear nothing.
+                if min(over.max(), length) - max(over.min(), 0) < 1e-7:
+                    continue
+                for corner in corners:
+                    s, away = (corner - start) @ along, (corner - start) @ normal
+                    if abs(away) > 1e-7 or not -1e-7 < s < length + 1e-7:
+                        continue
+                    # The other body lies beyond the face, not merely beside its end.
+                    if ((corners - start) @ normal).min() < -1e-7:
+                        continue
+                    for slope in (-scene["friction"], scene["friction"]):
+                        force, column = normal + slope * along, np.zeros((len(bodies), 3))
+                        for body, sign in ((other, 1), (one, -1)):
+                            if not body["fixed"]:
+                                arm = corner - body["centre"]
+                                moment = arm[0] * force[1] - arm[1] * force[0]
+                                column[place[body["name"]]] += sign * np.array([*force, moment])
+                        columns.append(column.ravel())
+    scale = np.abs(load).max()
+    found = linprog(
+        np.zeros(len(columns)), A_eq=np.array(columns).T, b_eq=-load.ravel() / scale,
+        bounds=(0, None), method="highs",
+    )  # fmt: skip
+    return bool(found.status == 0)
+
+
+@by_name([each for each in STANDING.values() if each.level in {20.0, 1.0}])
+def test_a_programme_of_its_own_agrees(asked: Question) -> None:
+    assert by_contact_forces(asked.scene.record()) == asked.stands
+
+
+@by_name([each for each in STANDING.values() if each.level == 5 and not each.stands])
+def test_direct_agrees(asked: Question) -> None:
+    assert check(asked.problem, method="direct").verdict.value == "collapses"
+
+
+CLOSED = {
+    "incline": math.tan(math.radians(20)),
+    "table": math.degrees(math.atan(0.5)),
+    "pushed-box": 0.6 * 9810,
+    "box-on-box": 0.4 * 0.4 * 19_620,
+    "slender": math.degrees(math.atan(0.5 / 1.5)),
+    "pushed-pillar": 0.25 * 0.75 * 19_620 / 1.5,
+    "column": math.degrees(math.atan(0.8 / 3)),
+    "trapezium": (7 / 18) / (4 / 9),
+    "harmonic": sum(1 / row for row in range(1, 6)) / 2,
+    "stairs": 6 / 7,
+    # Both posts tip: their weight and the lintel's over the lower corners.
+    "trilithon": 0.6 / 1.6,
+    # The lowest course, or all above it, slides.
+    "low-wall": 0.4,
+}
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_limits_of_closed_form(name: str) -> None:
+    family = next(each for each in families() if each.name == name)
+    assert family.critical == pytest.approx(CLOSED[name], rel=1e-9)
+
+
+def test_semicircle_has_the_least_thickness_of_its_polygons() -> None:
+    # 27 voussoirs with straight chords; by a programme of others 0.106721 r.
+    family = next(each for each in families() if each.name == "semicircle")
+    assert family.critical / 5 == pytest.approx(0.106721, abs=5e-7)
+
+
+@pytest.mark.parametrize("family", families(), ids=lambda each: each.name)
+def test_nothing_overlaps_and_blocks_are_homogeneous(family: Family) -> None:
+    for asked in family.questions:
+        if asked.level != 20:
+            continue
+        shapes = [
+            (body.name, Polygon(shape)) for body in asked.scene.bodies for shape in body.shapes
+        ]
+        for at, (one, shape) in enumerate(shapes):
+            for other, beside in shapes[:at]:
+                assert one == other or shape.intersection(beside).area < 1e-9
+        for body in asked.scene.moving:
+            (shape,) = (Polygon(each) for each in body.shapes)
+            assert body.mass == pytest.approx(2000 * shape.area)
+            assert np.allclose(body.centre, shape.centroid.coords[0], atol=1e-9)
+
+
+@pytest.mark.long
+@by_name([each for each in STANDING.values() if not each.stands and each.level in {20.0, 1.0}])
+def test_what_falls_has_left_by_its_end(asked: Question) -> None:
+    from blocksim import simulate
+
+    problem, scene = asked.problem, asked.scene
+    seen = simulate(problem, method="direct", duration=scene.times[-1] / problem.seconds)
+    assert seen.displacement[-1] * problem.assembly.size > 5 * scene.bound
+
+
+def test_names_say_nothing_of_answers() -> None:
+    first = [next(family.questions).stands for family in families()]
+    assert 0.25 < np.mean(first) < 0.75
+    assert sum(each.stands for each in STANDING.values()) * 2 == len(STANDING)
+
+
+def test_what_slides_keeps_its_energy_but_for_friction() -> None:
+    scene, poses = MOVING["slides-down-2"].scene, MOVING["slides-down-2"].poses
+    way, seconds = poses[-1, 0, 0] - poses[0, 0, 0], scene.times[-1]
+    speed = 2 * way / seconds
+    pull, press = scene.gravity[0], -scene.gravity[1]
+    assert speed**2 / 2 == pytest.approx((pull - 0.3 * press) * way)
+
+
+def test_what_falls_back_takes_the_time_of_the_elliptic_integral() -> None:
+    # t = integral of dlean / speed, by the energy of a block on its corner.
+    asked = MOVING["falls-back-2"]
+    width, height = 0.5, 1.5
+    alpha, radius = math.atan(width / height), math.hypot(width, height) / 2
+    lean = alpha / 2
+    now = lean + asked.poses[-1, 0, 2] * -1 - lean
+    end = lean - asked.poses[-1, 0, 2]
+
+    def pace(share: float) -> float:
+        # The substitution lean - share**2 takes the root at the start away.
+        at = lean - share**2
+        fallen = math.cos(alpha - at) - math.cos(alpha - lean)
+        return 2 * share / math.sqrt(2 * 3 * G / (4 * radius) * abs(fallen))
+
+    assert now < 0 < end
+    seconds, _ = quad(pace, 1e-9, math.sqrt(lean - end))
+    assert seconds == pytest.approx(asked.scene.times[-1], rel=1e-6)
+
+
+def test_what_rocks_on_keeps_the_share_of_housner() -> None:
+    asked = MOVING["rocks-on-2"]
+    alpha = math.atan(1 / 3)
+    sides = [
+        math.cos(alpha - lean) - math.cos(alpha)
+        for lean in (alpha / 2, float(asked.poses[:, 0, 2].max()) - alpha / 2)
+    ]
+    # Energy at the far side over that at the start, if it has turned there.
+    assert sides[1] <= (1 - 1.5 * math.sin(alpha) ** 2) ** 2 * sides[0]
+
+
+def test_boxes_that_meet_keep_their_momentum() -> None:
+    asked = MOVING["meets-1"]
+    mass = np.array([body.mass for body in asked.scene.moving])
+    first, last = asked.poses[0], asked.poses[-1]
+    way = mass @ (last - first)[:, 0]
+    speed = asked.scene.moving[0].velocity
+    assert speed is not None
+    assert way == pytest.approx(mass[0] * speed[0] * asked.scene.times[-1])
+
+
+@pytest.fixture(scope="module")
+def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("suite")
+    done = inside("suite", "export", str(folder), "--group", "sliding", "--group", "impact")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_export_fits_its_schema(suite: Path) -> None:
+    schema = json.loads((suite / "scene.schema.json").read_text())
+    paths = [*(suite / "scenes").iterdir()]
+    assert len(paths) == 4 * 12 + 9
+    for path in paths:
+        scene = json.loads(path.read_text())
+        assert set(scene) == set(schema["required"])
+        assert scene["level"] in schema["properties"]["level"]["enum"]
+        assert "stands" not in scene
+        for body in scene["bodies"]:
+            assert set(body) <= set(schema["$defs"]["body"]["properties"])
+
+
+def test_mujoco_reads_what_is_exported(suite: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    paths = [*(suite / "mjcf").iterdir()]
+    # What is pushed is left out.
+    assert len(paths) == 2 * 12 + 9
+    for path in paths:
+        scene = json.loads((suite / "scenes" / f"{path.stem}.json").read_text())
+        model = mujoco.MjModel.from_xml_path(str(path))
+        moving = [each for each in scene["bodies"] if not each["fixed"]]
+        assert model.nv == 3 * len(moving)
+        assert model.opt.gravity[:2] == pytest.approx(scene["gravity"])
+        for body in moving:
+            assert model.body(body["name"]).mass[0] == pytest.approx(body["mass"])
+            assert model.body(body["name"]).pos[:2] == pytest.approx(body["centre"])
+
+
+HEAD = {"format": "blocksim answers 1", "engine": "mine", "version": "1", "settings": "none"}
+
+
+def written(path: Path, lines: list[Any]) -> str:
+    path.write_text(
+        "\n".join(each if isinstance(each, str) else json.dumps(each) for each in lines)
+    )
+    return str(path)
+
+
+def test_right_answers_are_right_and_their_opposites_false(tmp_path: Path) -> None:
+    lines: list[Any] = [HEAD]
+    for asked in STANDING.values():
+        said = "stands" if asked.stands == (asked.level > 1) else "falls"
+        lines.append({"scene": asked.name, "seconds": 0.5, "verdict": said})
+    for asked in MOVING.values():
+        poses = asked.poses.tolist()
+        lines.append({"scene": asked.name, "seconds": 0.5, "poses": poses})
+    done = inside("suite", "score", written(tmp_path / "a.jsonl", lines), "--json")
+    found = json.loads(done.stdout)
+    assert found["nearest_level"] == 2
+    assert found["groups"]["rocking"]["levels"]["0.1"] == [6, 0, 0]
+    assert found["groups"]["stacks"]["levels"]["1"] == [0, 8, 0]
+    assert found["groups"]["stacks"]["nearest_level"] == 2
+    assert found["seconds"] == 0.5 * len(questions())
+
+
+def test_poses_are_judged_by_their_last_corner(tmp_path: Path) -> None:
+    asked = next(
+        each for each in STANDING.values() if each.name.startswith("incline") and each.stands
+    )
+    scene = asked.scene
+    x, y = scene.moving[0].centre.tolist()
+    counts: list[Any] = []
+    for share in (0.99, 1.01):
+        frames = [[[x, y, 0.0]] for _ in scene.times[1:]]
+        frames.append([[x + share * scene.bound, y, 0.0]])
+        line = {"scene": scene.name, "seconds": 0, "poses": frames}
+        path = written(tmp_path / "a.jsonl", [HEAD, line])
+        found = json.loads(inside("suite", "score", path, "--json").stdout)
+        counts.append(found["groups"]["sliding"]["levels"][f"{asked.level:g}"])
+    assert counts == [[1, 0, 7], [0, 1, 7]]
+
+
+def test_a_page_is_written_and_a_lost_level_told(tmp_path: Path) -> None:
+    lines: list[Any] = [HEAD]
+    lines += [
+        {"scene": name, "seconds": 0, "verdict": "stands" if each.stands else "falls"}
+        for name, each in STANDING.items()
+        if each.group == "sliding"
+    ]
+    out = tmp_path / "out"
+    done = inside("suite", "score", written(tmp_path / "a.jsonl", lines), "--out", str(out))
+    assert done.returncode == 0, done.stderr
+    assert {path.name for path in out.iterdir()} == {"score.html", "score.json", "rows.csv"}
+    lines[1]["verdict"] = "falls" if lines[1]["verdict"] == "stands" else "stands"
+    path = written(tmp_path / "b.jsonl", lines)
+    done = inside("suite", "score", path, "--expect", str(out / "score.json"))
+    assert done.returncode == 1
+    assert done.stderr.startswith("blocksim: sliding: right to 0.1 % was expected")
+
+
+GOOD = {"scene": "incline-01", "seconds": 0.1, "verdict": "stands"}
+FRAMES = [[[0.0, 0.25, 0.0]]] * 11
+BROKEN: dict[str, list[Any]] = {
+    "empty": [],
+    "no JSON": ["stands"],
+    "a list": ["[1, 2]"],
+    "no head": [GOOD],
+    "another format": [HEAD | {"format": "blocksim answers 2"}],
+    "no engine": [{key: value for key, value in HEAD.items() if key != "engine"}],
+    "an engine without letters": [HEAD | {"engine": ""}],
+    "a key of the head that is none": [HEAD | {"author": "me"}],
+    "no answers": [HEAD],
+    "an unknown scene": [HEAD, GOOD | {"scene": "inclin-01"}],
+    "a scene that is a list": [HEAD, GOOD | {"scene": ["incline-01"]}],
+    "a scene twice": [HEAD, GOOD, GOOD],
+    "no answer": [HEAD, {"scene": "incline-01", "seconds": 0.1}],
+    "both answers": [HEAD, GOOD | {"poses": FRAMES}],
+    "another word": [HEAD, GOOD | {"verdict": "collapses"}],
+    "a verdict on motion": [HEAD, GOOD | {"scene": "lands-1"}],
+    "no time": [HEAD, {"scene": "incline-01", "verdict": "stands"}],
+    "a time below 0": [HEAD, GOOD | {"seconds": -1}],
+    "true for a time": [HEAD, GOOD | {"seconds": True}],
+    "a misspelt key": [HEAD, GOOD | {"second": 1}],
+    "too few frames": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": FRAMES[1:]}],
+    "too many bodies": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [each * 2 for each in FRAMES]}],
+    "poses in space": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [[[0, 0, 0, 1, 0, 0, 0]]] * 11}],
+    "no number": [HEAD, '{"scene": "incline-01", "seconds": 0, "poses": ' + json.dumps(FRAMES).replace("0.25", "NaN") + "}"],
+    "a text in a pose": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [[["0", 0.25, 0]]] * 11}],
+    "another start": [HEAD, {"scene": "incline-01", "seconds": 0, "poses": [[[0.0, 0.0, 0.0]]] * 11}],
+    "nested without end": ["[" * 100_000],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_broken_answers_are_one_line(name: str, tmp_path: Path) -> None:
+    done = inside("suite", "score", written(tmp_path / "a.jsonl", BROKEN[name]))
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith("blocksim: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_files_that_cannot_be_read_are_one_line(tmp_path: Path) -> None:
+    (tmp_path / "binary").write_bytes(bytes(range(256)))
+    (tmp_path / "expected").write_text('{"groups": []}')
+    good = written(tmp_path / "good", [HEAD, GOOD])
+    for asked in (["binary"], ["none"], ["."], [good, "--expect", "expected"]):
+        done = inside("suite", "score", *asked, cwd=tmp_path)
+        assert done.returncode == 2
+        assert done.stderr.count("\n") == 1
+
+
+def test_levels_and_groups_that_are_none_are_refused(tmp_path: Path) -> None:
+    for wrong in (["--level", "3"], ["--group", "slidding"]):
+        done = inside("suite", "export", str(tmp_path), *wrong)
+        assert done.returncode == 2
+        assert done.stderr.count("\n") == 1
