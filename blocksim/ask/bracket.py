@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Unpack
 
-from blocksim.ask.ends import Ask, Stands, Within, around, tried_ends
+from blocksim.ask.ends import (
+    Ask,
+    Change,
+    Stands,
+    Within,
+    around,
+    changes_of,
+    tried_ends,
+)
 from blocksim.ask.families import Family, families_of, family_of
 from blocksim.ask.methods import choose, chosen_words, engine_of, merges, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
@@ -45,10 +52,6 @@ LEAST = 1e-12
 """Least upper end of where to search."""
 GUESS = 0.1
 """Share of the range at which a search begins where limit analysis gives no value."""
-
-
-Change = tuple[Callable[[float], Problem], float, bool]
-"""Value to problem, the value of the change, and whether it stands above it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -364,18 +367,8 @@ def _of_family(
         wall_s=time.perf_counter() - started,
         events=None if family.spreading is None else family.spreading.events,
         intervals=intervals,
-        changes=_changes(family, intervals or ()) if chosen.name == "limit" else (),
+        changes=changes_of(family, intervals or ()) if chosen.name == "limit" else (),
     )
-
-
-def _changes(family: Family, intervals: tuple[Stands, ...]) -> tuple[Change, ...]:
-    """Return all changes that limit analysis knows."""
-    ends = (
-        (end, above)
-        for each in intervals
-        for end, above in ((each.low, True), (each.high, False))
-    )
-    return tuple((family.at, end.limit, above) for end, above in ends if end is not None)
 
 
 def _asking(

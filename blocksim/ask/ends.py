@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from blocksim.ask.families import Family
+from blocksim.blocks.problem import Problem
 
 if TYPE_CHECKING:
     from blocksim.ask.searches import Search
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 Within = tuple[float, float]
 Ask = Callable[[float, Within, bool], "Search"]
 """From a value of limit analysis, where to search around it, and whether it stands above it."""
+
+Change = tuple[Callable[[float], Problem], float, bool]
+"""Value to problem, the value of the change, and whether it stands above it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,3 +90,13 @@ def around(family: Family, value: float) -> Within:
         (max(below) + value) / 2 if below else family.low,
         (min(above) + value) / 2 if above else family.high,
     )
+
+
+def changes_of(family: Family, intervals: tuple[Stands, ...]) -> tuple[Change, ...]:
+    """Return all changes that limit analysis knows."""
+    ends = (
+        (end, above)
+        for each in intervals
+        for end, above in ((each.low, True), (each.high, False))
+    )
+    return tuple((family.at, end.limit, above) for end, above in ends if end is not None)

@@ -119,4 +119,5 @@ def bracket(
             progress=report,
         )
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
-    answer_with(bracket_record(answer), bracket_lines(answer), as_json=as_json)
+    record = bracket_record(answer) if as_json else dict[str, object]()
+    answer_with(record, [] if as_json else bracket_lines(answer), as_json=as_json)

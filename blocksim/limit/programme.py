@@ -146,7 +146,9 @@ def equilibrium(problem: Problem) -> Equilibrium:
     """
     cones, pull = Cones(problem), problem.pull()
     try:
-        found = most_common(cones, pull)
+        found = most_common(cones, pull, LinearProgramme(vertex=False))
+        if not found.exists or abs(found.values[-1]) < NEAR:
+            found = most_common(cones, pull)
         for _ in range(RESCALED):
             if not found.exists or cones.left(_parts(cones, found), pull) < ROUND_OFF:
                 break

@@ -87,7 +87,7 @@ def bracket_lines(answer: Bracket) -> list[str]:
         lines.append(f"  exact   {_number(answer.limit)}{unit} by limit analysis")
     if (many := interval_words(answer)) is not None:
         lines.append(f"  stands  {many}")
-    if answer.method == "limit":
+    if answer.method == "limit" and of is None:
         lines.append(f"  proof   {ends_proved_words(answer)}")
     if answer.undecided:
         what = "values" if of is None else "ratios"
