@@ -11,7 +11,7 @@ import csv
 import gzip
 import io
 import json
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -44,9 +44,11 @@ def scores_of(folder: Path) -> list[Score]:
 
 def rows_of(score: Score) -> list[dict[str, object]]:
     """Return rows of a score, numbers as short as they are known."""
+    head = score.head
+    # `version` is that of blocksim, in rows of any study.
+    said = {"engine": head.engine, "engine_version": head.version, "settings": head.settings}
     return [
-        asdict(score.head)
-        | {name: _short(value) for name, value in asdict(row).items() if name != "group"}
+        said | {name: _short(value) for name, value in asdict(row).items() if name != "group"}
         for row in score.rows
     ]
 
@@ -55,13 +57,17 @@ def _short(value: object) -> object:
     return f"{value:.3g}" if isinstance(value, float) else "" if value is None else value
 
 
-def kept() -> list[Score]:
-    """Read the rows that are kept."""
+def read(path: Path) -> list[Score]:
+    """Read rows."""
     asked = questions()
     found: dict[Head, list[Row]] = {}
-    with io.TextIOWrapper(gzip.open(KEPT)) as file:
+    with io.TextIOWrapper(gzip.open(path)) as file:
         for line in csv.DictReader(file):
-            head = Head(**{each.name: line[each.name] for each in fields(Head)})
+            head = Head(
+                engine=line["engine"],
+                version=line["engine_version"],
+                settings=line["settings"],
+            )
             row: dict[str, Any] = {
                 name: float(line[name]) if line[name] else None
                 for name in ("level", "drift", "gain", "asymmetry", "error", "seconds")
@@ -98,7 +104,8 @@ def drawn(scores: list[Score]) -> Figure:
     for (row, column), value in np.ndenumerate(cells):
         if np.isfinite(value):
             words = "-" if value == NONE else f"{value:g}"
-            right.text(column, row, words, ha="center", va="center", fontsize=7)
+            ink = "white" if value <= 1 else "black"
+            right.text(column, row, words, ha="center", va="center", fontsize=7, color=ink)
     right.set_xticks(range(len(names)), names, rotation=60, ha="right")
     labels = [f"{score.head.engine} ({score.head.settings.split(':')[0]})" for score in scores]
     right.set_yticks(range(len(scores)), labels, fontsize=7)
@@ -121,10 +128,11 @@ def main(
 ) -> list[dict[str, Any]]:
     """Score answers, or read what is kept, and draw."""
     make_folder(out)
-    scores = kept() if answers is None else scores_of(answers)
-    scores.sort(key=lambda each: (each.nearest() or NONE, each.wrong))
+    rows = KEPT
     if answers is not None:
-        write_rows(out / KEPT.name, [row for score in scores for row in rows_of(score)])
+        rows = out / KEPT.name
+        write_rows(rows, [row for score in scores_of(answers) for row in rows_of(score)])
+    scores = sorted(read(rows), key=lambda each: (each.nearest() or NONE, each.wrong))
     records = [score.record() for score in scores]
     (out / "known.json").write_text(json.dumps(records, separators=(",", ":")) + "\n")
     figure = drawn(scores)

@@ -20,6 +20,7 @@ from validation_tables import of_validation
 from blocksim.cli import app
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
+from blocksim.report.referee import known_scores, level_words
 
 ROOT = Path(__file__).resolve().parent.parent
 ROWS = ROOT / "analysis" / "figures"
@@ -186,6 +187,23 @@ def _example(name: str) -> str:
     return f"{more.strip()}\n\n{picture}\n\n```python\n{rest.strip()}\n```"
 
 
+def _suite(_: str) -> str:
+    """Engines that have answered the referee's scenes, as `known.json` has them."""
+    rows = [
+        [
+            f"{each['engine']} {each['version']}",
+            each["settings"],
+            level_words(each["nearest_level"]),
+            f"{100 * (1 - each['wrong']):.1f} %",
+            "-" if each["median_drift"] is None else f"{each['median_drift']:.1g}",
+            f"{each['seconds']:.0f} s",
+        ]
+        for each in known_scores()
+    ]
+    names = ["engine", "settings", "right to", "right of all", "drift of what stands", "time"]
+    return table(names, rows)
+
+
 TABLES: dict[str, Callable[[str], str]] = {
     "methods": _methods,
     "format": of_format,
@@ -195,6 +213,7 @@ TABLES: dict[str, Callable[[str], str]] = {
     "validated": of_validation,
     "example": _example,
     "walls": _walls,
+    "suite": _suite,
     "keystone": _keystone,
 }
 

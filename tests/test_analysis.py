@@ -525,3 +525,10 @@ def test_lmgc90_is_charted(tmp_path: Path) -> None:
     assert all(error < 0.02 for steps in result.errors.values() for error in steps.values())
     points = read_points(tmp_path / "lmgc90.json")
     assert [point.method for point in points] == ["lmgc90"]
+
+
+def test_referee_makes_its_table_of_the_rows_that_are_kept(tmp_path: Path) -> None:
+    study("referee").main(tmp_path, quick=True)
+    kept = STUDIES.parent / "scenarios" / "suite" / "known.json"
+    assert json.loads((tmp_path / "known.json").read_text()) == json.loads(kept.read_text())
+    assert matplotlib.image.imread(tmp_path / "referee.png").shape[1] > 1000
