@@ -324,7 +324,8 @@ def _of_seen(problem: Problem, chosen: Method, seen: Observation) -> Check:
         verdict=seen.verdict,
         evidence=seen.evidence,
         problem=problem,
-        joints=seen.joints,
+        # Of a motion out of the plane joints are not told.
+        joints=seen.joints or closed_joints(problem.assembly.joint_angles),
         rates=seen.rates,
         simulated=seen.simulated,
         state_hash=seen.state_hash,
