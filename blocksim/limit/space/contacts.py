@@ -1,0 +1,130 @@
+"""Points of contact in space: what a force at each does to the blocks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.space.polyhedron import frame
+from blocksim.blocks.space.problem import SpatialProblem
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """The corners of all joints, each with a force: along the normal, and two ways across.
+
+    A face presses anywhere within its polygon. One contact a corner is exact: a force within
+    the cone at a point of a convex polygon is a sum of parallel ones at its corners.
+    Lengths are in units of the size, forces of the mean block's weight.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    """
+
+    problem: SpatialProblem
+
+    @cached_property
+    def joint(self) -> Array:
+        """Joint of each point, (points,)."""
+        joints = self.problem.assembly.joints
+        return np.repeat(np.arange(len(joints)), [len(each.points) for each in joints])
+
+    @cached_property
+    def friction(self) -> Array:
+        """Friction coefficient at each point, (points,)."""
+        return self.problem.friction[self.joint]
+
+    @cached_property
+    def unit(self) -> float:
+        """The mean block's weight [N]."""
+        return float(self.problem.assembly.weights.mean())
+
+    @cached_property
+    def axes(self) -> Array:
+        """Normal, from `before` into `after`, and two directions across, (joints, 3, 3)."""
+        normals = [each.normal for each in self.problem.assembly.joints]
+        return np.array([np.vstack([each, frame(each)]) for each in normals]).reshape(-1, 3, 3)
+
+    @cached_property
+    def own(self) -> Array:
+        """At each point the weight of the lighter block beside it, over its joint's points.
+
+        (points,) float, in mean weights: the pressure by which it is told whether it presses.
+        """
+        assembly = self.problem.assembly
+        weights = assembly.weights / self.unit
+        sides = [(each.before, each.after) for each in assembly.joints]
+        least = [min(weights[side] for side in pair if side != SUPPORT) for pair in sides]
+        return np.array(least)[self.joint] / np.bincount(self.joint)[self.joint]
+
+    @cached_property
+    def matrix(self) -> sparse.csc_matrix:
+        """Forces and moments on blocks, (6 blocks, 3 points), of unit forces at the points."""
+        assembly = self.problem.assembly
+        if not assembly.joints:
+            return sparse.csc_matrix((6 * len(assembly.blocks), 0))
+        points = np.concatenate([each.points for each in assembly.joints])
+        axes = self.axes[self.joint]
+        rows: list[Array] = []
+        columns: list[Array] = []
+        values: list[Array] = []
+        at = 3 * np.arange(len(points))[:, None, None] + np.arange(3)[:, None]
+        for side, sign in (("before", -1.0), ("after", 1.0)):
+            block = np.array([getattr(each, side) for each in assembly.joints])[self.joint]
+            on = block != SUPPORT
+            arms = (points[on] - assembly.centres[block[on]]) / assembly.size
+            wrench = sign * np.concatenate(
+                [axes[on], np.cross(arms[:, None], axes[on])], axis=2
+            )
+            row = 6 * block[on][:, None, None] + np.arange(6)
+            rows.append(np.broadcast_to(row, wrench.shape).ravel())
+            columns.append(np.broadcast_to(at[on], wrench.shape).ravel())
+            values.append(wrench.ravel())
+        shape = (6 * len(assembly.blocks), 3 * len(points))
+        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        return sparse.csc_matrix(entries, shape=shape)
+
+    def pull(self, load: float) -> Array:
+        """Return gravity, dead and live loads, (6 blocks,)."""
+        problem = self.problem
+        return self._scaled(problem.fixed_pull + load * problem.live_pull)
+
+    @property
+    def live(self) -> Array:
+        """Return live loads at a factor of 1, (6 blocks,)."""
+        return self._scaled(self.problem.live_pull)
+
+    def _scaled(self, pull: Array) -> Array:
+        size = self.problem.assembly.size
+        return (pull / self.unit / np.array([1.0, 1.0, 1.0, size, size, size])).ravel()
+
+    def slack(self, forces: Array) -> Array:
+        """Return by how much each point presses more than friction needs, (points,).
+
+        Parameters
+        ----------
+        forces : (3 points,) float
+        """
+        each = forces.reshape(-1, 3)
+        across = np.hypot(each[:, 1], each[:, 2])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            needed = np.where(across > 0, across / self.friction, 0.0)
+        return each[:, 0] - needed
+
+    def opening(self, rates: Array) -> Array:
+        """Return by how much each point opens beyond mu times its slip, (points,).
+
+        Parameters
+        ----------
+        rates : (6 blocks,) float
+        """
+        each = (self.matrix.T @ rates).reshape(-1, 3)
+        slip = np.hypot(each[:, 1], each[:, 2])
+        with np.errstate(invalid="ignore"):
+            dilated = np.where(slip > 0, self.friction * slip, 0.0)
+        return each[:, 0] - dilated
