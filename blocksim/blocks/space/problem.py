@@ -15,6 +15,7 @@ from blocksim.common.checks import (
     FACTOR,
     FORCE,
     SMOOTH_OR_ROUGH,
+    TURN,
     is_number,
     require,
     require_all,
@@ -71,6 +72,8 @@ class SpatialProblem:
         Loads that are multiplied by `load`.
     load : float
         The load factor.
+    azimuth : float
+        Towards where a table tilts, from x towards y [rad].
     title, source : str
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given.
@@ -89,6 +92,7 @@ class SpatialProblem:
     dead: tuple[SpatialLoad, ...] = ()
     live: tuple[SpatialLoad, ...] = ()
     load: float = 0.0
+    azimuth: float = 0.0
     title: str = ""
     source: str = ""
     weighed: bool = True
@@ -100,6 +104,7 @@ class SpatialProblem:
         FACTOR.require("load", self.load)
         object.__setattr__(self, "gravity", frozen(self.gravity, (3,)))
         require_all(FACTOR, "gravity", self.gravity)
+        TURN.require("azimuth", self.azimuth)
 
     def __repr__(self) -> str:
         assembly = self.assembly
@@ -123,19 +128,11 @@ class SpatialProblem:
         """Return the same with another friction coefficient; joints with their own keep it."""
         return replace(self, mu=mu)
 
-    def tilted(self, tilt: float, azimuth: float = 0.0) -> SpatialProblem:
-        """Return the same on a table tilted by an angle [rad]; one side of it goes down.
-
-        Parameters
-        ----------
-        tilt : float
-        azimuth : float
-            Of the side that goes down, from x towards y [rad].
-        """
-        for name, value in (("tilt", tilt), ("azimuth", azimuth)):
-            finite = is_number(value, -math.inf, math.inf) and math.isfinite(value)
-            require(finite, name, value, "a finite angle")
-        return replace(self, gravity=turned(azimuth, tilt) @ self.gravity)
+    def tilted(self, tilt: float) -> SpatialProblem:
+        """Return the same on a table of which the side at the azimuth goes down [rad]."""
+        finite = is_number(tilt, -math.inf, math.inf) and math.isfinite(tilt)
+        require(finite, "tilt", tilt, "a finite angle")
+        return replace(self, gravity=turned(self.azimuth, tilt) @ self.gravity)
 
     @cached_property
     def fixed_pull(self) -> Array:

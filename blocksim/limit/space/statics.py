@@ -10,6 +10,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.limit.space.cones import most
 from blocksim.limit.space.contacts import Contacts
@@ -18,6 +19,8 @@ BALANCED = 1e-12
 """Of each block's own weight: forces and moments that may be left over."""
 FARTHEST = 1e4
 """Times all weight: forces up to which those that would balance are ruled out."""
+SEEN = 1e-5
+"""Of the largest way: rates from which on a joint is told to open or to slide."""
 ROUNDED = 1e-14
 """Of the forces at a block: what rounding may leave over."""
 
@@ -204,3 +207,34 @@ def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
         ways = rate[:3] + np.cross(rate[3:], arms / assembly.size)
         largest = max(largest, float(np.linalg.norm(ways, axis=1).max()))
     return rates / largest if largest > 0 else rates
+
+
+def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...]:
+    """Tell what each joint does in a motion of the blocks.
+
+    Of a hinge some points stay together and others part, or all but one edge does. Sliding
+    opens by mu times the slip, as limit analysis has it: such points count as together.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    rates : (blocks, 6) float
+        The largest way of a corner 1.
+    """
+    contacts = Contacts(problem)
+    each = (contacts.matrix.T @ rates.ravel()).reshape(-1, 3)
+    slip = np.hypot(each[:, 1], each[:, 2])
+    together = contacts.opening(rates.ravel()) <= SEEN
+    states: list[JointState] = []
+    for joint in range(len(problem.assembly.joints)):
+        here = contacts.joint == joint
+        if not together[here].any():
+            states.append(JointState.OPEN)
+            continue
+        slides = bool((slip[here & together] > SEEN).any())
+        parts = not together[here].all()
+        if slides:
+            states.append(JointState.HINGE_AND_SLIDES if parts else JointState.SLIDES)
+        else:
+            states.append(JointState.HINGE_INTRADOS if parts else JointState.CLOSED)
+    return tuple(states)
