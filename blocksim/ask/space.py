@@ -1,11 +1,11 @@
-"""The questions of problems in space, by limit analysis: does it stand, and from where on not."""
+"""The questions of problems in space, by limit analysis: does it stand, and up to where."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -161,10 +161,12 @@ def static_words(static: SpatialEquilibrium) -> str:
         )
     if static.exists is None:
         return (
-            f"neither forces nor a motion pass the check: contacts press by {static.margin:.1g} "
-            f"{own} at most, which is nearer to the limit than floating-point numbers tell"
+            "neither forces nor a motion pass the check: contacts press by "
+            f"{static.margin:.1g} {own} at most, "
+            "which is nearer to the limit than floating-point numbers tell"
         )
-    far = "" if static.gap == 0 else f" that are less than {1 / static.gap:.1g} times all weight"
+    most = 1 / static.gap if static.gap else math.inf
+    far = "" if math.isinf(most) else f" that are less than {most:.1g} times all weight"
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
     return (
@@ -259,9 +261,9 @@ class _Tried:
         found: dict[bool, float | None] = {}
         for stands in (True, False):
             up = stands == rises
-            near = (limit + (by if up else -by) * max(abs(limit), 1e-6) for by in BESIDE)
-            within = (each for by, each in zip(BESIDE, near, strict=True) if by <= max(tol, BESIDE[0]))
-            found[up] = next((each for each in within if self(each).exists is stands), None)
+            step = (1 if up else -1) * max(abs(limit), 1e-6)
+            near = (limit + by * step for by in BESIDE if by <= max(tol, BESIDE[0]))
+            found[up] = next((each for each in near if self(each).exists is stands), None)
         return found[False], found[True]
 
 

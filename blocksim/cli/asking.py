@@ -58,7 +58,7 @@ def check(
     if in_space(scene):
         from blocksim.cli.space import check_in_space, problem_in_space
 
-        others = {"joint": joint, "must_rest": must_rest, "proof": proof}
+        others: dict[str, object] = {"joint": joint, "must_rest": must_rest, "proof": proof}
         asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce}
         solid = problem_in_space(scene or "", given, loading)
         check_in_space(solid, asked, others, as_json=as_json)
@@ -104,7 +104,7 @@ def bracket(
     if in_space(scene):
         from blocksim.cli.space import bracket_in_space, problem_in_space
 
-        others = {**asdict(crossed), "within": within, "proof": proof}
+        others: dict[str, object] = {**asdict(crossed), "within": within, "proof": proof}
         asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce,
                           "tol": tol}  # fmt: skip
         solid = problem_in_space(scene or "", given, loading)

@@ -42,9 +42,7 @@ def problem_in_space(scene: str, given: Given, loading: Loading) -> SpatialProbl
     if heavy is not None:
         require_unit_weight("--unit-weight", heavy)
     density = None if heavy is None else 1000 * heavy
-    problem = load_in_space(
-        scene, density, friction=given.friction, tolerance=given.tolerance
-    )
+    problem = load_in_space(scene, density, friction=given.friction, tolerance=given.tolerance)
     if given.friction is not None:
         problem = problem.with_friction(given.friction)
     if loading.load is not None:

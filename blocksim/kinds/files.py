@@ -276,7 +276,7 @@ def structure_of(data: object, *own: type[Maker]) -> Problem:
     """
     if not isinstance(data, dict) or "kind" not in data:
         allowed = "x and y: in space check and bracket answer, and load_in_space reads"
-        require(not _has_depth(data), "blocks", "three coordinates", allowed)
+        require(not _has_depth(cast("object", data)), "blocks", "three coordinates", allowed)
         return structure.structure_of(cast("object", data))
     table = cast("dict[str, Any]", data)
     require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
@@ -291,8 +291,9 @@ def _has_depth(data: object) -> bool:
     from blocksim.blocks.space.files import is_spatial
 
     table = cast("dict[str, Any]", data) if isinstance(data, dict) else {}
-    blocks = table.get("blocks")
-    return isinstance(blocks, list) and is_spatial({"blocks": cast("list[Any]", blocks)[:1]})
+    blocks: Any = table.get("blocks")
+    first = cast("list[Any]", blocks)[:1] if isinstance(blocks, list) else []
+    return is_spatial({"blocks": first})
 
 
 ALL = tuple(KINDS.values())

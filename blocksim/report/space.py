@@ -100,7 +100,8 @@ def _problem_record(problem: SpatialProblem) -> ProblemRecord:
         "azimuth_deg": math.degrees(problem.azimuth),
         "load": problem.load,
         "weight_kN": float(problem.assembly.weights.sum()) / 1000,
-        "live_weight_kN": 0.0 - sum(
+        "live_weight_kN": 0.0
+        - sum(
             float(load.force[2]) * len(load.blocks) / 1000
             for load in problem.live
             if not load.per_weight

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array, frozen
 from blocksim.blocks.outlines import step_of
@@ -16,6 +16,8 @@ from blocksim.blocks.space.polyhedron import Polyhedron
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 
+Flags = NDArray[np.bool_]
+Places = NDArray[np.int64]
 SLACK = 1e-7
 """Share of the thinner block by which faces that touch may part, whatever the rounding."""
 STEPS = 2.0
@@ -245,32 +247,32 @@ def _require_apart(hulls: Sequence[Polyhedron], name: str, slack: float) -> None
     """Refuse parts of one block that overlap: their volume would count twice."""
     for at, first in enumerate(hulls):
         for second in hulls[at + 1 :]:
-            allowed_gap = _slack_of(first, second, slack)
-            found = contact(first, second, allowed_gap)
+            found = contact(first, second, _slack_of(first, second, slack, MOST_SHARE))
             if isinstance(found, Overlap):
                 depth = f"{found.depth:.3g} m"
                 raise InputError(f"block {name}: polyhedra", depth, "parts that do not overlap")
 
 
-def _slack_of(first: Polyhedron, second: Polyhedron, slack: float, share: float = MOST_SHARE) -> float:
+def _slack_of(first: Polyhedron, second: Polyhedron, slack: float, share: float) -> float:
     """Return how far apart two polyhedra that touch may be drawn [m]."""
     thin = min(first.thickness, second.thickness)
     return max(SLACK * thin, min(slack, share * thin))
 
 
 def _found(
-    made: Sequence[SolidBlock], fixed: Array, slack: float, *, given: bool
+    made: Sequence[SolidBlock], fixed: Flags, slack: float, *, given: bool
 ) -> list[FaceJoint]:
     """Find all joints but those between two fixed blocks."""
     hulls = [hull for block in made for hull in block.hulls]
-    owner = np.array([at for at, block in enumerate(made) for _ in block.hulls])
+    owner = [at for at, block in enumerate(made) for _ in block.hulls]
     joints: list[FaceJoint] = []
     for one, other in _near(hulls, slack):
         a, b = owner[one], owner[other]
         if a == b or (fixed[a] and fixed[b]):
             continue
         share = 4 * MOST_SHARE if given else MOST_SHARE
-        found = contact(hulls[one], hulls[other], _slack_of(hulls[one], hulls[other], slack, share))
+        own = _slack_of(hulls[one], hulls[other], slack, share)
+        found = contact(hulls[one], hulls[other], own)
         if isinstance(found, Overlap):
             pair = f"blocks {made[a].name} and {made[b].name}"
             depth = f"overlap by {found.depth:.3g} m"
@@ -278,8 +280,8 @@ def _found(
         if isinstance(found, Contact):
             joints.append(
                 FaceJoint(
-                    before=int(a),
-                    after=int(b),
+                    before=a,
+                    after=b,
                     points=frozen(found.points, (-1, 3)),
                     normal=frozen(found.normal, (3,)),
                     gap=found.gap,
@@ -299,7 +301,7 @@ def _near(hulls: Sequence[Polyhedron], slack: float) -> Iterable[tuple[int, int]
             yield at, at + 1 + other
 
 
-def _placed(joint: FaceJoint, fixed: Array, place: Array) -> FaceJoint:
+def _placed(joint: FaceJoint, fixed: Flags, place: Places) -> FaceJoint:
     """Return a joint by the places of blocks among those that move."""
     a, b = joint.before, joint.after
     ends = [SUPPORT if fixed[each] else int(place[each]) for each in (a, b)]

@@ -9,6 +9,8 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.space.polyhedron import Polyhedron, frame
 
+Spot = tuple[float, float]
+"""A point in a plane."""
 PARALLEL = 1e-9
 """Sine of the angle below which two edges have one direction."""
 
@@ -127,22 +129,29 @@ def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) 
     return shared @ across + middle * normal
 
 
+def _spots(points: Array) -> list[Spot]:
+    """Return the points of an array, (k, 2)."""
+    return [(x, y) for x, y in points.tolist()]
+
+
 def _outline(points: Array) -> Array:
     """Return the corners of the hull of points in the plane, counter-clockwise.
 
     Andrew's monotone chain; points on a line are its two ends.
     """
-    order = sorted(map(tuple, points.tolist()))
+    order = sorted(_spots(points))
     scale = max(float(np.ptp(points, axis=0).max()), 1e-300)
 
-    def chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
-        found: list[tuple[float, ...]] = []
+    def chain(ordered: list[Spot]) -> list[Spot]:
+        found: list[Spot] = []
         for point in ordered:
             while len(found) > 1 and _turn(found[-2], found[-1], point) <= 1e-12 * scale**2:
                 found.pop()
-            if not found or max(
-                abs(found[-1][0] - point[0]), abs(found[-1][1] - point[1])
-            ) > 1e-12 * scale:
+            if (
+                not found
+                or max(abs(found[-1][0] - point[0]), abs(found[-1][1] - point[1]))
+                > 1e-12 * scale
+            ):
                 found.append(point)
         return found
 
@@ -152,7 +161,7 @@ def _outline(points: Array) -> Array:
     return np.array([*lower[:-1], *upper[:-1]]) if len(lower) > 1 else np.array(lower)
 
 
-def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
+def _turn(a: Spot, b: Spot, c: Spot) -> float:
     """Return twice the area of a triangle, above 0 counter-clockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
@@ -164,9 +173,9 @@ def _clipped(ours: Array, theirs: Array, slack: float) -> Array:
     """
     if len(theirs) < 3 <= len(ours):
         ours, theirs = theirs, ours
-    kept = [tuple(each) for each in ours.tolist()]
+    kept = _spots(ours)
     if len(theirs) >= 3:
-        around = [tuple(each) for each in theirs.tolist()]
+        around = _spots(theirs)
         for start, end in zip(around, around[1:] + around[:1], strict=True):
             kept = _inside(kept, start, end, slack)
     elif len(theirs) == 2 and len(kept) == 2:
@@ -178,8 +187,11 @@ def _clipped(ours: Array, theirs: Array, slack: float) -> Array:
 
 
 def _inside(
-    kept: list[tuple[float, ...]], start: tuple[float, ...], end: tuple[float, ...], slack: float
-) -> list[tuple[float, ...]]:
+    kept: list[Spot],
+    start: Spot,
+    end: Spot,
+    slack: float,
+) -> list[Spot]:
     """Keep what lies to the left of a line; a point or a segment on it, too."""
     long = float(np.hypot(end[0] - start[0], end[1] - start[1]))
     if not (long and kept):
@@ -189,7 +201,7 @@ def _inside(
     sides = [_turn(start, end, each) / long - least for each in kept]
     if len(kept) == 1:
         return kept if sides[0] > 0 else []
-    found: list[tuple[float, ...]] = []
+    found: list[Spot] = []
     pairs = range(len(kept)) if len(kept) > 2 else range(1)
     for at in pairs:
         here, there = kept[at], kept[(at + 1) % len(kept)]
@@ -198,13 +210,17 @@ def _inside(
             found.append(here)
         if a * b < 0:
             share = a / (a - b)
-            found.append(tuple(p + share * (q - p) for p, q in zip(here, there, strict=True)))
+            x, y = (
+                here[0] + share * (there[0] - here[0]),
+                here[1] + share * (there[1] - here[1]),
+            )
+            found.append((x, y))
         if len(kept) == 2 and b >= 0:
             found.append(there)
     return found
 
 
-def _segments(ours: Array, theirs: Array, slack: float) -> list[tuple[float, ...]]:
+def _segments(ours: Array, theirs: Array, slack: float) -> list[Spot]:
     """Return what two segments have in common: a point where they cross, or a piece."""
     along = ours[1] - ours[0]
     long = float(np.hypot(*along))
@@ -214,11 +230,11 @@ def _segments(ours: Array, theirs: Array, slack: float) -> list[tuple[float, ...
     at = (theirs - ours[0]) @ along
     if np.abs(off).max() <= slack:
         low, high = max(0.0, at.min()), min(long, at.max())
-        return [tuple(ours[0] + each * along) for each in (low, high)] if high > low else []
+        return _spots(ours[0] + np.outer([low, high], along)) if high > low else []
     if off[0] * off[1] >= 0:
         return []
     place = at[0] + off[0] / (off[0] - off[1]) * (at[1] - at[0])
-    return [tuple(ours[0] + place * along)] if slack < place < long - slack else []
+    return _spots((ours[0] + place * along)[None]) if slack < place < long - slack else []
 
 
 def _cross(ours: Array, theirs: Array) -> bool:
@@ -227,9 +243,9 @@ def _cross(ours: Array, theirs: Array) -> bool:
     return bool(abs(a[0] * b[1] - a[1] * b[0]) > PARALLEL * np.hypot(*a) * np.hypot(*b))
 
 
-def _apart(points: list[tuple[float, ...]], slack: float) -> Array:
+def _apart(points: list[Spot], slack: float) -> Array:
     """Leave out points that are nearer than `slack` to the one before."""
-    found: list[tuple[float, ...]] = []
+    found: list[Spot] = []
     for point in points:
         near = (found[-1], found[0]) if found else ()
         if all(np.hypot(point[0] - p[0], point[1] - p[1]) > slack for p in near):

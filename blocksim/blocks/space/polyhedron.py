@@ -128,7 +128,7 @@ class Polyhedron:
 
     @cached_property
     def thickness(self) -> float:
-        """The least distance between two parallel planes around it, of those of its hull [m]."""
+        """The least distance between two planes around it, one of which is a face's [m]."""
         triangles = self.triangles
         cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
         areas = np.linalg.norm(cross, axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, cast
 
 import numpy as np
 from scipy import sparse
@@ -12,10 +12,8 @@ from blocksim.blocks.assembly import Array
 from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
 
-if TYPE_CHECKING:
-    import clarabel
-else:
-    clarabel = Library("clarabel")
+# It has no types.
+clarabel = cast("Any", Library("clarabel"))
 
 FINEST = 1e-11
 """Gap and residuals at which Clarabel may end; it ends where it gets no farther."""
@@ -43,7 +41,7 @@ class Answer:
     rates: Array
 
 
-def most(matrix: sparse.csc_matrix, pull: Array, friction: Array, **sought: Array) -> Answer:
+def most(matrix: Any, pull: Array, friction: Array, **sought: Array) -> Answer:
     """Find forces within friction that balance, at the largest value of one unknown.
 
     Parameters
@@ -64,7 +62,7 @@ def most(matrix: sparse.csc_matrix, pull: Array, friction: Array, **sought: Arra
     Unsolved
         If the solver gives up.
     """
-    rows, points = matrix.shape[0], len(friction)
+    rows, points = int(matrix.shape[0]), len(friction)
     live, press = sought.get("live"), sought.get("press")
     column = np.zeros(rows) if live is None else live
     equal = sparse.hstack([matrix, sparse.csc_matrix(column[:, None])], format="csc")
@@ -87,17 +85,18 @@ def most(matrix: sparse.csc_matrix, pull: Array, friction: Array, **sought: Arra
         empty, cost, stacked, np.concatenate(right), cones, settings
     ).solve()
     said = str(found.status)
-    values, prices = np.array(found.x), np.array(found.z)
+    values: Array = np.array(found.x)
+    prices: Array = np.array(found.z)
     if "PrimalInfeasible" in said:
         return Answer(np.zeros(0), -np.inf, prices[:rows])
     if "DualInfeasible" in said:
         return Answer(np.zeros(0), np.inf, np.zeros(rows))
     if said not in SOLVED or not np.isfinite(values).all() or not np.isfinite(prices).all():
-        raise Unsolved(f"Clarabel says {said!r}")
+        raise Unsolved
     return Answer(values[:-1], float(values[-1]), prices[:rows])
 
 
-def _law(friction: Array, press: Array) -> tuple[sparse.csc_matrix, list[Any]]:
+def _law(friction: Array, press: Array) -> tuple[Any, list[Any]]:
     """Return what friction asks of the forces, and the cones in which that lies."""
     points = len(friction)
     rough, smooth = np.isinf(friction), friction == 0

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.blocks.space.problem import SpatialProblem
+
+Places = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +33,7 @@ class Contacts:
     problem: SpatialProblem
 
     @cached_property
-    def joint(self) -> Array:
+    def joint(self) -> Places:
         """Joint of each point, (points,)."""
         joints = self.problem.assembly.joints
         return np.repeat(np.arange(len(joints)), [len(each.points) for each in joints])
@@ -63,22 +67,22 @@ class Contacts:
         return np.array(least)[self.joint] / np.bincount(self.joint)[self.joint]
 
     @cached_property
-    def matrix(self) -> sparse.csc_matrix:
+    def matrix(self) -> Any:
         """Forces and moments on blocks, (6 blocks, 3 points), of unit forces at the points."""
         assembly = self.problem.assembly
         if not assembly.joints:
             return sparse.csc_matrix((6 * len(assembly.blocks), 0))
         points = np.concatenate([each.points for each in assembly.joints])
         axes = self.axes[self.joint]
-        rows: list[Array] = []
-        columns: list[Array] = []
+        rows: list[Any] = []
+        columns: list[Any] = []
         values: list[Array] = []
         at = 3 * np.arange(len(points))[:, None, None] + np.arange(3)[:, None]
         for side, sign in (("before", -1.0), ("after", 1.0)):
             block = np.array([getattr(each, side) for each in assembly.joints])[self.joint]
             on = block != SUPPORT
             arms = (points[on] - assembly.centres[block[on]]) / assembly.size
-            wrench = sign * np.concatenate(
+            wrench: Array = sign * np.concatenate(
                 [axes[on], np.cross(arms[:, None], axes[on])], axis=2
             )
             row = 6 * block[on][:, None, None] + np.arange(6)

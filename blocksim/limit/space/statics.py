@@ -1,9 +1,10 @@
-"""Do forces of equilibrium exist in space, and up to which load?"""
+"""Forces of equilibrium in space: whether they exist, and up to which load."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 from scipy import sparse
@@ -156,19 +157,25 @@ def _balanced(contacts: Contacts, pull: Array, forces: Array) -> tuple[Array, fl
             return forces, math.inf
         # Points change by no more than they can spare.
         weights = np.repeat(np.minimum(slack, own) ** 2, 3)
-        weighted = matrix @ sparse.diags(weights)
-        normal = sparse.csc_matrix(weighted @ matrix.T)
+        weighted: Any = matrix @ sparse.diags(weights)
+        normal: Any = sparse.csc_matrix(weighted @ matrix.T)
         scale = normal.diagonal().max()
         normal = normal + sparse.identity(normal.shape[0], format="csc") * (1e-15 * scale)
-        rest = -(matrix @ forces + pull)
-        forces = forces + weights * (matrix.T @ splu(normal.tocsc()).solve(rest))
-    each = np.abs(matrix) @ np.abs(forces) + np.abs(pull)
-    rest = np.abs(matrix @ forces + pull)
+        rest: Array = -(matrix @ forces + pull)
+        forces = forces + weights * (matrix.T @ _solved(normal, rest))
+    each: Array = abs(matrix) @ np.abs(forces) + np.abs(pull)
+    left_over: Array = np.abs(matrix @ forces + pull)
     # What rounding alone may leave is none.
-    rest[rest <= ROUNDED * each] = 0.0
+    left_over[left_over <= ROUNDED * each] = 0.0
     blocks = contacts.problem.assembly.weights / contacts.unit
-    left = float((rest.reshape(-1, 6).max(axis=1) / blocks).max())
+    left = float((left_over.reshape(-1, 6).max(axis=1) / blocks).max())
     return forces, left if (contacts.slack(forces) > 0).all() else math.inf
+
+
+def _solved(matrix: Any, right: Array) -> Array:
+    """Solve linear equations."""
+    factors = cast("Any", splu(matrix.tocsc()))
+    return cast("Array", factors.solve(right))
 
 
 def _ruled_out(contacts: Contacts, pull: Array, rates: Array) -> float:
