@@ -274,9 +274,9 @@ def _halved(tried: _Tried, low: float, high: float, *, rises: bool) -> float | N
     (0 where it needs no friction).
     """
     safe, unsafe = (high, low) if rises else (low, high)
-    if not tried(safe).margin > 0:
+    if not tried(safe).exists:
         return None
-    if tried(unsafe).margin > 0:
+    if tried(unsafe).exists:
         return 0.0 if rises else math.inf
     for _ in range(HALVINGS):
         middle = math.sqrt(low * high) if rises else (low + high) / 2

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
+from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.limit.space.cones import Answer, most
 
 Places = NDArray[np.int64]
+NEAR = (1e-8, 1e-7, 1e-6, 1e-5, 1e-6, 1e-7)
+"""Of the largest rate: openings below which points are held together, step by step."""
+SOFT = 1e-14
+"""Of the largest stiffness: what keeps equations solvable that say the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +113,31 @@ class Contacts:
         size = self.problem.assembly.size
         return (pull / self.unit / np.array([1.0, 1.0, 1.0, size, size, size])).ravel()
 
+    @cached_property
+    def rows(self) -> Array:
+        """Scale of each equation, (6 blocks,): a block's weight, and that times its size."""
+        assembly = self.problem.assembly
+        boxes = [[hull.box for hull in block.hulls] for block in assembly.blocks]
+        own = [np.ptp(np.concatenate(each), axis=0).max() / 2 for each in boxes]
+        arms = np.array(own) / assembly.size
+        scale = np.stack([np.ones(len(arms))] * 3 + [arms] * 3, axis=1)
+        return (scale * (assembly.weights / self.unit)[:, None]).ravel()
+
+    def most(self, pull: Array, live: Array | None = None) -> Answer:
+        """Find the largest factor on `live`, or the most that all points can press by.
+
+        Forces and equations are in units of the blocks beside them, so that blocks of any
+        weight and size count alike.
+        """
+        each = np.repeat(self.own, 3)
+        matrix = sparse.diags(1 / self.rows) @ self.matrix @ sparse.diags(each)
+        sought = (
+            {"press": np.ones(len(self.own))} if live is None else {"live": live / self.rows}
+        )
+        found = most(matrix, pull / self.rows, self.friction, **sought)
+        forces = found.forces * each if len(found.forces) else found.forces
+        return Answer(forces, found.value, found.rates / self.rows)
+
     def slack(self, forces: Array) -> Array:
         """Return by how much each point presses more than friction needs, (points,).
 
@@ -123,12 +154,63 @@ class Contacts:
     def opening(self, rates: Array) -> Array:
         """Return by how much each point opens beyond mu times its slip, (points,).
 
+        Without a bound on friction no point may slip: what does counts below 0.
+
         Parameters
         ----------
         rates : (6 blocks,) float
         """
         each = (self.matrix.T @ rates).reshape(-1, 3)
         slip = np.hypot(each[:, 1], each[:, 2])
-        with np.errstate(invalid="ignore"):
-            dilated = np.where(slip > 0, self.friction * slip, 0.0)
-        return each[:, 0] - dilated
+        rough = np.isinf(self.friction)
+        mu = np.where(rough, 0.0, self.friction)
+        return np.where(rough, np.minimum(each[:, 0], -slip), each[:, 0] - mu * slip)
+
+    def mended(self, rates: Array) -> Array:
+        """Return rates at which points that nearly stay together do so to rounding.
+
+        Of points that slide the dilation is held to mu times the slip, of others all three
+        rates to 0: Newton's method on what the solver left over.
+
+        Parameters
+        ----------
+        rates : (6 blocks,) float
+        """
+        scale = np.sqrt(self.rows)
+        matrix = sparse.csr_matrix(self.matrix.T @ sparse.diags(1 / scale))
+        best, least = rates, float(-self.opening(rates).min())
+        for nearness in NEAR:
+            each = (self.matrix.T @ best).reshape(-1, 3)
+            slip = np.hypot(each[:, 1], each[:, 2])
+            size = float(np.abs(each).max())
+            near = np.abs(self.opening(best)) <= nearness * size
+            if not near.any():
+                continue
+            slides = near & (slip > nearness * size) & ~np.isinf(self.friction)
+            still = np.flatnonzero(near & ~slides)
+            at = np.flatnonzero(slides)
+            way = each[at, 1:] / slip[at, None] if len(at) else np.zeros((0, 2))
+            rows = sparse.vstack(
+                [
+                    matrix[3 * at]
+                    - sparse.diags(self.friction[at] * way[:, 0]) @ matrix[3 * at + 1]
+                    - sparse.diags(self.friction[at] * way[:, 1]) @ matrix[3 * at + 2],
+                    *(matrix[3 * still + axis] for axis in range(3)),
+                ]
+            ).tocsc()
+            left = np.concatenate([self.opening(best)[at], *(each[still].T)])
+            normal = rows.T @ rows
+            normal = normal + sparse.identity(normal.shape[0]) * (
+                SOFT * normal.diagonal().max()
+            )
+            step = solved(normal, -(rows.T @ left)) / scale
+            error = float(-self.opening(best + step).min())
+            if error < least:
+                best, least = best + step, error
+        return best
+
+
+def solved(matrix: Any, right: Array) -> Array:
+    """Solve linear equations."""
+    factors = cast("Any", splu(matrix.tocsc()))
+    return cast("Array", factors.solve(right))

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.limit.space.cones import most
-from blocksim.limit.space.contacts import Contacts
+from blocksim.limit.space.contacts import Contacts, solved
 
 BALANCED = 1e-12
 """Of each block's own weight: forces and moments that may be left over."""
-FARTHEST = 1e4
+FARTHEST = 1e5
 """Times all weight: forces up to which those that would balance are ruled out."""
 SEEN = 1e-5
 """Of the largest way: rates from which on a joint is told to open or to slide."""
@@ -94,13 +92,14 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
     """
     contacts = Contacts(problem)
     pull = contacts.pull(problem.load)
-    found = most(contacts.matrix, pull, contacts.friction, press=contacts.own)
-    exists, gap, forces = None, math.inf, None
+    found = contacts.most(pull)
+    exists, gap, forces, rates = None, math.inf, None, found.rates
     if len(found.forces) and found.value > 0:
         forces, gap = _balanced(contacts, pull, found.forces)
         exists = True if gap <= BALANCED else None
     else:
-        gap = _ruled_out(contacts, pull, found.rates)
+        rates = contacts.mended(found.rates)
+        gap = _ruled_out(contacts, pull, rates)
         exists = False if gap * FARTHEST < 1 else None
     sums = None
     if exists and forces is not None:
@@ -113,7 +112,7 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
         margin=found.value,
         forces=sums,
         point_forces=forces if exists else None,
-        mechanism=_unit(contacts, found.rates) if exists is False else None,
+        mechanism=_unit(contacts, rates) if exists is False else None,
         gap=gap,
     )
 
@@ -133,8 +132,8 @@ def largest_load(problem: SpatialProblem) -> LargestLoad:
     contacts = Contacts(problem)
     pull, live = contacts.pull(0.0), contacts.live
     # In units of its own size, as loads may be of any.
-    unit = float(np.abs(live).max()) or 1.0
-    found = most(contacts.matrix, pull, contacts.friction, live=live / unit)
+    unit = float(np.abs(live / contacts.rows).max()) or 1.0
+    found = contacts.most(pull, live / unit)
     if math.isinf(found.value):
         return LargestLoad(factor=None if found.value < 0 else math.inf, gap=0.0)
     work = float(found.rates @ live) / unit
@@ -162,7 +161,7 @@ def _balanced(contacts: Contacts, pull: Array, forces: Array) -> tuple[Array, fl
         scale = normal.diagonal().max()
         normal = normal + sparse.identity(normal.shape[0], format="csc") * (1e-15 * scale)
         rest: Array = -(matrix @ forces + pull)
-        forces = forces + weights * (matrix.T @ _solved(normal, rest))
+        forces = forces + weights * (matrix.T @ solved(normal, rest))
     each: Array = abs(matrix) @ np.abs(forces) + np.abs(pull)
     left_over: Array = np.abs(matrix @ forces + pull)
     # What rounding alone may leave is none.
@@ -170,12 +169,6 @@ def _balanced(contacts: Contacts, pull: Array, forces: Array) -> tuple[Array, fl
     blocks = contacts.problem.assembly.weights / contacts.unit
     left = float((left_over.reshape(-1, 6).max(axis=1) / blocks).max())
     return forces, left if (contacts.slack(forces) > 0).all() else math.inf
-
-
-def _solved(matrix: Any, right: Array) -> Array:
-    """Solve linear equations."""
-    factors = cast("Any", splu(matrix.tocsc()))
-    return cast("Array", factors.solve(right))
 
 
 def _ruled_out(contacts: Contacts, pull: Array, rates: Array) -> float:
@@ -231,7 +224,8 @@ def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...
     contacts = Contacts(problem)
     each = (contacts.matrix.T @ rates.ravel()).reshape(-1, 3)
     slip = np.hypot(each[:, 1], each[:, 2])
-    together = contacts.opening(rates.ravel()) <= SEEN
+    mu = np.where(np.isinf(contacts.friction), 0.0, contacts.friction)
+    together = each[:, 0] - mu * slip <= SEEN
     states: list[JointState] = []
     for joint in range(len(problem.assembly.joints)):
         here = contacts.joint == joint
