@@ -160,7 +160,7 @@ class Contacts:
         ----------
         rates : (6 blocks,) float
         """
-        each = (self.matrix.T @ rates).reshape(-1, 3)
+        each: Array = (self.matrix.T @ rates).reshape(-1, 3)
         slip = np.hypot(each[:, 1], each[:, 2])
         rough = np.isinf(self.friction)
         mu = np.where(rough, 0.0, self.friction)
