@@ -26,12 +26,15 @@ if TYPE_CHECKING:
     from blocksim.ask.citing import cite
     from blocksim.ask.options import Options
     from blocksim.ask.simulate import simulate
+    from blocksim.ask.space import SpatialBracket, SpatialCheck
     from blocksim.blocks.assembly import Assembly, Block, Joint
     from blocksim.blocks.given import Body, GivenJoint
     from blocksim.blocks.joints import JointState
     from blocksim.blocks.made import Built, Fill, Made
     from blocksim.blocks.maker import Maker, Table, count, metres, parameter
     from blocksim.blocks.problem import Load, Problem
+    from blocksim.blocks.space.assembly import FaceJoint, Solid, assembly_in_space
+    from blocksim.blocks.space.problem import SpatialLoad, SpatialProblem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
     from blocksim.kinds.arcade import Arcade
     from blocksim.kinds.basket import BasketHandleArch
@@ -39,7 +42,7 @@ if TYPE_CHECKING:
     from blocksim.kinds.circular import CircularArch
     from blocksim.kinds.column import Column
     from blocksim.kinds.elliptic import EllipticArch
-    from blocksim.kinds.files import load_structure, structure_of
+    from blocksim.kinds.files import load_in_space, load_structure, structure_of
     from blocksim.kinds.flat import FlatArch
     from blocksim.kinds.loading import load
     from blocksim.kinds.offers import Offers
@@ -71,6 +74,7 @@ __all__ = [
     "Column",
     "EllipticArch",
     "Evidence",
+    "FaceJoint",
     "Fill",
     "FlatArch",
     "GivenJoint",
@@ -91,11 +95,17 @@ __all__ = [
     "Problem",
     "Recording",
     "Rubble",
+    "Solid",
+    "SpatialBracket",
+    "SpatialCheck",
+    "SpatialLoad",
+    "SpatialProblem",
     "Stack",
     "Table",
     "Verdict",
     "Wall",
     "__version__",
+    "assembly_in_space",
     "bracket",
     "check",
     "cite",
@@ -103,6 +113,7 @@ __all__ = [
     "count",
     "equilibrium",
     "load",
+    "load_in_space",
     "load_recording",
     "load_structure",
     "metres",
@@ -120,12 +131,15 @@ _PLACES = {
     "ask.citing": ("cite",),
     "ask.options": ("Options",),
     "ask.simulate": ("simulate",),
+    "ask.space": ("SpatialBracket", "SpatialCheck"),
     "blocks.assembly": ("Assembly", "Block", "Joint"),
     "blocks.given": ("Body", "GivenJoint"),
     "blocks.joints": ("JointState",),
     "blocks.made": ("Built", "Fill", "Made"),
     "blocks.maker": ("Maker", "Table", "count", "metres", "parameter"),
     "blocks.problem": ("Load", "Problem"),
+    "blocks.space.assembly": ("FaceJoint", "Solid", "assembly_in_space"),
+    "blocks.space.problem": ("SpatialLoad", "SpatialProblem"),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "simulation.recording": ("Recording",),
     "simulation.verdict": ("Evidence", "Verdict"),
@@ -135,7 +149,7 @@ _PLACES = {
     "kinds.circular": ("CircularArch",),
     "kinds.column": ("Column",),
     "kinds.elliptic": ("EllipticArch",),
-    "kinds.files": ("load_structure", "structure_of"),
+    "kinds.files": ("load_in_space", "load_structure", "structure_of"),
     "kinds.flat": ("FlatArch",),
     "kinds.loading": ("load",),
     "kinds.offers": ("Offers",),

@@ -47,6 +47,7 @@ LIBRARIES = (
     "blocksim.cli.sweeping",
     "blocksim.kinds.files",
     "blocksim.view.video",
+    "clarabel",
     "ezdxf",
     "highspy",
     "pymunk",

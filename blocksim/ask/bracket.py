@@ -6,7 +6,7 @@ import math
 import time
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from blocksim.ask.ends import (
     Ask,
@@ -31,6 +31,7 @@ from blocksim.ask.searches import (
     slowly,
 )
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.shown import Shown
@@ -40,6 +41,7 @@ from blocksim.simulation.verdict import Evidence, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchBracket
+    from blocksim.ask.space import SpatialBracket
     from blocksim.ask.spread import Happening
     from blocksim.engines.base import Engine, Method
     from blocksim.limit.proof import Proof
@@ -145,13 +147,29 @@ class Bracket(Shown):
         )
 
 
+@overload
+def bracket(
+    asked: SpatialProblem,
+    *,
+    over: str | None = None,
+    within: Within | None = None,
+    **options: Unpack[Options],
+) -> SpatialBracket: ...
+@overload
 def bracket(
     asked: Asked | Family,
     *,
     over: str | None = None,
-    within: tuple[float, float] | None = None,
+    within: Within | None = None,
     **options: Unpack[Options],
-) -> Bracket:
+) -> Bracket: ...
+def bracket(
+    asked: Asked | Family | SpatialProblem,
+    *,
+    over: str | None = None,
+    within: Within | None = None,
+    **options: Unpack[Options],
+) -> Bracket | SpatialBracket:
     """Find the value of a parameter at which blocks change from standing to falling.
 
     Engines search with the onset test and let the blocks go at both ends. Where limit analysis
@@ -159,7 +177,7 @@ def bracket(
 
     Parameters
     ----------
-    asked : Problem, Maker or Family
+    asked : Problem, Maker, Family or SpatialProblem
     over : str, optional
         One of `blocksim.ask.families.families_of`; by default the thickness, where there is
         one.
@@ -172,7 +190,7 @@ def bracket(
 
     Returns
     -------
-    Bracket
+    Bracket or SpatialBracket
 
     Raises
     ------
@@ -190,6 +208,11 @@ def bracket(
     """
     started = time.perf_counter()
     given = taken(options)
+    if isinstance(asked, SpatialProblem):
+        # What is asked in space is loaded where it is asked for.
+        from blocksim.ask.space import bracket_in_space
+
+        return bracket_in_space(asked, over, within, given)
     if isinstance(asked, Family):
         require(over is None, "over", over, "left out: the family says it")
         return _of_family(asked, within, given, started)

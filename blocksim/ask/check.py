@@ -6,7 +6,7 @@ import math
 import time
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Unpack
+from typing import TYPE_CHECKING, NamedTuple, Unpack, overload
 
 from blocksim.ask.carried import carried_of
 from blocksim.ask.methods import choose, chosen_words, engine_of, reduces
@@ -17,6 +17,8 @@ from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import require
 from blocksim.common.shown import Shown
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
@@ -27,6 +29,7 @@ from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer
+    from blocksim.ask.space import SpatialCheck
     from blocksim.engines.base import Method
     from blocksim.limit.proof import Proof
     from blocksim.simulation.observation import Observation
@@ -165,12 +168,20 @@ class Check(Shown):
         return f"Check({self.verdict}, by {self.method}, of {self.problem!r})"
 
 
-def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) -> Check:
+@overload
+def check(
+    asked: SpatialProblem, *, must_rest: bool = False, **options: Unpack[Options]
+) -> SpatialCheck: ...
+@overload
+def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) -> Check: ...
+def check(
+    asked: Asked | SpatialProblem, *, must_rest: bool = False, **options: Unpack[Options]
+) -> Check | SpatialCheck:
     """Tell whether blocks stand under their loads.
 
     Parameters
     ----------
-    asked : Problem or Maker
+    asked : Problem, Maker or SpatialProblem
     must_rest : bool
         Find out as well whether it must rest, or friction may let it move
         (`blocksim.limit.starting`): a second with 8 joints, ten with 28.
@@ -179,7 +190,7 @@ def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) 
 
     Returns
     -------
-    Check
+    Check or SpatialCheck
 
     Raises
     ------
@@ -198,6 +209,12 @@ def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) 
     """
     started = time.perf_counter()
     given = taken(options, "tol", "confirm")
+    if isinstance(asked, SpatialProblem):
+        # What is asked in space is loaded where it is asked for.
+        from blocksim.ask.space import check_in_space
+
+        require(not must_rest, "must_rest", must_rest, "left out: it is not known in space")
+        return check_in_space(asked, given)
     problem = problem_of(asked)
     chosen = choose(given.method, problem=problem, settings=given.settings, reduce=given.reduce)
     if must_rest:

@@ -45,6 +45,16 @@ Note = Annotated[str, Field(max_length=2000, strict=True)]
 MOST_NOTES = 20
 
 
+def some(least: int, most: int) -> Any:
+    """Return what says how many entries a list may have."""
+    return Field(min_length=least, max_length=most)
+
+
+def most(length: int) -> Any:
+    """Return the same of a list or a text that may be empty."""
+    return Field(max_length=length)
+
+
 @dataclass(frozen=True, kw_only=True)
 class BlockEntry(Written):
     """Entry of `blocks`: `vertices`, or `polygons` that move as one; see `Body`.

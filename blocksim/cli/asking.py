@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Annotated
 
 import click
@@ -9,6 +10,7 @@ import click
 from blocksim.ask.bracket import bracket as ask_bracket
 from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
+from blocksim.ask.options import Options
 from blocksim.cli.arguments import Option
 from blocksim.cli.crossing import cross
 from blocksim.cli.options import (
@@ -33,7 +35,7 @@ from blocksim.cli.options import (
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
 from blocksim.cli.question import joint_of
-from blocksim.cli.subject import is_structure, problem_asked
+from blocksim.cli.subject import in_space, is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
@@ -53,6 +55,13 @@ def check(
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
+    if in_space(scene):
+        from blocksim.cli.space import check_in_space, problem_in_space
+
+        others: dict[str, object] = {"joint": joint, "must_rest": must_rest, "proof": proof}
+        asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce}
+        solid = problem_in_space(scene or "", given, loading)
+        check_in_space(solid, asked, others, as_json=as_json)
     problem = problem_asked(scene, given, loading, thick=True)
     at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
     with named_options(), progress() as report:
@@ -92,6 +101,15 @@ def bracket(
 
     Of a vehicle that crosses it is the least load factor, and where it stands then.
     """
+    if in_space(scene):
+        from blocksim.cli.space import bracket_in_space, problem_in_space
+
+        others: dict[str, object] = {**asdict(crossed), "within": within, "proof": proof}
+        asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce,
+                          "tol": tol}  # fmt: skip
+        solid = problem_in_space(scene or "", given, loading)
+        bracket_in_space(solid, over, asked, others, as_json=as_json)
+        return
     if crossed.vehicle is not None:
         usual = {"--over": over in {None, "load"}, "--within": within is None,
                  "--method": method in {"auto", "limit"}, "--set": settings is None,

@@ -269,6 +269,14 @@ class Loading:
             range=TILT_DEG,
         ),
     ] = None
+    azimuth: Annotated[
+        float | None,
+        Option(
+            about="Of blocks in space: towards where the table tilts, in degrees from x "
+            "towards y; 0 if left out.",
+            range=TILT_DEG,
+        ),
+    ] = None
     shake: Annotated[
         str | None,
         Option(

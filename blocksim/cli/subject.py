@@ -19,6 +19,15 @@ def is_structure(scene: str | None) -> bool:
     return is_structure(scene)
 
 
+def in_space(scene: str | None) -> bool:
+    """Tell a structure in space by what is in its file."""
+    if scene is None or not scene.lower().endswith((".json", ".toml")):
+        return False
+    from blocksim.kinds.files import lies_in_space
+
+    return lies_in_space(scene)
+
+
 def problem_asked(
     scene: str | None,
     given: Given,

@@ -100,8 +100,9 @@ def _place(path: tuple[int | str, ...], table: Any, *, missing: bool) -> str:
         keys = cast("dict[str, Any]", inside) if isinstance(inside, dict) else {}
         if isinstance(part, int):
             field += f"[{part}]"
-            listed = isinstance(inside, list | tuple)
-            inside = cast("list[Any]", inside)[part] if listed else None
+            listed = cast("list[Any]", inside) if isinstance(inside, list | tuple) else []
+            # One that is missing has no value.
+            inside = listed[part] if part < len(listed) else None
         elif part in keys or (missing and at == len(path) - 1):
             field += f".{part}" if field else part
             inside = keys.get(part)

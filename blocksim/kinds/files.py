@@ -17,7 +17,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from blocksim.blocks import structure
 from blocksim.blocks.entries import AROUND, Around, around_of
@@ -30,6 +30,9 @@ from blocksim.kinds import KINDS
 from blocksim.reading.compas import is_compas, read_compas
 from blocksim.reading.dxf import read_dxf
 from blocksim.reading.svg import read_svg
+
+if TYPE_CHECKING:
+    from blocksim.blocks.space.problem import SpatialProblem
 
 LARGEST_FILES = {".json": 20_000_000, ".toml": 1_000_000}
 """Bytes; a larger file is not read: TOML takes a second for each of these."""
@@ -82,6 +85,46 @@ def load_structure(
         data = data if tolerance is None else within(data, tolerance)
         table = changed(data, changes) if changes else data
         return structure_of(table if density is None else weighed(table, density))
+
+
+def load_in_space(
+    path: AnyPath,
+    density: float | None = None,
+    *,
+    friction: float | None = None,
+    tolerance: float | None = None,
+) -> SpatialProblem:
+    """Read a structure file in space: its corners have three coordinates.
+
+    Parameters
+    ----------
+    path, density, friction, tolerance
+        As of `load_structure`.
+
+    Raises
+    ------
+    InputError
+        In one line: file, entry, value, and what would be accepted.
+    """
+    from blocksim.blocks.space.files import is_spatial, problem_in_space
+
+    with named_file(path) as said:
+        data = said if friction is None else with_friction(said, friction)
+        data = data if tolerance is None else within(data, tolerance)
+        allowed = "blocks with three coordinates: load_structure reads plane ones"
+        require(is_spatial(data), "blocks", "in the plane", allowed)
+        return problem_in_space(data if density is None else weighed(data, density))
+
+
+def lies_in_space(path: AnyPath) -> bool:
+    """Tell whether a structure file, JSON or TOML, has blocks in space."""
+    from blocksim.blocks.space.files import is_spatial
+
+    if Path(path).suffix.lower() not in WRITTEN:
+        return False
+    with suppress(InputError), named_file(path) as said:
+        return is_spatial(said)
+    return False
 
 
 def with_friction(data: object, friction: float) -> object:
@@ -232,6 +275,8 @@ def structure_of(data: object, *own: type[Maker]) -> Problem:
         In one line: the first entry that is wrong, its value, and what would be accepted.
     """
     if not isinstance(data, dict) or "kind" not in data:
+        allowed = "x and y: in space check and bracket answer, and load_in_space reads"
+        require(not _has_depth(cast("object", data)), "blocks", "three coordinates", allowed)
         return structure.structure_of(cast("object", data))
     table = cast("dict[str, Any]", data)
     require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
@@ -239,6 +284,16 @@ def structure_of(data: object, *own: type[Maker]) -> Problem:
     said = {key: table[key] for key in table if key not in AROUND}
     forces = {"friction": around.friction, "density": around.density}
     return problem_of(kind_of(said, (*ALL, *own), forces=forces), around)
+
+
+def _has_depth(data: object) -> bool:
+    """Tell by its first block whether a structure lies in space, without reading the rest."""
+    from blocksim.blocks.space.files import is_spatial
+
+    table = cast("dict[str, Any]", data) if isinstance(data, dict) else {}
+    blocks: Any = table.get("blocks")
+    first = cast("list[Any]", blocks)[:1] if isinstance(blocks, list) else []
+    return is_spatial({"blocks": first})
 
 
 ALL = tuple(KINDS.values())

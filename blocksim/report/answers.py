@@ -198,7 +198,9 @@ def _mechanism(answer: Check) -> list[MovementRecord] | None:
             "block": block.name or str(index),
             "x": float(rate[0]) * assembly.size,
             "y": float(rate[1]) * assembly.size,
+            "z": None,
             "rotation": float(rate[2]),
+            "rotations": None,
         }
         for index, (block, rate) in enumerate(zip(assembly.blocks, rates, strict=True))
     ]

@@ -51,6 +51,7 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
         "mu": problem.mu,
         "friction_angle_deg": friction_angle(problem.mu),
         **tilt_and_lean(problem),
+        "azimuth_deg": None,
         "load": problem.load,
         "shake": None if shaking is None else shaking_record(shaking),
         **(dict.fromkeys(SIZES) if arch is None else size_record(arch)),

@@ -28,6 +28,7 @@ class ProblemRecord(TypedDict):
     mu: Number | None
     friction_angle_deg: float | None
     tilt_deg: float | None
+    azimuth_deg: float | None
     lean_deg: float | None
     load: float | None
     shake: dict[str, Any] | None
@@ -93,12 +94,18 @@ class JointRecord(TypedDict):
 
 
 class MovementRecord(TypedDict):
-    """Rate at which a block begins to move: x and y in m for each radian of rotation."""
+    """Rate at which a block begins to move: ways in m for each radian of rotation.
+
+    In the plane `rotation`, of which `z` and `rotations` are null; in space rotations about x,
+    y and z.
+    """
 
     block: str
     x: float
     y: float
-    rotation: float
+    z: float | None
+    rotation: float | None
+    rotations: list[float] | None
 
 
 class ShakenRecord(TypedDict):

@@ -1,0 +1,304 @@
+"""The questions of problems in space, by limit analysis: does it stand, and up to where."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from blocksim.ask.families import HIGHEST_FACTOR, LARGEST_FRICTION
+from blocksim.ask.options import Taken
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import require
+from blocksim.common.errors import MISSING, InputError
+from blocksim.limit.space import SpatialEquilibrium, can_rest, joint_states, largest_load
+from blocksim.simulation.verdict import Evidence, Verdict, reason_of
+
+METHODS = ("auto", "limit")
+FAMILIES_IN_SPACE = {"load": "", "mu": "", "tilt": "deg"}
+"""What may be bracketed over, with its unit."""
+LEAST_FRICTION = 1e-6
+HALVINGS = 60
+STEEPEST = 90.0
+"""Farthest that a table tilts [deg]."""
+BESIDE = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
+"""Shares of a value by which it is tried to both sides, the least first."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpatialCheck:
+    """Answer to *does it stand*, in space.
+
+    Parameters
+    ----------
+    method : str
+        `limit`.
+    verdict : Verdict
+        *Stands* means that it can rest.
+    evidence : tuple of Evidence
+    problem : SpatialProblem
+    static : SpatialEquilibrium
+        Forces, or the mechanism, and the gap to which they were checked.
+    joints : tuple of JointState
+        What each joint does as a collapse starts; closed where the blocks stand.
+    load_factor : float or None
+        Largest factor on the live loads at which forces of equilibrium exist, inf where no
+        live load is too much; None without live loads, or where there is none.
+    wall_s : float
+        Seconds it took.
+    """
+
+    method: str
+    verdict: Verdict
+    evidence: tuple[Evidence, ...]
+    problem: SpatialProblem
+    static: SpatialEquilibrium
+    joints: tuple[JointState, ...]
+    load_factor: float | None = None
+    wall_s: float
+
+    @property
+    def reason(self) -> str:
+        """The evidence as a sentence."""
+        return reason_of(self.evidence)
+
+    @property
+    def mechanism(self) -> Array | None:
+        """Rates with which a collapse starts, (blocks, 6): x, y, z [size], and rotations."""
+        return self.static.mechanism
+
+    @property
+    def forces(self) -> Array | None:
+        """Forces of equilibrium at the joints, along normals and across, (joints, 3) [N]."""
+        return self.static.forces
+
+    def __repr__(self) -> str:
+        return f"SpatialCheck({self.verdict}, by {self.method}, of {self.problem!r})"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpatialBracket:
+    """Where a problem in space changes from standing to falling, between two values tried.
+
+    Parameters
+    ----------
+    method, over, unit : str
+    low, high : float or None
+        The two values tried; None where the search came to the end of the range.
+    stands : {"low", "high"}
+        At which end it stands.
+    limit : float or None
+        The value between them; inf where it stands at all values, None where at none.
+    runs : int
+        Values tried.
+    evidence : tuple of Evidence
+    problem : SpatialProblem
+    tol : float
+    wall_s : float
+    """
+
+    method: str
+    over: str
+    unit: str
+    low: float | None
+    high: float | None
+    stands: Literal["low", "high"]
+    limit: float | None
+    runs: int
+    evidence: tuple[Evidence, ...]
+    problem: SpatialProblem
+    tol: float
+    wall_s: float
+
+    @cached_property
+    def reason(self) -> str:
+        """The evidence as a sentence."""
+        return reason_of(self.evidence)
+
+    def __repr__(self) -> str:
+        return f"SpatialBracket({self.over} {self.low} to {self.high}, stands at {self.stands})"
+
+
+def check_in_space(problem: SpatialProblem, given: Taken) -> SpatialCheck:
+    """Tell whether blocks in space stand; see `blocksim.check`."""
+    started = time.perf_counter()
+    _require_method(given)
+    static = can_rest(problem)
+    verdict = {True: Verdict.STANDS, False: Verdict.COLLAPSES, None: Verdict.UNDECIDED}
+    factor = largest_load(problem).factor if problem.live else None
+    rates = static.mechanism
+    states = (JointState.CLOSED,) * len(problem.assembly.joints)
+    return SpatialCheck(
+        method="limit",
+        verdict=verdict[static.exists],
+        evidence=(
+            Evidence("limit analysis", static_words(static)),
+            *(Evidence("note", note) for note in problem.notes),
+        ),
+        problem=problem,
+        static=static,
+        joints=states if rates is None else joint_states(problem, rates),
+        load_factor=factor,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def static_words(static: SpatialEquilibrium) -> str:
+    """Say what limit analysis found, and how near it was held to."""
+    own = "of the lighter block's share of weight beside it"
+    if static.exists:
+        left = "nothing but rounding" if not static.gap else f"{static.gap:.1g} of a weight"
+        return (
+            f"forces of equilibrium exist, each contact pressing by {static.margin:.3g} {own} "
+            f"more than friction needs; {left} is left over"
+        )
+    if static.exists is None:
+        return (
+            "neither forces nor a motion pass the check: contacts press by "
+            f"{static.margin:.1g} {own} at most, "
+            "which is nearer to the limit than floating-point numbers tell"
+        )
+    most = 1 / static.gap if static.gap else math.inf
+    far = "" if math.isinf(most) else f" that are less than {most:.1g} times all weight"
+    if math.isinf(static.margin):
+        return "no forces of equilibrium exist, even if contacts could pull"
+    return (
+        f"no forces of equilibrium exist{far}: contacts would have to pull by "
+        f"{-static.margin:.3g} {own}"
+    )
+
+
+def bracket_in_space(
+    problem: SpatialProblem,
+    over: str | None,
+    within: tuple[float, float] | None,
+    given: Taken,
+) -> SpatialBracket:
+    """Find the value at which blocks in space change; see `blocksim.bracket`."""
+    started = time.perf_counter()
+    _require_method(given)
+    allowed = f"one of {', '.join(FAMILIES_IN_SPACE)}"
+    if over is None:
+        raise InputError("over", MISSING, allowed)
+    require(over in FAMILIES_IN_SPACE, "over", over, allowed + ", in space")
+    require(within is None, "within", within, "left out by limit, which searches no range")
+    tried = _Tried({"load": _loaded, "mu": _rough, "tilt": _tilted}[over](problem))
+    if over == "load":
+        require(bool(problem.live), "over", over, "left out: there are no live loads")
+        factor = largest_load(problem).factor
+        limit = math.inf if factor is not None and factor > HIGHEST_FACTOR else factor
+    elif over == "mu":
+        limit = _halved(tried, LEAST_FRICTION, LARGEST_FRICTION, rises=True)
+    else:
+        still = not problem.dead and not (problem.live and problem.load)
+        allowed = "left out with loads besides gravity: they would not turn with it"
+        require(still, "over", over, allowed)
+        limit = _halved(tried, 0.0, STEEPEST, rises=False)
+    rises = over == "mu"
+    low, high = (None, None) if limit is None else tried.ends(limit, given.tol, rises=rises)
+    if rises and limit == 0:
+        low, high = None, LEAST_FRICTION
+    return SpatialBracket(
+        method="limit",
+        over=over,
+        unit=FAMILIES_IN_SPACE[over],
+        low=low,
+        high=high,
+        stands="high" if rises else "low",
+        limit=limit,
+        runs=tried.runs,
+        evidence=(Evidence("search", _search_words(limit, low, high, rises=rises)),),
+        problem=problem,
+        tol=given.tol,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def _require_method(given: Taken) -> None:
+    """Refuse what is of engines."""
+    allowed = "limit: engines do not move blocks in space yet"
+    require(given.method in METHODS, "method", str(given.method), allowed)
+    require(not given.settings, "settings", dict(given.settings), "left out: limit has none")
+    require(given.reduce is None, "reduce", given.reduce, "left out by limit")
+
+
+def _loaded(problem: SpatialProblem) -> Callable[[float], SpatialProblem]:
+    return problem.with_load
+
+
+def _rough(problem: SpatialProblem) -> Callable[[float], SpatialProblem]:
+    return problem.with_friction
+
+
+def _tilted(problem: SpatialProblem) -> Callable[[float], SpatialProblem]:
+    return lambda degrees: problem.tilted(math.radians(degrees))
+
+
+class _Tried:
+    """Problems of a family as they are asked for, counted."""
+
+    def __init__(self, at: Callable[[float], SpatialProblem]) -> None:
+        self._at, self.runs = at, 0
+
+    def __call__(self, value: float) -> SpatialEquilibrium:
+        """Ask limit analysis at a value."""
+        self.runs += 1
+        return can_rest(self._at(value))
+
+    def ends(
+        self, limit: float, tol: float, *, rises: bool
+    ) -> tuple[float | None, float | None]:
+        """Return the nearest values at which it is told to stand, and to fall."""
+        if not math.isfinite(limit) or limit == 0:
+            return None, None
+        found: dict[bool, float | None] = {}
+        for stands in (True, False):
+            up = stands == rises
+            step = (1 if up else -1) * max(abs(limit), 1e-6)
+            near = (limit + by * step for by in BESIDE if by <= max(tol, BESIDE[0]))
+            found[up] = next((each for each in near if self(each).exists is stands), None)
+        return found[False], found[True]
+
+
+def _halved(tried: _Tried, low: float, high: float, *, rises: bool) -> float | None:
+    """Halve an interval of which one end stands and the other falls.
+
+    None where it falls at the end that is safest; inf where it stands at the other as well
+    (0 where it needs no friction).
+    """
+    safe, unsafe = (high, low) if rises else (low, high)
+    if not tried(safe).exists:
+        return None
+    if tried(unsafe).exists:
+        return 0.0 if rises else math.inf
+    for _ in range(HALVINGS):
+        middle = math.sqrt(low * high) if rises else (low + high) / 2
+        if not low < middle < high or high - low <= 1e-13 * high:
+            break
+        if (tried(middle).margin > 0) == rises:
+            high = middle
+        else:
+            low = middle
+    return float(np.mean([low, high]))
+
+
+def _search_words(
+    limit: float | None, low: float | None, high: float | None, *, rises: bool
+) -> str:
+    """Say what a search found."""
+    if limit is None:
+        return "no forces of equilibrium exist at any value"
+    if math.isinf(limit):
+        return "forces of equilibrium exist at all values"
+    if rises and limit == 0:
+        return "it needs no friction"
+    if low is None or high is None:
+        return "limit analysis tells the value, but not both sides of it within the tolerance"
+    return "limit analysis tells both sides"

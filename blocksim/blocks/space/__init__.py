@@ -1,0 +1,1 @@
+"""Polyhedral blocks in space: hulls, the joints between them, problems and their files."""

@@ -1,0 +1,268 @@
+"""Where two convex polyhedra touch: a polygon, a segment, a point, or not at all."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.space.polyhedron import Polyhedron, frame
+
+Spot = tuple[float, float]
+"""A point in a plane."""
+PARALLEL = 1e-9
+"""Sine of the angle below which two edges have one direction."""
+
+
+class Contact(NamedTuple):
+    """Where two polyhedra touch.
+
+    Parameters
+    ----------
+    points : (k, 3) float
+        Corners of a polygon, ends of a segment, or a point [m].
+    normal : (3,) float
+        Unit normal, from the first into the second.
+    gap : float
+        How far apart they are drawn, below 0 where they overlap [m].
+    """
+
+    points: Array
+    normal: Array
+    gap: float
+
+
+class Overlap(NamedTuple):
+    """Two polyhedra that lie within each other by a depth [m]."""
+
+    depth: float
+
+
+def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Overlap | None:
+    """Find where two polyhedra touch.
+
+    Planes that part them are those of their faces, and those along an edge of each
+    (separating axes; Gottschalk, Lin and Manocha 1996).
+
+    Parameters
+    ----------
+    first, second : Polyhedron
+    slack : float
+        Gaps and overlaps up to this are closed [m].
+
+    Returns
+    -------
+    Contact, Overlap or None
+        None where they do not touch, or along the rim of their faces only.
+    """
+    normals, gaps = _by_faces(first, second)
+    if gaps.max() > slack:
+        return None
+    if gaps.max() < -slack:
+        normals, gaps = _by_edges(first, second)
+        if len(gaps) == 0 or gaps.max() > slack:
+            return None if len(gaps) else Overlap(float(-_by_faces(first, second)[1].max()))
+        if gaps.max() < -slack:
+            return Overlap(float(-max(gaps.max(), _by_faces(first, second)[1].max())))
+    found: list[Contact] = []
+    for index in np.argsort(-gaps):
+        if gaps[index] < -slack:
+            break
+        points = _common(first, second, normals[index], slack)
+        if points is not None:
+            found.append(Contact(points, normals[index], float(gaps[index])))
+    return max(found, key=lambda each: _extent(each.points), default=None)
+
+
+def _by_faces(first: Polyhedron, second: Polyhedron) -> tuple[Array, Array]:
+    """Return the normals of all faces, from the first into the second, and the gaps there."""
+    ours = np.array([face.normal for face in first.faces])
+    theirs = np.array([face.normal for face in second.faces])
+    ends = np.array([face.offset for face in first.faces])
+    beyond = np.array([face.offset for face in second.faces])
+    gaps = np.concatenate(
+        [
+            (ours @ second.corners.T).min(axis=1) - ends,
+            (theirs @ first.corners.T).min(axis=1) - beyond,
+        ]
+    )
+    return np.concatenate([ours, -theirs]), gaps
+
+
+def _by_edges(first: Polyhedron, second: Polyhedron) -> tuple[Array, Array]:
+    """Return the same of planes along an edge of each."""
+    ours = first.edges[:, 1] - first.edges[:, 0]
+    theirs = second.edges[:, 1] - second.edges[:, 0]
+    ours = ours / np.linalg.norm(ours, axis=1)[:, None]
+    theirs = theirs / np.linalg.norm(theirs, axis=1)[:, None]
+    normals = np.cross(ours[:, None], theirs[None]).reshape(-1, 3)
+    sines = np.linalg.norm(normals, axis=1)
+    normals = normals[sines > PARALLEL] / sines[sines > PARALLEL, None]
+    normals = np.concatenate([normals, -normals])
+    if not len(normals):
+        return normals, np.zeros(0)
+    gaps = (normals @ second.corners.T).min(axis=1) - (normals @ first.corners.T).max(axis=1)
+    return normals, gaps
+
+
+def _common(first: Polyhedron, second: Polyhedron, normal: Array, slack: float) -> Array | None:
+    """Return what is common to the parts of two polyhedra that lie at a plane between them.
+
+    None where it has fewer dimensions than both parts: they meet at a rim.
+    """
+    heights, beyond = first.corners @ normal, second.corners @ normal
+    high, low = heights.max(), beyond.min()
+    across = frame(normal)
+    middle = (high + low) / 2
+    ours = _outline(first.corners[heights >= high - 2 * slack] @ across.T)
+    theirs = _outline(second.corners[beyond <= low + 2 * slack] @ across.T)
+    shared = _clipped(ours, theirs, slack)
+    needed = min(len(ours), len(theirs), 3)
+    if len(shared) < needed:
+        # Two edges that cross share a point.
+        crossing = len(ours) == len(theirs) == 2 and len(shared) == 1
+        if not (crossing and _cross(ours, theirs)):
+            return None
+    if needed == 3 and _narrow(shared) <= slack:
+        return None
+    return shared @ across + middle * normal
+
+
+def _spots(points: Array) -> list[Spot]:
+    """Return the points of an array, (k, 2)."""
+    return [(x, y) for x, y in points.tolist()]
+
+
+def _outline(points: Array) -> Array:
+    """Return the corners of the hull of points in the plane, counter-clockwise.
+
+    Andrew's monotone chain; points on a line are its two ends.
+    """
+    order = sorted(_spots(points))
+    scale = max(float(np.ptp(points, axis=0).max()), 1e-300)
+
+    def chain(ordered: list[Spot]) -> list[Spot]:
+        found: list[Spot] = []
+        for point in ordered:
+            while len(found) > 1 and _turn(found[-2], found[-1], point) <= 1e-12 * scale**2:
+                found.pop()
+            if (
+                not found
+                or max(abs(found[-1][0] - point[0]), abs(found[-1][1] - point[1]))
+                > 1e-12 * scale
+            ):
+                found.append(point)
+        return found
+
+    if len(order) == 1:
+        return np.array(order)
+    lower, upper = chain(order), chain(order[::-1])
+    return np.array([*lower[:-1], *upper[:-1]]) if len(lower) > 1 else np.array(lower)
+
+
+def _turn(a: Spot, b: Spot, c: Spot) -> float:
+    """Return twice the area of a triangle, above 0 counter-clockwise."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _clipped(ours: Array, theirs: Array, slack: float) -> Array:
+    """Return what a point, segment or convex polygon has in common with another.
+
+    Sutherland and Hodgman 1974. Points nearer than `slack` are one.
+    """
+    if len(theirs) < 3 <= len(ours):
+        ours, theirs = theirs, ours
+    kept = _spots(ours)
+    if len(theirs) >= 3:
+        around = _spots(theirs)
+        for start, end in zip(around, around[1:] + around[:1], strict=True):
+            kept = _inside(kept, start, end, slack)
+    elif len(theirs) == 2 and len(kept) == 2:
+        kept = _segments(np.array(kept), theirs, slack)
+    else:
+        # A corner on a corner, or on an edge, has no plane of its own.
+        kept = []
+    return _apart(kept, slack)
+
+
+def _inside(
+    kept: list[Spot],
+    start: Spot,
+    end: Spot,
+    slack: float,
+) -> list[Spot]:
+    """Keep what lies to the left of a line; a point or a segment on it, too."""
+    long = float(np.hypot(end[0] - start[0], end[1] - start[1]))
+    if not (long and kept):
+        return kept
+    # A polygon is cut at the line; fewer corners have to be well inside.
+    least = 0.0 if len(kept) > 2 else slack
+    sides = [_turn(start, end, each) / long - least for each in kept]
+    if len(kept) == 1:
+        return kept if sides[0] > 0 else []
+    found: list[Spot] = []
+    pairs = range(len(kept)) if len(kept) > 2 else range(1)
+    for at in pairs:
+        here, there = kept[at], kept[(at + 1) % len(kept)]
+        a, b = sides[at], sides[(at + 1) % len(kept)]
+        if a >= 0:
+            found.append(here)
+        if a * b < 0:
+            share = a / (a - b)
+            x, y = (
+                here[0] + share * (there[0] - here[0]),
+                here[1] + share * (there[1] - here[1]),
+            )
+            found.append((x, y))
+        if len(kept) == 2 and b >= 0:
+            found.append(there)
+    return found
+
+
+def _segments(ours: Array, theirs: Array, slack: float) -> list[Spot]:
+    """Return what two segments have in common: a point where they cross, or a piece."""
+    along = ours[1] - ours[0]
+    long = float(np.hypot(*along))
+    along = along / long
+    side = np.array([-along[1], along[0]])
+    off = (theirs - ours[0]) @ side
+    at = (theirs - ours[0]) @ along
+    if np.abs(off).max() <= slack:
+        low, high = max(0.0, at.min()), min(long, at.max())
+        return _spots(ours[0] + np.outer([low, high], along)) if high > low else []
+    if off[0] * off[1] >= 0:
+        return []
+    place = at[0] + off[0] / (off[0] - off[1]) * (at[1] - at[0])
+    return _spots((ours[0] + place * along)[None]) if slack < place < long - slack else []
+
+
+def _cross(ours: Array, theirs: Array) -> bool:
+    """Tell whether two segments have two directions."""
+    a, b = ours[1] - ours[0], theirs[1] - theirs[0]
+    return bool(abs(a[0] * b[1] - a[1] * b[0]) > PARALLEL * np.hypot(*a) * np.hypot(*b))
+
+
+def _apart(points: list[Spot], slack: float) -> Array:
+    """Leave out points that are nearer than `slack` to the one before."""
+    found: list[Spot] = []
+    for point in points:
+        near = (found[-1], found[0]) if found else ()
+        if all(np.hypot(point[0] - p[0], point[1] - p[1]) > slack for p in near):
+            found.append(point)
+    return np.array(found).reshape(-1, 2)
+
+
+def _narrow(polygon: Array) -> float:
+    """Return the least width of a convex polygon."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    long = np.hypot(edges[:, 0], edges[:, 1])
+    sides = np.stack([-edges[:, 1], edges[:, 0]], axis=1) / long[:, None]
+    heights = sides @ polygon.T
+    return float((heights.max(axis=1) - heights.min(axis=1)).min())
+
+
+def _extent(points: Array) -> tuple[int, float]:
+    """Return dimensions and size of a contact, by which it is chosen."""
+    dimensions = min(len(points), 3)
+    return dimensions, float(np.linalg.norm(np.ptp(points, axis=0)))

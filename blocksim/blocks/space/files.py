@@ -1,0 +1,332 @@
+"""Structure files in space: the keys of plane ones, with three coordinates.
+
+Lengths in m, forces in N, z upwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, cast
+
+import numpy as np
+
+from blocksim.blocks.entries import (
+    UNIT_WEIGHT,
+    Coordinate,
+    Density,
+    ExpectEntry,
+    Friction,
+    Id,
+    NewId,
+    Newtons,
+    Note,
+    Number,
+    Step,
+    Times,
+    most,
+    some,
+)
+from blocksim.blocks.space.assembly import (
+    MOST_SOLIDS,
+    FaceJoint,
+    Solid,
+    assembly_in_space,
+)
+from blocksim.blocks.space.problem import DOWN, SpatialLoad, SpatialProblem
+from blocksim.common.checks import WEIGHT, require
+from blocksim.common.errors import MISSING, InputError
+from blocksim.common.tables import Written, as_said
+
+MOST_CORNERS = 1000
+"""Corners of a convex part."""
+MOST_PARTS = 100
+SPACE = 3
+Point = tuple[Coordinate, Coordinate, Coordinate]
+Way = tuple[Times, Times, Times]
+Force = tuple[Newtons, Newtons, Newtons]
+Corners = Annotated[list[Point], some(1, MOST_CORNERS)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolidEntry(Written):
+    """Entry of `blocks` in space: `vertices`, or `polyhedra` that move as one.
+
+    Parameters
+    ----------
+    id : int or str
+        Names the block, once in a file.
+    vertices : list of point
+        Corners of a convex polyhedron [m], in any order.
+    polyhedra : list of list of point
+        Convex parts that move as one block [m], instead of `vertices`.
+    fixed : bool
+        Whether it is a support.
+    weight : float
+        [N]; by default density times volume.
+    centre : point
+        Where its weight acts [m]; by default the centroid.
+    """
+
+    id: NewId
+    vertices: Corners | None = None
+    polyhedra: Annotated[list[Corners], some(1, MOST_PARTS)] | None = None
+    fixed: bool = False
+    weight: Annotated[float, WEIGHT] | None = None
+    centre: Point | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaceEntry(Written):
+    """Entry of `joints` in space.
+
+    Parameters
+    ----------
+    a, b : int or str
+        The two blocks.
+    points : list of point
+        Corners of the polygon that they share, ends of a segment, or a point [m].
+    normal : list of float
+        Direction from `a` into `b`.
+    friction : float
+        Of this joint, instead of that of the file; 0 allowed.
+    """
+
+    a: Id
+    b: Id
+    points: Corners
+    normal: Way
+    friction: Friction | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpatialLoadEntry(Written):
+    """Entry of `dead` or `live` in space: a `body` force, or a `force` on a block.
+
+    Parameters
+    ----------
+    body : list of float
+        Force on every block, in units of its weight.
+    blocks : list of int or str
+        Those `body` acts on; by default all that move.
+    block : int or str
+        The one a `force` acts on.
+    point : point
+        Where it acts [m]; by default the block's centre.
+    force : list of float
+        [N]
+    """
+
+    body: Way | None = None
+    blocks: Annotated[list[Id], some(1, MOST_SOLIDS)] | None = None
+    block: Id | None = None
+    point: Point | None = None
+    force: Force | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpatialFile(Written):
+    """A structure file in space as written.
+
+    Parameters
+    ----------
+    friction : float
+        Friction coefficient of every joint.
+    blocks : list of block
+        At least two, one of them fixed.
+    title, source : str
+    density : float
+        Weight of a unit of volume [N/m3]; without it only ratios of forces have a meaning.
+    dead : list of load
+        Loads that stay as they are; by default gravity, `{"body": [0, 0, -1]}`.
+    live : list of load
+        Loads that are multiplied by the load factor.
+    load : float
+        Factor on the live loads when it is asked whether it stands.
+    joints : list of joint
+        By default found.
+    tolerance : float
+        Gaps and overlaps up to this are closed [m], but no more than a tenth of the thinner
+        block; by default what rounding explains.
+    notes : list of str
+        How the file was made of another; said with each answer.
+    expect : list of expect
+        What its source says, for `validate`.
+    """
+
+    friction: Friction
+    blocks: Annotated[list[SolidEntry], some(2, MOST_SOLIDS)]
+    title: Annotated[str, most(200)] = ""
+    source: Annotated[str, most(500)] = ""
+    density: Density | None = None
+    dead: Annotated[list[SpatialLoadEntry], most(MOST_SOLIDS)] | None = None
+    live: Annotated[tuple[SpatialLoadEntry, ...], most(MOST_SOLIDS)] = ()
+    load: Number = 0.0
+    joints: Annotated[list[FaceEntry], most(20 * MOST_SOLIDS)] | None = None
+    tolerance: Step | None = None
+    notes: Annotated[tuple[Note, ...], most(20)] = ()
+    expect: Annotated[tuple[ExpectEntry, ...], most(MOST_SOLIDS)] = ()
+
+
+def is_spatial(data: object) -> bool:
+    """Tell whether what a structure file says lies in space: its corners have three numbers.
+
+    Examples
+    --------
+    >>> is_spatial({"blocks": [{"id": 0, "vertices": [[0, 0, 0]]}]})
+    True
+    """
+    table = cast("dict[str, Any]", data) if isinstance(data, dict) else {}
+    blocks = table.get("blocks")
+    listed = cast("list[Any]", blocks) if isinstance(blocks, list) else []
+    for block in listed[:MOST_SOLIDS]:
+        own = cast("dict[str, Any]", block) if isinstance(block, dict) else {}
+        if "polyhedra" in own:
+            return True
+        corners = own.get("vertices")
+        if isinstance(corners, list) and corners:
+            first: Any = cast("list[Any]", corners)[0]
+            return isinstance(first, list) and len(cast("list[Any]", first)) == SPACE
+    return False
+
+
+def problem_in_space(data: object) -> SpatialProblem:
+    """Make a problem of what a structure file in space says.
+
+    Parameters
+    ----------
+    data : object
+        A dict with the keys of `SpatialFile`.
+
+    Raises
+    ------
+    InputError
+        In one line: the first entry that is wrong, its value, and what would be accepted.
+    """
+    written = as_said(SpatialFile, data)
+    solids = _solids(written)
+    assembly = assembly_in_space(
+        solids,
+        _joints(written, solids),
+        density=UNIT_WEIGHT if written.density is None else written.density,
+        tolerance=written.tolerance,
+    )
+    loads_of = _Loads(solids)
+    gravity, dead = DOWN, list[SpatialLoad]()
+    notes = list(written.notes)
+    if written.dead is not None:
+        gravity = np.zeros(3)
+        for at, load in enumerate(written.dead):
+            found = loads_of(load, f"dead[{at}]")
+            if load.body is not None and load.blocks is None:
+                gravity = gravity + np.array(load.body)
+            else:
+                dead.append(found)
+        if not gravity.any():
+            notes.append("no gravity: dead has no body force on all blocks")
+    closed = [abs(each.gap) for each in assembly.joints if each.gap]
+    if closed and max(closed) > 1e-9 * assembly.size:
+        notes.append(f"gaps and overlaps of up to {1000 * max(closed):.3g} mm closed")
+    return SpatialProblem(
+        assembly=assembly,
+        mu=written.friction,
+        gravity=gravity,
+        dead=tuple(dead),
+        live=tuple(loads_of(each, f"live[{at}]") for at, each in enumerate(written.live)),
+        load=float(written.load),
+        title=written.title,
+        source=written.source,
+        weighed=written.density is not None
+        or all(each.fixed or each.weight is not None for each in solids),
+        notes=tuple(notes),
+    )
+
+
+def _solids(written: SpatialFile) -> list[Solid]:
+    known = set[str]()
+    solids: list[Solid] = []
+    for at, block in enumerate(written.blocks):
+        name, field = str(block.id), f"blocks[{at}]"
+        require(name not in known, f"{field}.id", block.id, "an id that no other block has")
+        known.add(name)
+        if block.vertices is None and block.polyhedra is None:
+            raise InputError(f"{field}.vertices", MISSING, "given")
+        one = block.vertices is None or block.polyhedra is None
+        require(one, f"{field}.polyhedra", "beside vertices", "left out, or vertices")
+        solids.append(
+            Solid(
+                parts=tuple(block.polyhedra or [block.vertices or []]),
+                name=name,
+                fixed=block.fixed,
+                weight=block.weight,
+                centre=block.centre,
+            )
+        )
+    return solids
+
+
+def _joints(written: SpatialFile, solids: Sequence[Solid]) -> list[FaceJoint] | None:
+    if written.joints is None:
+        return None
+    allowed = "left out: joints are given, none is found"
+    require(written.tolerance is None, "tolerance", written.tolerance, allowed)
+    places = {solid.name: at for at, solid in enumerate(solids)}
+    joints: list[FaceJoint] = []
+    for at, joint in enumerate(written.joints):
+        for side in ("a", "b"):
+            name = str(getattr(joint, side))
+            require(name in places, f"joints[{at}].{side}", name, "the id of a block")
+        a, b = places[str(joint.a)], places[str(joint.b)]
+        require(a != b, f"joints[{at}].b", joint.b, "another block than a")
+        both = solids[a].fixed and solids[b].fixed
+        require(not both, f"joints[{at}]", "two fixed blocks", "left out")
+        long = float(np.linalg.norm(joint.normal))
+        require(long > 0, f"joints[{at}].normal", joint.normal, "a direction")
+        joints.append(
+            FaceJoint(
+                before=a,
+                after=b,
+                points=np.array(joint.points, dtype=float),
+                normal=np.array(joint.normal, dtype=float) / long,
+                friction=joint.friction,
+            )
+        )
+    return joints
+
+
+class _Loads:
+    """What a load of a file comes to on the blocks that move."""
+
+    def __init__(self, solids: Sequence[Solid]) -> None:
+        moving = [solid.name for solid in solids if not solid.fixed]
+        self._place = {name: at for at, name in enumerate(moving)}
+
+    def __call__(self, load: SpatialLoadEntry, field: str) -> SpatialLoad:
+        """Return the load of one entry.
+
+        Raises
+        ------
+        InputError
+            In one line, if it is none, or on no block that moves.
+        """
+        if (load.body is None) == (load.block is None):
+            raise InputError(field, "both or none", "one of body and block")
+        if load.body is not None:
+            alone = load.force is None and load.point is None
+            require(alone, field, "force or point beside body", "body and blocks alone")
+            named = load.blocks
+            on = list(self._place) if named is None else [str(each) for each in named]
+            places = [self._at(name, f"{field}.blocks") for name in on]
+            once = len(set(places)) == len(places)
+            require(once, f"{field}.blocks", named, "each block once")
+            return SpatialLoad(force=np.array(load.body), blocks=tuple(places), per_weight=True)
+        require(load.blocks is None, f"{field}.blocks", load.blocks, "left out: body has it")
+        if load.force is None:
+            raise InputError(f"{field}.force", MISSING, "given")
+        place = self._at(str(load.block), f"{field}.block")
+        point = None if load.point is None else np.array(load.point, dtype=float)
+        return SpatialLoad(force=np.array(load.force), blocks=(place,), point=point)
+
+    def _at(self, name: str, field: str) -> int:
+        require(name in self._place, field, name, "the id of a block that is not fixed")
+        return self._place[name]

@@ -1,0 +1,195 @@
+"""Convex polyhedra: their faces, volume, and moments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from blocksim.blocks.assembly import Array, frozen
+from blocksim.common.errors import InputError
+
+FEWEST = 4
+FLAT = 1e-9
+"""Share of its length below which a polyhedron has no thickness."""
+COPLANAR = 1e-7
+"""Share of its thickness by which corners of one face may lie off its plane."""
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """A face of a convex polyhedron.
+
+    Parameters
+    ----------
+    normal : (3,) float
+        Unit normal, outwards.
+    offset : float
+        Of its plane, ``normal @ x`` [m].
+    corners : (k, 3) float
+        Counter-clockwise, seen from outside [m].
+    """
+
+    normal: Array
+    offset: float
+    corners: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Polyhedron:
+    """The hull of points in space.
+
+    Parameters
+    ----------
+    corners : (k, 3) float
+        Points of which it is the hull [m], in any order.
+    slack : float
+        How far the corners of one face may lie off its plane [m], where they were rounded.
+
+    Raises
+    ------
+    InputError
+        If the points lie in a plane.
+
+    Examples
+    --------
+    >>> import itertools
+    >>> cube = Polyhedron(list(itertools.product((0, 1), repeat=3)))
+    >>> len(cube.faces), round(cube.volume, 12)
+    (6, 1.0)
+    """
+
+    corners: Array
+    slack: float = 0.0
+
+    def __init__(self, corners: ArrayLike, slack: float = 0.0) -> None:
+        """Find the hull."""
+        from scipy.spatial import ConvexHull, QhullError
+
+        points = frozen(corners, (-1, 3))
+        allowed = f"{FEWEST} corners or more that do not lie in a plane"
+        if len(points) < FEWEST:
+            raise InputError("vertices", f"{len(points)} corners", allowed)
+        long = float(np.ptp(points, axis=0).max())
+        spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        if not spread[2] > FLAT * max(long, 1e-300):
+            raise InputError("vertices", "a flat hull", allowed)
+        try:
+            # Far from the origin digits would be lost.
+            hull = ConvexHull(points - points.mean(axis=0))
+        except QhullError:
+            raise InputError("vertices", "a flat hull", allowed) from None
+        object.__setattr__(self, "corners", frozen(points[hull.vertices], (-1, 3)))
+        object.__setattr__(self, "slack", slack)
+        # Triangles of the hull, turned counter-clockwise seen from outside.
+        triangles = points[hull.simplices]
+        cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        inwards = np.einsum("ij,ij->i", cross, hull.equations[:, :3]) < 0
+        triangles[inwards] = triangles[inwards][:, ::-1]
+        object.__setattr__(self, "_triangles", triangles)
+
+    @property
+    def triangles(self) -> Array:
+        """Its surface, (k, 3, 3), each counter-clockwise seen from outside."""
+        return self.__dict__["_triangles"]
+
+    @cached_property
+    def box(self) -> Array:
+        """Least and largest coordinates, (2, 3)."""
+        return np.stack([self.corners.min(axis=0), self.corners.max(axis=0)])
+
+    @cached_property
+    def faces(self) -> tuple[Face, ...]:
+        """Its faces: triangles in one plane are one."""
+        triangles, corners = self.triangles, self.corners
+        middle = corners.mean(axis=0)
+        cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        areas = np.linalg.norm(cross, axis=1)
+        slack = max(self.slack, COPLANAR * self.thickness)
+        found: list[Face] = []
+        free = areas > 0
+        for index in np.argsort(-areas):
+            if not free[index]:
+                continue
+            normal = cross[index] / areas[index]
+            on = np.abs((corners - triangles[index, 0]) @ normal) <= slack
+            plane = corners[on]
+            normal = _normal_of(plane, normal)
+            offset = float((plane @ normal).mean())
+            # A sliver of a face found before is no face.
+            free &= np.abs(triangles @ normal - offset).max(axis=1) > 2 * slack
+            free[index] = False
+            if not any(normal @ face.normal > 1 - 1e-14 for face in found):
+                found.append(Face(normal, offset, _around(plane, normal)))
+        outwards = [face for face in found if face.normal @ middle < face.offset]
+        return tuple(outwards)
+
+    @cached_property
+    def thickness(self) -> float:
+        """The least distance between two planes around it, one of which is a face's [m]."""
+        triangles = self.triangles
+        cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        areas = np.linalg.norm(cross, axis=1)
+        large = areas > 1e-6 * areas.max()
+        heights = (cross[large] / areas[large, None]) @ self.corners.T
+        return float((heights.max(axis=1) - heights.min(axis=1)).min())
+
+    @cached_property
+    def edges(self) -> Array:
+        """Ends of its edges, (k, 2, 3)."""
+        ends: dict[tuple[tuple[float, ...], ...], None] = {}
+        for face in self.faces:
+            around = [tuple(each) for each in face.corners.tolist()]
+            for start, end in zip(around, around[1:] + around[:1], strict=True):
+                ends[min(start, end), max(start, end)] = None
+        return np.array(list(ends))
+
+    @cached_property
+    def moments(self) -> tuple[float, Array, Array]:
+        """Volume [m3], centroid [m], and second moments about it, (3, 3) [m5]."""
+        about = self.corners.mean(axis=0)
+        legs = self.triangles - about
+        volumes = np.linalg.det(legs) / 6
+        volume = float(volumes.sum())
+        sums = legs.sum(axis=1)
+        centre = (volumes[:, None] * sums).sum(axis=0) / (4 * volume)
+        # Of a tetrahedron with a corner at the origin: V/20 (sum of squares + square of sum).
+        second = np.einsum("t,tij,tik->jk", volumes / 20, legs, legs)
+        second += np.einsum("t,tj,tk->jk", volumes / 20, sums, sums)
+        return volume, about + centre, second - volume * np.outer(centre, centre)
+
+    @property
+    def volume(self) -> float:
+        """Its volume [m3]."""
+        return self.moments[0]
+
+
+def _normal_of(plane: Array, near: Array) -> Array:
+    """Return the unit normal of points that lie in a plane, on the side of another."""
+    normal = np.linalg.svd(plane - plane.mean(axis=0))[2][2]
+    return normal if normal @ near > 0 else -normal
+
+
+def frame(normal: Array) -> Array:
+    """Return two unit vectors across a normal, (2, 3): right-handed with it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> frame(np.array([0.0, 0.0, 1.0]))
+    array([[1., 0., 0.],
+           [0., 1., 0.]])
+    """
+    least = np.zeros(3)
+    least[int(np.argmin(np.abs(normal)))] = 1.0
+    first = least - (least @ normal) * normal
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(normal, first)])
+
+
+def _around(plane: Array, normal: Array) -> Array:
+    """Put the corners of a convex polygon in order, counter-clockwise about its normal."""
+    flat = (plane - plane.mean(axis=0)) @ frame(normal).T
+    return plane[np.argsort(np.arctan2(flat[:, 1], flat[:, 0]))]

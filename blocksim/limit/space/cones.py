@@ -1,0 +1,131 @@
+"""Second-order cone programmes by Clarabel; the only place that knows it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+from scipy import sparse
+
+from blocksim.blocks.assembly import Array
+from blocksim.common.errors import Unsolved
+from blocksim.common.later import Library
+
+# It has no types.
+clarabel = cast("Any", Library("clarabel"))
+
+FINEST = 1e-11
+"""Gap and residuals at which Clarabel may end; it ends where it gets no farther."""
+SOLVED = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations", "NumericalError")
+"""What it says where it has values, which are judged by what they are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What came of a programme.
+
+    Parameters
+    ----------
+    forces : (3 points,) float
+        Empty where there is none.
+    value : float
+        The largest value of what was sought; inf where nothing bounds it, -inf where no
+        forces balance at any value.
+    rates : (rows,) float
+        Prices of equilibrium: rates at which blocks move.
+    """
+
+    forces: Array
+    value: float
+    rates: Array
+
+
+def most(matrix: Any, pull: Array, friction: Array, **sought: Array) -> Answer:
+    """Find forces within friction that balance, at the largest value of one unknown.
+
+    Parameters
+    ----------
+    matrix : (rows, 3 points) sparse
+        What forces at the points do: along the normal, and two ways across.
+    pull : (rows,) float
+        What they balance.
+    friction : (points,) float
+        inf allowed.
+    **sought : array
+        `live`, (rows,): pulls times the unknown besides; or `press`, (points,): each point
+        presses by as much times the unknown more than friction needs, and the unknown is at
+        most 1.
+
+    Raises
+    ------
+    Unsolved
+        If the solver gives up.
+    """
+    rows, points = int(matrix.shape[0]), len(friction)
+    live, press = sought.get("live"), sought.get("press")
+    column = np.zeros(rows) if live is None else live
+    equal = sparse.hstack([matrix, sparse.csc_matrix(column[:, None])], format="csc")
+    law, kinds = _law(friction, np.zeros(points) if press is None else press)
+    blocks, right = [equal, -law], [-pull, np.zeros(law.shape[0])]
+    cones: list[Any] = [clarabel.ZeroConeT(rows), *kinds]
+    if press is not None:
+        blocks.append(sparse.csc_matrix(([1.0], ([0], [3 * points])), (1, 3 * points + 1)))
+        right.append(np.ones(1))
+        cones.append(clarabel.NonnegativeConeT(1))
+    cost = np.zeros(3 * points + 1)
+    cost[-1] = -1.0
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = FINEST
+    empty = sparse.csc_matrix((len(cost), len(cost)))
+    stacked = sparse.vstack(blocks, format="csc")
+    found = clarabel.DefaultSolver(
+        empty, cost, stacked, np.concatenate(right), cones, settings
+    ).solve()
+    said = str(found.status)
+    values: Array = np.array(found.x)
+    prices: Array = np.array(found.z)
+    if "PrimalInfeasible" in said:
+        return Answer(np.zeros(0), -np.inf, prices[:rows])
+    if "DualInfeasible" in said:
+        return Answer(np.zeros(0), np.inf, np.zeros(rows))
+    if said not in SOLVED or not np.isfinite(values).all() or not np.isfinite(prices).all():
+        raise Unsolved
+    return Answer(values[:-1], float(values[-1]), prices[:rows])
+
+
+def _law(friction: Array, press: Array) -> tuple[Any, list[Any]]:
+    """Return what friction asks of the forces, and the cones in which that lies."""
+    points = len(friction)
+    rough, smooth = np.isinf(friction), friction == 0
+    round_ = np.flatnonzero(~rough & ~smooth)
+    last = 3 * points
+    # (normal - press * unknown, across / mu) in a cone, then what has no cone of its own.
+    scale = 1 / friction[round_]
+    ones = np.ones(len(round_))
+    first = 3 * np.arange(len(round_))
+    rows = [first, first, first + 1, first + 2]
+    columns = [3 * round_, np.full(len(round_), last), 3 * round_ + 1, 3 * round_ + 2]
+    values = [ones, -press[round_], scale, scale]
+    kinds: list[Any] = [clarabel.SecondOrderConeT(3)] * len(round_)
+    flat = np.flatnonzero(rough | smooth)
+    start = 3 * len(round_)
+    if len(flat):
+        each = start + np.arange(len(flat))
+        rows += [each, each]
+        columns += [3 * flat, np.full(len(flat), last)]
+        values += [np.ones(len(flat)), -press[flat]]
+        kinds.append(clarabel.NonnegativeConeT(len(flat)))
+        start += len(flat)
+    slippery = np.flatnonzero(smooth)
+    if len(slippery):
+        across = np.concatenate([3 * slippery + 1, 3 * slippery + 2])
+        rows.append(start + np.arange(len(across)))
+        columns.append(across)
+        values.append(np.ones(len(across)))
+        kinds.append(clarabel.ZeroConeT(len(across)))
+        start += len(across)
+    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    return sparse.csc_matrix(entries, shape=(start, 3 * points + 1)), kinds

@@ -1,0 +1,241 @@
+"""Forces of equilibrium in space: whether they exist, and up to which load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.limit.space.contacts import Contacts, solved
+
+BALANCED = 1e-12
+"""Of each block's own weight: forces and moments that may be left over."""
+FARTHEST = 1e5
+"""Times all weight: forces up to which those that would balance are ruled out."""
+SEEN = 1e-5
+"""Of the largest way: rates from which on a joint is told to open or to slide."""
+ROUNDED = 1e-14
+"""Of the forces at a block: what rounding may leave over."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SpatialEquilibrium:
+    """What a cone programme says of equilibrium, and what is left of it when it is checked.
+
+    Parameters
+    ----------
+    exists : bool or None
+        None where neither forces nor a motion pass the check.
+    margin : float
+        By how much every point presses, in units of the lighter block's weight beside it
+        over the points of its joint; below 0 it would have to pull. At most 1, -inf where not
+        even pulling would help.
+    forces : (joints, 3) float or None
+        Sums at each joint: along its normal, and across [N].
+    point_forces : (points, 3) float or None
+        The same at each point.
+    mechanism : (blocks, 6) float or None
+        Rates with which a collapse starts, the largest way of a centre or corner 1: x, y, z
+        [size], and rotations about the axes.
+    gap : float
+        Of what exists, the largest force or moment left over, in units of each block's weight;
+        of what does not, all weight over the least forces that could balance.
+    """
+
+    exists: bool | None
+    margin: float
+    forces: Array | None = None
+    point_forces: Array | None = None
+    mechanism: Array | None = None
+    gap: float = math.inf
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LargestLoad:
+    """The largest factor on live loads at which forces of equilibrium exist.
+
+    Parameters
+    ----------
+    factor : float or None
+        inf where no load is too much, None where there is no equilibrium at any.
+    gap : float
+        By how much, of the factor, forces and mechanism disagree.
+    mechanism : (blocks, 6) float or None
+    """
+
+    factor: float | None
+    gap: float
+    mechanism: Array | None = None
+
+
+def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
+    """Tell whether forces of equilibrium exist, and check what the solver found.
+
+    Forces are mended until they balance in floating-point numbers, each strictly within its
+    cone. A motion is held to the rates at which points open: no forces could balance but
+    those of a million times the weight.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+
+    Raises
+    ------
+    Unsolved
+        If the solver gives up.
+    """
+    contacts = Contacts(problem)
+    pull = contacts.pull(problem.load)
+    found = contacts.most(pull)
+    exists, gap, forces, rates = None, math.inf, None, found.rates
+    if len(found.forces) and found.value > 0:
+        forces, gap = _balanced(contacts, pull, found.forces)
+        exists = True if gap <= BALANCED else None
+    else:
+        rates = contacts.mended(found.rates)
+        gap = _ruled_out(contacts, pull, rates)
+        exists = False if gap * FARTHEST < 1 else None
+    sums = None
+    if exists and forces is not None:
+        each = forces.reshape(-1, 3) * contacts.unit
+        sums = np.zeros((len(problem.assembly.joints), 3))
+        np.add.at(sums, contacts.joint, each)
+        forces = each
+    return SpatialEquilibrium(
+        exists=exists,
+        margin=found.value,
+        forces=sums,
+        point_forces=forces if exists else None,
+        mechanism=_unit(contacts, rates) if exists is False else None,
+        gap=gap,
+    )
+
+
+def largest_load(problem: SpatialProblem) -> LargestLoad:
+    """Find the largest factor on the live loads at which forces of equilibrium exist.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+
+    Raises
+    ------
+    Unsolved
+        If the solver gives up.
+    """
+    contacts = Contacts(problem)
+    pull, live = contacts.pull(0.0), contacts.live
+    # In units of its own size, as loads may be of any.
+    unit = float(np.abs(live / contacts.rows).max()) or 1.0
+    found = contacts.most(pull, live / unit)
+    if math.isinf(found.value):
+        return LargestLoad(factor=None if found.value < 0 else math.inf, gap=0.0)
+    work = float(found.rates @ live) / unit
+    bound = -float(found.rates @ pull) / work if work > 0 else math.inf
+    gap = abs(bound - found.value) / max(abs(found.value), 1e-300)
+    return LargestLoad(
+        factor=found.value / unit, gap=gap, mechanism=_unit(contacts, found.rates)
+    )
+
+
+def _balanced(contacts: Contacts, pull: Array, forces: Array) -> tuple[Array, float]:
+    """Mend forces until they balance; return them and what is left over.
+
+    What is left over is inf where a point does not press more than friction needs.
+    """
+    matrix, own = contacts.matrix, contacts.own
+    for _ in range(3):
+        slack = contacts.slack(forces)
+        if not (slack > 0).all():
+            return forces, math.inf
+        # Points change by no more than they can spare.
+        weights = np.repeat(np.minimum(slack, own) ** 2, 3)
+        weighted: Any = matrix @ sparse.diags(weights)
+        normal: Any = sparse.csc_matrix(weighted @ matrix.T)
+        scale = normal.diagonal().max()
+        normal = normal + sparse.identity(normal.shape[0], format="csc") * (1e-15 * scale)
+        rest: Array = -(matrix @ forces + pull)
+        forces = forces + weights * (matrix.T @ solved(normal, rest))
+    each: Array = abs(matrix) @ np.abs(forces) + np.abs(pull)
+    left_over: Array = np.abs(matrix @ forces + pull)
+    # What rounding alone may leave is none.
+    left_over[left_over <= ROUNDED * each] = 0.0
+    blocks = contacts.problem.assembly.weights / contacts.unit
+    left = float((left_over.reshape(-1, 6).max(axis=1) / blocks).max())
+    return forces, left if (contacts.slack(forces) > 0).all() else math.inf
+
+
+def _ruled_out(contacts: Contacts, pull: Array, rates: Array) -> float:
+    """Return all weight over the least normal forces that could balance, in spite of a motion.
+
+    Forces within friction gain no work in a motion that opens each point by mu times its
+    slip or more. Where points open by less, by an error, they may: but no more than that
+    error times the force.
+    """
+    gained = float(rates @ pull)
+    if not gained > 0:
+        return math.inf
+    error = float(-np.minimum(contacts.opening(rates), 0.0).min(initial=0.0))
+    # Sliding without friction to speak of has no force across.
+    blocks = contacts.problem.assembly.weights / contacts.unit
+    return error * float(blocks.sum()) / gained
+
+
+def _unit(contacts: Contacts, rates: Array) -> Array:
+    """Scale rates so that the largest way of a corner is 1."""
+    return unit_rates(contacts.problem, rates.reshape(-1, 6))
+
+
+def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
+    """Scale rates of blocks so that the largest way of a corner is 1, in units of the size.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    rates : (blocks, 6) float
+    """
+    assembly = problem.assembly
+    largest = 0.0
+    for block, rate in zip(assembly.blocks, rates, strict=True):
+        arms = np.concatenate([hull.corners for hull in block.hulls]) - block.centre
+        ways = rate[:3] + np.cross(rate[3:], arms / assembly.size)
+        largest = max(largest, float(np.linalg.norm(ways, axis=1).max()))
+    return rates / largest if largest > 0 else rates
+
+
+def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...]:
+    """Tell what each joint does in a motion of the blocks.
+
+    Of a hinge some points stay together and others part, or all but one edge does. Sliding
+    opens by mu times the slip, as limit analysis has it: such points count as together.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    rates : (blocks, 6) float
+        The largest way of a corner 1.
+    """
+    contacts = Contacts(problem)
+    each = (contacts.matrix.T @ rates.ravel()).reshape(-1, 3)
+    slip = np.hypot(each[:, 1], each[:, 2])
+    mu = np.where(np.isinf(contacts.friction), 0.0, contacts.friction)
+    together = each[:, 0] - mu * slip <= SEEN
+    states: list[JointState] = []
+    for joint in range(len(problem.assembly.joints)):
+        here = contacts.joint == joint
+        if not together[here].any():
+            states.append(JointState.OPEN)
+            continue
+        slides = bool((slip[here & together] > SEEN).any())
+        parts = not together[here].all()
+        if slides:
+            states.append(JointState.HINGE_AND_SLIDES if parts else JointState.SLIDES)
+        else:
+            states.append(JointState.HINGE_INTRADOS if parts else JointState.CLOSED)
+    return tuple(states)

@@ -1,0 +1,325 @@
+"""Blocks in space, held to published cases, closed forms, own programmes and symmetry."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from running import inside
+from space_cases import CASES, GROUND, NAMES, box, case, enclosed, problem_of, rotation, tower
+
+import blocksim
+from blocksim import InputError, Solid, SpatialLoad, SpatialProblem, Verdict
+from blocksim.blocks.space.files import problem_in_space
+from blocksim.limit.space import can_rest, largest_load
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_case_has_its_value_verdict_and_joints(name: str) -> None:
+    """Each of the 55 cases, by the public reader and verb."""
+    known = case(name)
+    problem = problem_in_space(known["scene"])
+    answer = blocksim.check(problem)
+    if "faces" in known:
+        assert len(problem.assembly.joints) == known["faces"]
+    expected = known["expected"]
+    if known["question"] == "stands":
+        assert answer.verdict is (Verdict.STANDS if expected["value"] else Verdict.COLLAPSES)
+    else:
+        assert answer.load_factor == pytest.approx(expected["value"], rel=1e-6)
+        for share, verdict in ((0.999, Verdict.STANDS), (1.001, Verdict.COLLAPSES)):
+            at = problem.with_load(share * expected["value"])
+            assert blocksim.check(at).verdict is verdict
+
+
+def test_the_forces_of_a_case_balance_and_lie_within_friction() -> None:
+    """Summed again from the forces at the points, in N."""
+    problem = problem_in_space(case("dome_12_7_stands")["scene"])
+    static, assembly = can_rest(problem), problem.assembly
+    assert static.point_forces is not None
+    left = problem.fixed_pull.copy()
+    at = 0
+    for joint in assembly.joints:
+        first, second = blocksim.blocks.space.polyhedron.frame(joint.normal)
+        for point in joint.points:
+            normal, one, other = static.point_forces[at]
+            at += 1
+            assert math.hypot(one, other) <= problem.mu * normal
+            force = normal * joint.normal + one * first + other * second
+            for block, sign in ((joint.before, -1), (joint.after, 1)):
+                if block >= 0:
+                    arm = point - assembly.blocks[block].centre
+                    left[block] += sign * np.concatenate([force, np.cross(arm, force)])
+    assert np.abs(left).max() < 1e-12 * assembly.weights.min()
+
+
+def test_a_mechanism_opens_no_joint_less_than_its_slip_asks() -> None:
+    """And gravity gains work in it: summed again from the rates of the blocks."""
+    problem = problem_in_space(case("dome_12_7_falls")["scene"])
+    static, assembly = can_rest(problem), problem.assembly
+    assert static.mechanism is not None
+    rates = static.mechanism * np.array([assembly.size] * 3 + [1.0] * 3)
+    assert (rates * problem.fixed_pull).sum() > 0
+    for joint in assembly.joints:
+        for point in joint.points:
+            parted = np.zeros(3)
+            for block, sign in ((joint.before, -1), (joint.after, 1)):
+                if block >= 0:
+                    arm = point - assembly.blocks[block].centre
+                    parted += sign * (rates[block, :3] + np.cross(rates[block, 3:], arm))
+            opening = parted @ joint.normal
+            slip = np.linalg.norm(parted - opening * joint.normal)
+            assert opening >= problem.mu * slip - 1e-7
+
+
+@settings(max_examples=12, deadline=None)
+@given(seed=st.integers(0, 10**6), mu=st.sampled_from([0.2, 0.6, 1.5]))
+def test_a_load_factor_lies_between_those_of_two_pyramids(seed: int, mu: float) -> None:
+    """Towers of boxes pushed sideways, by linear programmes written for the test."""
+    problem = problem_of(tower(seed, blocks=4, offset=0.15), mu)
+    way = rotation(seed)[0] * np.array([1, 1, 0.2])
+    blocks = tuple(range(len(problem.assembly.blocks)))
+    problem = replace(problem, live=(SpatialLoad(force=way, blocks=blocks, per_weight=True),))
+    factor = largest_load(problem).factor
+    low, high = enclosed(problem)
+    if math.isnan(low) or math.isnan(high):
+        assert factor is None or math.isinf(factor) or math.isnan(low)
+    else:
+        assert factor is not None
+        assert low - 1e-7 * abs(low) - 1e-9 <= factor <= high + 1e-7 * abs(high) + 1e-9
+
+
+@settings(max_examples=15, deadline=None)
+@given(seed=st.integers(0, 10**6), scale=st.sampled_from([1e-3, 1.0, 50.0]))
+def test_a_verdict_does_not_change_as_blocks_are_turned_scaled_mirrored_renumbered(
+    seed: int, scale: float
+) -> None:
+    """With gravity turned alike."""
+    solids = tower(seed)
+    problem = problem_of(solids)
+    turn = rotation(seed + 1) @ np.diag([-1, 1, 1])
+    order = np.random.default_rng(seed).permutation(len(solids))
+    moved = [
+        Solid(parts=(scale * np.array(solids[at].parts[0]) @ turn.T + 3.0,),
+              fixed=solids[at].fixed, name=solids[at].name)
+        for at in order
+    ]  # fmt: skip
+    other = problem_of(moved, gravity=turn @ np.array([0.0, 0.0, -1.0]))
+    one, two = can_rest(problem), can_rest(other)
+    assert len(problem.assembly.joints) == len(other.assembly.joints)
+    assert one.exists is two.exists
+    assert one.margin == pytest.approx(two.margin, rel=1e-5, abs=1e-7)
+
+
+@pytest.mark.parametrize("azimuth", [0, 25, 90, 200])
+@pytest.mark.parametrize("mu", [0.2, 2.0])
+def test_a_block_slides_or_topples_on_a_table_tilted_towards_any_azimuth(
+    azimuth: float, mu: float
+) -> None:
+    """Closed form: the friction angle, or half the block over the height of its centre."""
+    a, b, h = 0.3, 0.5, 0.7
+    solids = [
+        Solid(parts=(GROUND,), fixed=True),
+        Solid(parts=(box((-a, -b, 0), (a, b, 2 * h)),)),
+    ]
+    way = math.radians(azimuth)
+    problem = replace(problem_of(solids, mu), azimuth=way)
+    answer = blocksim.bracket(problem, over="tilt", tol=1e-6)
+    over = min(a / max(abs(math.cos(way)), 1e-12), b / max(abs(math.sin(way)), 1e-12)) / h
+    assert answer.limit == pytest.approx(math.degrees(math.atan(min(mu, over))), rel=1e-7)
+    assert answer.low is not None
+    assert answer.high is not None
+    assert answer.low < answer.limit < answer.high
+    assert blocksim.check(problem.tilted(math.radians(answer.low))).verdict is Verdict.STANDS
+    fallen = blocksim.check(problem.tilted(math.radians(answer.high)))
+    assert fallen.verdict is Verdict.COLLAPSES
+
+
+@pytest.mark.parametrize(("slope", "heavy"), [(0.3, 1e-9), (0.5, 1.0), (1.0, 1e9)])
+def test_the_least_friction_of_a_block_on_a_ramp_is_its_slope(
+    slope: float, heavy: float
+) -> None:
+    """Beside another block of any weight."""
+    ramp = [[x, y, z] for x in (0, 2) for y in (-1, 1) for z in (-1, slope * x)]
+    block = [[x, y, slope * x + z] for x in (0.9, 1.1) for y in (-0.1, 0.1) for z in (0, 0.05)]
+    solids = [
+        Solid(parts=(ramp,), fixed=True, name="ramp"),
+        Solid(parts=(block,), name="block"),
+        Solid(parts=(box((5, 0, 0), (6, 1, 1)),), name="heavy", weight=heavy),
+        Solid(parts=(box((4, -1, -1), (7, 2, 0)),), fixed=True, name="bed"),
+    ]
+    answer = blocksim.bracket(problem_of(solids, 0.9), over="mu", tol=1e-6)
+    assert answer.limit == pytest.approx(slope, rel=1e-8)
+    assert answer.stands == "high"
+
+
+def test_blocks_touch_at_faces_edges_and_corners() -> None:
+    """A cube on its face, a roof upside down on its edge, a pyramid on its tip."""
+    edge = [[-1, 0, 0], [1, 0, 0], [-1, -1, 1], [1, -1, 1], [-1, 1, 1], [1, 1, 1]]
+    tip = [[0, 0, 0], [-1, -1, 1], [1, -1, 1], [-1, 1, 1], [1, 1, 1]]
+    for shape, points in ((box((0, 0, 0), (1, 1, 1)), 4), (edge, 2), (tip, 1)):
+        assembly = problem_of(
+            [Solid(parts=(GROUND,), fixed=True), Solid(parts=(shape,))]
+        ).assembly
+        (joint,) = assembly.joints
+        assert joint.points.shape == (points, 3)
+        assert joint.normal @ np.array([0, 0, 1]) == pytest.approx(1)
+
+
+def test_a_plank_across_another_touches_it_in_a_point() -> None:
+    """Two prisms on their edges, crosswise."""
+    low = [[x, y, z] for x in (-1, 1) for y, z in ((0, 1), (-1, 0), (1, 0))]
+    high = [[x, y, z] for y in (-1, 1) for x, z in ((0, 1), (-1, 2), (1, 2))]
+    solids = [Solid(parts=(low,), fixed=True), Solid(parts=(high,))]
+    (joint,) = problem_of(solids).assembly.joints
+    assert np.allclose(joint.points, [[0, 0, 1]])
+
+
+def test_parts_of_a_block_move_as_one() -> None:
+    """An L of two boxes: its centroid, and that it stands where one box alone would fall."""
+    arm, leg = box((-0.2, 0, 1), (1.4, 1, 1.2)), box((-0.2, 0, 0), (0.2, 1, 1))
+    ground = Solid(parts=(GROUND,), fixed=True)
+    whole = problem_of([ground, Solid(parts=(arm, leg))])
+    (block,) = whole.assembly.blocks
+    assert block.weight == pytest.approx(0.32 + 0.4)
+    assert block.centre[0] == pytest.approx(0.32 * 0.6 / 0.72)
+    assert blocksim.check(whole).verdict is Verdict.COLLAPSES
+    held = problem_of([ground, Solid(parts=(box((-0.2, 0, 1), (0.6, 1, 1.2)), leg))])
+    assert blocksim.check(held).verdict is Verdict.STANDS
+
+
+def scene(**changes: Any) -> dict[str, Any]:
+    """A block on the ground, with other keys."""
+    blocks = [
+        {"id": "ground", "vertices": GROUND, "fixed": True},
+        {"id": "a", "vertices": box((0, 0, 0), (1, 1, 1))},
+    ]
+    return {"friction": 0.5, "blocks": blocks, **changes}
+
+
+def with_block(**block: Any) -> dict[str, Any]:
+    """The same with another block in place of the free one."""
+    return scene(blocks=[scene()["blocks"][0], {"id": "a", **block}])
+
+
+CUBE = box((0, 0, 0), (1, 1, 1))
+BROKEN = {
+    "flat": (with_block(vertices=[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), "flat hull"),
+    "line": (with_block(vertices=[[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]), "flat hull"),
+    "three": (with_block(vertices=[[0, 0, 0], [1, 0, 0], [0, 1, 0]]), "3 corners"),
+    "within": (with_block(vertices=box((0, 0, -0.3), (1, 1, 1))), "overlap by 0.3 m"),
+    "loose": (with_block(vertices=box((0, 0, 2), (1, 1, 3))), "touches nothing"),
+    "nan": (with_block(vertices=[*CUBE[:-1], [1, 1, float("nan")]]), "vertices"),
+    "inf": (with_block(vertices=[*CUBE[:-1], [1, 1, 1e300]]), "vertices"),
+    "text": (with_block(vertices=[*CUBE[:-1], [1, 1, "1"]]), "vertices"),
+    "two numbers": (with_block(vertices=[*CUBE[:-1], [1, 1]]), "vertices"),
+    "a million": (with_block(vertices=[[0, 0, 0]] * 1_000_000), "1000"),
+    "millimetres": (with_block(vertices=box((0, 0, 0), (2000, 1000, 500))), "millimetres"),
+    "parts overlap": (with_block(polyhedra=[CUBE, box((0.5, 0, 0), (2, 1, 1))]), "overlap"),
+    "both": (with_block(vertices=CUBE, polyhedra=[CUBE]), "polyhedra"),
+    "none": (with_block(), "vertices"),
+    "twice": (scene(blocks=[*scene()["blocks"], scene()["blocks"][1]]), "id"),
+    "all fixed": (with_block(vertices=CUBE, fixed=True), "fixed"),
+    "all free": (scene(blocks=[scene()["blocks"][1], {"id": 2, "vertices": CUBE}]), "fixed"),
+    "no friction": ({"blocks": scene()["blocks"]}, "friction"),
+    "a key": (scene(move=[]), "move"),
+    "load on none": (scene(live=[{"block": "b", "force": [0, 0, -1]}]), "live[0].block"),
+    "load in the plane": (scene(live=[{"block": "a", "force": [0, -1]}]), "live[0].force"),
+    "no normal": (
+        scene(joints=[{"a": 0, "b": "a", "points": [[0, 0, 0]], "normal": [0, 0, 0]}]),
+        "joints[0]",
+    ),
+    "weightless": (with_block(vertices=CUBE, weight=0), "weight"),
+}
+
+
+@pytest.mark.parametrize("kind", BROKEN)
+def test_a_broken_file_is_told_in_one_line(kind: str, tmp_path: Path) -> None:
+    """Exit code 2, and what is wrong."""
+    table, said = BROKEN[kind]
+    if kind == "a million":
+        with pytest.raises(InputError, match=said):
+            problem_in_space(table)
+        return
+    path = tmp_path / "broken.json"
+    path.write_text(json.dumps(table), encoding="utf-8")
+    done = inside("check", str(path))
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert said in done.stderr
+
+
+@pytest.mark.parametrize("decimals", [3, 4, 6, 9, 12])
+def test_a_survey_with_few_decimals_has_the_same_joints(decimals: int) -> None:
+    """A skew arch rounded as a file would be."""
+    known = case("arch_15_skew_30_crown")
+    blocks = [
+        {**block, "vertices": np.round(block["vertices"], decimals).tolist()}
+        for block in known["scene"]["blocks"]
+    ]
+    problem = problem_in_space({**known["scene"], "blocks": blocks})
+    assert len(problem.assembly.joints) == known["faces"]
+    factor = blocksim.check(problem).load_factor
+    assert factor == pytest.approx(
+        known["expected"]["value"], rel=max(200 * 10.0**-decimals, 1e-7)
+    )
+
+
+def test_commands_answer_in_space_with_the_keys_of_the_plane() -> None:
+    """Both verbs, in words and as JSON."""
+    path = CASES / "wall_6_4_0_0_1_0.json"
+    known = json.loads(path.read_text(encoding="utf-8"))
+    file = Path("wall_in_space.json")
+    told: dict[str, dict[str, Any]] = {}
+    try:
+        file.write_text(json.dumps(known["scene"]), encoding="utf-8")
+        for command in ("check", "bracket --over load"):
+            verb, *rest = command.split()
+            done = inside(verb, str(file), *rest, "--json")
+            assert done.returncode == 0, done.stderr
+            told[verb] = json.loads(done.stdout)
+        plane = json.loads(inside(*["check", "wall", "--mu", "0.7", "--json"]).stdout)
+        words = inside("check", str(file), "--load", "0.3").stdout
+    finally:
+        file.unlink(missing_ok=True)
+    assert set(told["check"]) == set(plane)
+    assert set(told["check"]["problem"]) == set(plane["problem"])
+    assert told["bracket"]["limit"] == pytest.approx(known["expected"]["value"], rel=1e-6)
+    assert words.startswith("COLLAPSES  (limit")
+
+
+@pytest.mark.parametrize(
+    "option",
+    ["--must-rest", "--method direct", "--shake constant", "--alpha 90", "--set step=1",
+     "--lean 3", "--fill 1", "--reduce", "--proof p.json"],
+)  # fmt: skip
+def test_an_option_that_means_nothing_in_space_is_refused(option: str) -> None:
+    """In one line, exit code 2."""
+    path = _scene_of("block_topples_0")
+    try:
+        done = inside("check", str(path), *option.split())
+    finally:
+        path.unlink()
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+
+
+def _scene_of(name: str) -> Path:
+    path = Path(f"{name}_in_space.json")
+    path.write_text(json.dumps(case(name)["scene"]), encoding="utf-8")
+    return path
+
+
+def test_spatial_problems_say_what_they_are() -> None:
+    """A `repr` in one line."""
+    problem = problem_of(tower(0))
+    assert isinstance(problem, SpatialProblem)
+    assert repr(problem).startswith("SpatialProblem(6 blocks, ")
