@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import ClassVar
@@ -30,10 +31,14 @@ class Dome(SolidMaker):
 
     radius: float = metres(1.0, "mean radius at the springing")
     thickness: float = metres(0.1, "thickness", stands="high")
-    rise: float = metres(1.0, "rise of the meridian's crown over the springing, in radii",
-                         low=0.1, high=10.0)  # fmt: skip
-    pointed: float = metres(0.0, "how far the meridian's centre lies beyond the axis, in radii",
-                            low=0.0, high=10.0)  # fmt: skip
+    rise: float = parameter(
+        1.0, "rise of the meridian's crown over the springing, in radii",
+        low=0.1, high=10.0, above=False,
+    )  # fmt: skip
+    pointed: float = parameter(
+        0.0, "how far the meridian's centre lies beyond the axis, in radii",
+        low=0.0, high=10.0, above=False,
+    )  # fmt: skip
     eye_deg: float = parameter(
         8.0, "angle of the eye about the meridian's centre, from its crown", unit="deg",
         low=0.1, high=89.0, above=False,
@@ -41,7 +46,7 @@ class Dome(SolidMaker):
     lunes: int = count(12, "number of lunes", low=3, high=200)
     courses: int = count(7, "number of courses", high=200)
     bond: str = parameter(
-        "none", "how meridian joints run: through all courses, or half a lune apart in every other",
+        "none", "how meridian joints run: through all courses, or half a lune apart",
         choices=("none", "half"),
     )  # fmt: skip
 
@@ -84,7 +89,7 @@ class Dome(SolidMaker):
                 cuts = (0.0, 0.5, 1.0) if self.bond == "half" else (0.0, 1.0)
                 parts = tuple(
                     wedge(inner, outer, start + a * step, start + b * step)
-                    for a, b in zip(cuts, cuts[1:], strict=False)
+                    for a, b in itertools.pairwise(cuts)
                 )
                 solids.append(Solid(parts=parts, name=f"{course + 1}.{lune + 1}"))
         return tuple(solids)

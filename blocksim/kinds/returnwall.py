@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -35,13 +36,13 @@ class ReturnWall(SolidMaker):
             levels = course * self.height, (course + 1) * self.height
             odd = course % 2
             cuts = self._cuts(self.bricks, odd)
-            for at, ends in enumerate(zip(cuts, cuts[1:], strict=False)):
+            for at, ends in enumerate(itertools.pairwise(cuts)):
                 name = f"{course + 1}.{at + 1}"
                 solids.append(box(name, ends, (0.0, self.width), levels))
             if not self.returned:
                 continue
             cuts = [self.width + each for each in self._cuts(self.returned, odd, ends=False)]
-            for at, ends in enumerate(zip(cuts, cuts[1:], strict=False)):
+            for at, ends in enumerate(itertools.pairwise(cuts)):
                 name = f"{course + 1}.r{at + 1}"
                 solids.append(box(name, (0.0, self.width), ends, levels))
         return tuple(solids)

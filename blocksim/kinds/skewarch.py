@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import ClassVar
@@ -48,7 +49,7 @@ class SkewArch(SolidMaker):
         angles = np.linspace(-half, half, self.voussoirs + 1).tolist()
         blocks = [
             Solid(parts=(voussoir(radii, ends, along, skew, half),), name=str(at + 1))
-            for at, ends in enumerate(zip(angles, angles[1:], strict=False))
+            for at, ends in enumerate(itertools.pairwise(angles))
         ]
         return (
             abutment("left", radii, -half, along, skew, half),
@@ -73,7 +74,7 @@ class BarrelVault(SolidMaker):
     voussoirs: int = count(15, "number of voussoirs of a ring", low=3, high=500)
     rings: int = count(4, "number of rings", high=200)
     bond: str = parameter(
-        "half", "how joints between rings run: straight, or half a ring apart in every other course",
+        "half", "how joints between rings run: straight, or half a ring apart",
         choices=("none", "half"),
     )  # fmt: skip
 
@@ -91,9 +92,9 @@ class BarrelVault(SolidMaker):
         cuts = np.linspace(low, high, self.rings + 1).tolist()
         shifted = [low, *(cut - step / 2 for cut in cuts[1:]), high]
         blocks: list[Solid] = []
-        for course, ends in enumerate(zip(angles, angles[1:], strict=False)):
+        for course, ends in enumerate(itertools.pairwise(angles)):
             here = shifted if self.bond == "half" and course % 2 else cuts
-            for ring, along in enumerate(zip(here, here[1:], strict=False)):
+            for ring, along in enumerate(itertools.pairwise(here)):
                 corners = voussoir(radii, ends, along, 0.0, half)
                 blocks.append(Solid(parts=(corners,), name=f"{course + 1}.{ring + 1}"))
         return (

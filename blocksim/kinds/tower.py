@@ -25,7 +25,9 @@ class Tower(SolidMaker):
     length: float = metres(1.0, "length of a box")
     width: float = metres(0.6, "width of a box")
     height: float = metres(0.3, "height of a box")
-    offset: float = metres(0.1, "how far each box lies beyond the one below", low=0.0, stands="low")
+    offset: float = metres(
+        0.1, "how far each box lies beyond the one below", low=0.0, stands="low"
+    )
     turn_deg: float = parameter(
         20.0, "angle by which each box is turned on the one below", unit="deg",
         low=-180.0, high=180.0, above=False,
@@ -34,8 +36,7 @@ class Tower(SolidMaker):
     def limits(self, name: str) -> tuple[float, float]:
         """Range of a parameter: each box lies on the one below."""
         low, high = super().limits(name)
-        least = min(self.length, self.width)
-        return (low, min(high, 0.99 * least)) if name == "offset" else (low, high)
+        return (low, min(high, 0.99 * self.length)) if name == "offset" else (low, high)
 
     def solids(self) -> tuple[Solid, ...]:
         """Make the ground and the boxes, from the lowest."""
