@@ -11,8 +11,8 @@ from scipy.optimize import brentq, root
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory.equations import Value, shape
-from blocksim.arch.theory.lines import onset_equations
+from blocksim.arch.theory.equations import Value, normal_force, shape
+from blocksim.arch.theory.lines import friction_line, section_moment, thrust_line
 from blocksim.blocks.assembly import Array
 
 
@@ -40,6 +40,70 @@ def whole_thrust(half_angle: Value, eta: Value) -> Value:
 def tangency_thrust(beta: Value, eta: Value) -> Value:
     """Thrust whose line is tangent to the intrados at beta, h_e (4)."""
     return beta / np.tan(beta) - eta / (2 - eta)
+
+
+def thrust_line_slope(
+    angle: Value, thrust: Value, crown_moment: Value, eta: Value, weight: Weight = "centreline"
+) -> Value:
+    """Differentiate `thrust_line` by the angle, (12)."""
+    factor = 1.0 if weight == "centreline" else 1.0 + eta**2 / 12
+    force = normal_force(angle, thrust)
+    rate = (1 - thrust) * np.sin(angle) + angle * np.cos(angle)
+    moment = section_moment(angle, thrust, crown_moment, eta, weight)
+    moment_rate = factor * np.sin(angle) - rate
+    return -(moment_rate * force - moment * rate) / (force**2 * eta / 2)
+
+
+def friction_line_slope(angle: Value, thrust: Value, mu: Value) -> Value:
+    """Differentiate `friction_line` by the angle, (14)."""
+    force = normal_force(angle, thrust)
+    shear = thrust * np.sin(angle) - angle * np.cos(angle)
+    rate = (1 - thrust) * np.sin(angle) + angle * np.cos(angle)
+    shear_rate = (thrust - 1) * np.cos(angle) + angle * np.sin(angle)
+    return -(shear_rate * force - shear * rate) / (mu * force**2)
+
+
+def onset_equations(
+    half_angle: float, mu: float, mode: Mode, unknowns: Sequence[float], weight: Weight
+) -> Array:
+    """Residuals of those of eqs (10)-(14) that a mode fulfils.
+
+    Parameters
+    ----------
+    half_angle, mu : float
+        alpha [rad], friction coefficient.
+    mode : Mode
+        One of rrr, srr, rrs, rsr and rs.
+    unknowns : (4,) or (5,) float
+        eta, h, m, beta_r; for an inner sliding joint beta_s too.
+    weight : {"centreline", "sector"}
+
+    Returns
+    -------
+    (4,) or (5,) float
+        Zero at the onset of collapse.
+    """
+    eta, thrust, moment, beta_r = unknowns[:4]
+
+    def line(angle: float) -> Value:
+        return thrust_line(angle, thrust, moment, eta, weight)
+
+    slope = (
+        # The line of thrust is even: it is tangent at the crown anyhow.
+        beta_r if mode is Mode.RS else thrust_line_slope(beta_r, thrust, moment, eta, weight)
+    )
+    equations = [line(beta_r) - 1, slope]
+    if mode in {Mode.RRR, Mode.SRR}:
+        equations.append(line(0.0) + 1)
+    if mode is not Mode.SRR:
+        equations.append(line(half_angle) + 1)
+    else:
+        equations.append(friction_line(half_angle, thrust, mu) + 1)
+    if mode in {Mode.RRS, Mode.RSR, Mode.RS}:
+        beta_s = unknowns[4]
+        equations.append(friction_line(beta_s, thrust, mu) - 1)
+        equations.append(friction_line_slope(beta_s, thrust, mu))
+    return np.array(equations, dtype=float)
 
 
 def solve_onset(

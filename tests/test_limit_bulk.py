@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 from blocksim.arch import theory
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit import least_thickness, stands
-from blocksim.arch.limit.bulk import joints_of, least_thickness_of_joints, which_stand
+from blocksim.arch.limit.bulk import least_thickness_of_joints, which_stand
 from blocksim.arch.limit.halfplanes import Joints
 from blocksim.arch.limit.statics import half_joints, least_of
 from blocksim.common.errors import InputError
@@ -69,7 +69,7 @@ def test_static_theorem_by_linear_programming() -> None:
 
 def test_least_thickness_of_joints() -> None:
     half_angle, mu = np.array([math.pi / 2, 2.5, 1.0, 2.9]), np.array([0.37, 2.0, np.inf, 0.9])
-    found = least_thickness_of_joints(joints_of(half_angle, 30), mu, "sector")
+    found = least_thickness_of_joints(half_joints(half_angle, 30), mu, "sector")
     for a, m, eta in zip(half_angle.tolist(), mu.tolist(), found.tolist(), strict=True):
         expected = least_thickness(a, m, 30, "sector").eta
         assert math.isnan(eta) if expected is None else abs(eta - expected) < 1e-14
@@ -119,7 +119,7 @@ def test_many_voussoirs_by_all_pairs_of_joints(
     assert sorted(named) == pytest.approx(sorted(joints))
     assert which_stand(half_angle, beside, mu, count).tolist() == [False, True]
     (many,) = least_thickness_of_joints(
-        joints_of(np.array([half_angle]), count)[:, ::-1], np.array([mu]), "centreline"
+        half_joints(np.array([half_angle]), count)[:, ::-1], np.array([mu]), "centreline"
     )
     assert many == pytest.approx(found.eta, rel=1e-13)
 

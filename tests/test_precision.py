@@ -19,9 +19,10 @@ from mpmath import mpf
 
 from blocksim import Arch, bracket, check
 from blocksim.arch import limit, theory
-from blocksim.arch.limit.bulk import joints_of, least_thickness_of_joints
+from blocksim.arch.limit.bulk import least_thickness_of_joints
+from blocksim.arch.limit.statics import half_joints
 from blocksim.arch.modes import Mode
-from blocksim.arch.theory.map import divide_friction, half_angle_at
+from blocksim.arch.theory.map import at_points, divide_friction
 from blocksim.arch.theory.regions import (
     at_inner_sliding,
     crown_hinge,
@@ -125,7 +126,7 @@ def test_limit(degrees: float, mu: float, count: int, weight: str) -> None:
     alpha = math.radians(degrees)
     mu = divide_friction(alpha) * (1 - mu) if mu < 0 else mu
     one = limit.least_thickness(alpha, mu, count, weight)
-    angles = joints_of(np.array([alpha]), count)
+    angles = half_joints(np.array([alpha]), count)
     (many,) = least_thickness_of_joints(angles, np.array([mu]), weight)
     eta, thrust = exact.least_thickness_as_built(alpha, mu, count, weight)
     assert one.eta == pytest.approx(float(eta), rel=RELATIVE)
@@ -147,7 +148,7 @@ def test_overturning_slides_at_any_finite_friction(mu: float) -> None:
 @pytest.mark.parametrize("mu", and_long([1.0, 2.8, INF], [2.0, 5.0, 100.0]))
 def test_what_stands_at_a_point_of_the_map(mu: float, weight: str) -> None:
     """At eta = 2 the widest arch stands, and one wider by 1e-14 does not."""
-    alpha = half_angle_at(2.0, mu, weight)
+    alpha = float(at_points(2.0, mu, weight).half_angle)
     assert theory.least_thickness(alpha, mu, weight).eta is not None
     wider = exact.least_thickness(alpha * (1 + 1e-14), mu, weight)
     assert exact.least_thickness(alpha * (1 - 1e-15), mu, weight) is not None

@@ -25,7 +25,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +34,6 @@ from blocksim.arch.circular import Arch
 from blocksim.arch.limit import weakest_joints
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
 from blocksim.blocks.bodies import about, carried_poses, carried_rates
-from blocksim.engines.base import Quality, TakesForces, TellsForces, World
 from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -75,10 +74,6 @@ class Reduction:
             expected.add(middle)
         return cls(whole or arch.assembly(), tuple(sorted({0, *expected})))
 
-    def world(self, world: World) -> World:
-        """Return the world of all voussoirs, from that of the blocks simulated."""
-        return ReducedWorld(world, self)
-
     def of_problem(self, problem: Problem) -> Problem:
         """Return the problem of the blocks that are simulated."""
         return replace(problem, assembly=self.assembly)
@@ -86,6 +81,10 @@ class Reduction:
     def asked(self, problem: Problem) -> Problem:
         """Return the same: its world takes their forces."""
         return self.of_problem(problem)
+
+    def handed(self, forces: Array) -> Array:
+        """Return forces as they are: those of the blocks simulated."""
+        return forces
 
     def mended(
         self,
@@ -261,44 +260,6 @@ class Reduction:
     def parts(self, resultants: Array) -> bool:
         """Tell whether a keystone, if there is one, is not pressed against the plane."""
         return self._keystone and bool(resultants[len(self.whole.blocks) // 2, 0] <= 0)
-
-
-class ReducedWorld:
-    """The world of an arch that an engine knows only some blocks of.
-
-    Parameters
-    ----------
-    world : World
-        Of the blocks of a reduction.
-    reduction : Reduction
-    """
-
-    def __init__(self, world: World, reduction: Reduction) -> None:
-        self._world, self._reduction = world, reduction
-
-    def hold(self, sweeps: int) -> Array:
-        """Solve the contacts of one step from rest."""
-        return self._reduction.rates(self._world.hold(sweeps))
-
-    def begin(self, forces: Array) -> None:
-        """Begin anew, with forces in the joints of the blocks that are simulated."""
-        cast("TakesForces", self._world).begin(forces)
-
-    def advance(self, steps: int) -> None:
-        """Let the blocks move."""
-        self._world.advance(steps)
-
-    def poses(self) -> Array:
-        """Return the poses of all voussoirs."""
-        return self._reduction.poses(self._world.poses())
-
-    def resultants(self) -> Array:
-        """Return what all joints carry, at rest."""
-        return self._reduction.resultants(cast("TellsForces", self._world).resultants())
-
-    def quality(self) -> Quality:
-        """Tell how well contact and friction have been kept so far."""
-        return self._world.quality()
 
 
 def _mean_mass(assembly: Assembly) -> float:

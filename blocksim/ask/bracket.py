@@ -6,7 +6,7 @@ import math
 import time
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from blocksim.ask.ends import (
     Ask,
@@ -18,7 +18,7 @@ from blocksim.ask.ends import (
     tried_ends,
 )
 from blocksim.ask.families import Family, families_of, family_of
-from blocksim.ask.methods import choose, chosen_words, engine_of, merges, reduces
+from blocksim.ask.methods import choose, chosen_words, engine_of, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.searches import (
     FARTHEST,
@@ -242,7 +242,7 @@ def _thinned(
         found, evidence = Search(falls=falls, stands=stands), (Evidence(test, said),)
         facts = threshold.facts(low=falls, high=stands, method=chosen.name)
     else:
-        reduced = reduces(chosen, given.reduce, is_planar=problem.is_planar)
+        reduced = reduces(chosen, given.reduce, problem, by_maker=True)
         found = by_engine(
             _Reduced(threshold, engine_of(chosen), given.settings, reduce=reduced).held_at,
             threshold.start,
@@ -254,32 +254,24 @@ def _thinned(
             progress=given.progress,
         )
         evidence = (Evidence("search", found.reason),)
-        if reduced and found.blocks is not None and found.splits is not None:
-            from blocksim.simulation.observation import reduced_words
-
-            by, most = threshold.reduced_by, threshold.blocks
-            words = reduced_words(by, found.blocks, most, found.splits)
-            evidence += (Evidence("reduction", words),)
+        if reduced:
+            evidence += _reduced(found, threshold.reduced_by, threshold.blocks)
         facts = threshold.facts(
             low=found.falls, high=found.stands, method=chosen.name, seen=found.collapse
         )
-    return Bracket(
-        method=chosen.name,
+    return _answer(
+        found,
+        chosen,
+        given,
+        started,
         over=over,
         unit=threshold.unit,
         low=threshold.value(found.falls),
         high=threshold.value(found.stands),
         stands="high",
         limit=threshold.value(threshold.exact),
-        confirmed=found.confirmed,
-        runs=found.runs,
-        undecided=found.undecided,
-        evidence=evidence + _asides(given, chosen),
+        evidence=evidence,
         problem=problem,
-        tol=given.tol,
-        blocks=found.blocks,
-        splits=found.splits,
-        wall_s=time.perf_counter() - started,
         arch=facts,
         changes=((threshold.problem, threshold.exact, True),)
         if chosen.name == "limit" and threshold.exact
@@ -309,10 +301,38 @@ class _Reduced:
         return held
 
 
-def _asides(given: Taken, chosen: Method) -> tuple[Evidence, ...]:
-    """Say which settings were given, and what `auto` took."""
+def _answer(
+    found: Search,
+    chosen: Method,
+    given: Taken,
+    started: float,
+    *,
+    evidence: tuple[Evidence, ...],
+    **told: Any,
+) -> Bracket:
+    """Return what a search came to, and add which settings were given and what `auto` took."""
     settings = aside("settings", given_words(given.settings))
-    return settings + aside("method", chosen_words(given.method, chosen))
+    return Bracket(
+        method=chosen.name,
+        tol=given.tol,
+        confirmed=found.confirmed,
+        runs=found.runs,
+        undecided=found.undecided,
+        evidence=evidence + settings + aside("method", chosen_words(given.method, chosen)),
+        blocks=found.blocks,
+        splits=found.splits,
+        wall_s=time.perf_counter() - started,
+        **told,
+    )
+
+
+def _reduced(found: Search, by: str, most: int) -> tuple[Evidence, ...]:
+    """Tell what reductions came to; nothing where all blocks were simulated."""
+    if found.blocks is None or found.splits is None:
+        return ()
+    from blocksim.simulation.observation import reduced_words
+
+    return (Evidence("reduction", reduced_words(by, found.blocks, most, found.splits)),)
 
 
 def _of_family(
@@ -357,37 +377,31 @@ def _of_family(
     else:
         known = exact and math.isfinite(exact) and low <= exact <= high
         start = exact if exact and known else low + GUESS * (high - low)
-        reduced = merges(chosen, given.reduce, probe)
+        reduced = reduces(chosen, given.reduce, probe)
         ask = _asking(family, engine_of(chosen), given, (low, high), merged=reduced)
         found = ask(start, around(family, start) if known else (low, high), rises)
     evidence = (Evidence("search", found.reason), *aside("limit analysis", remark))
     most = len(probe.assembly.blocks)
     if reduced and found.blocks is not None and found.blocks < most:
         from blocksim.simulation.merging import Merging
-        from blocksim.simulation.observation import reduced_words
 
-        words = reduced_words(Merging.by, found.blocks, most, found.splits or 0)
-        evidence += (Evidence("reduction", words),)
+        evidence += _reduced(found, Merging.by, most)
     ends = (found.falls, found.stands)
     lower, upper = ends if rises else ends[::-1]
     intervals = tried_ends(family, found, ask) if static else None
-    return Bracket(
-        method=chosen.name,
+    return _answer(
+        found,
+        chosen,
+        given,
+        started,
         over=family.name,
         unit=family.unit,
         low=lower,
         high=upper,
         stands=family.stands,
         limit=exact,
-        confirmed=found.confirmed,
-        runs=found.runs,
-        undecided=found.undecided,
-        evidence=evidence + _asides(given, chosen),
+        evidence=evidence,
         problem=probe,
-        tol=given.tol,
-        blocks=found.blocks,
-        splits=found.splits,
-        wall_s=time.perf_counter() - started,
         events=None if family.spreading is None else family.spreading.events,
         intervals=intervals,
         changes=changes_of(family, intervals or ()) if chosen.name == "limit" else (),

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Unpack, overload
 
 from blocksim.ask.carried import carried_of
-from blocksim.ask.methods import choose, chosen_words, engine_of, merges, reduces
+from blocksim.ask.methods import choose, chosen_words, engine_of, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
 from blocksim.ask.undecided import undecided_words
@@ -279,22 +279,11 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
             arch=offered.facts(mode=static.mode),
         )
         return _Found(answer, offered.stands, moved=False)
-    # What moves blocks is loaded where it is asked for.
-    from blocksim.simulation.observation import observe
-
-    reduced = reduces(chosen, given.reduce, is_planar=problem.is_planar)
-    seen = observe(
-        problem,
-        engine_of(chosen),
-        settings=given.settings,
-        reduction=offered.reduction() if reduced else None,
-        progress=given.progress,
-    )
+    answer, seen = _simulated(problem, offered, chosen, given)
     facts = offered.facts(
         mode=offered.mode(seen.joints), mode_in_motion=offered.mode(seen.joints_in_motion)
     )
-    answer = replace(_of_seen(problem, chosen, seen), arch=facts)
-    return _Found(answer, offered.stands, moved=seen.moved)
+    return _Found(replace(answer, arch=facts), offered.stands, moved=seen.moved)
 
 
 def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
@@ -318,25 +307,31 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
             wall_s=0.0,
         )
         return _Found(answer, exists, moved=False, static=static)
-    from blocksim.simulation.merging import Merging
-    from blocksim.simulation.observation import observe
-
-    seen = observe(
-        problem,
-        engine_of(chosen),
-        settings=given.settings,
-        reduction=Merging.of(problem) if merges(chosen, given.reduce, problem) else None,
-        progress=given.progress,
-    )
-    answer = _of_seen(problem, chosen, seen)
+    answer, seen = _simulated(problem, None, chosen, given)
     joints = _observed(problem, seen.rates) if planar else answer.joints
     answer = replace(answer, joints=joints, load_factor=factor)
     return _Found(answer, exists, moved=seen.moved, static=static)
 
 
-def _of_seen(problem: Problem, chosen: Method, seen: Observation) -> Check:
-    """Answer what an engine showed."""
-    return Check(
+def _simulated(
+    problem: Problem, offered: Offers | None, chosen: Method, given: Taken
+) -> tuple[Check, Observation]:
+    """Answer what an engine showed, of fewer blocks where it takes no more."""
+    # What moves blocks is loaded where it is asked for.
+    from blocksim.simulation.merging import Merging
+    from blocksim.simulation.observation import observe
+
+    reduction = None
+    if reduces(chosen, given.reduce, problem, by_maker=offered is not None):
+        reduction = Merging.of(problem) if offered is None else offered.reduction()
+    seen = observe(
+        problem,
+        engine_of(chosen),
+        settings=given.settings,
+        reduction=reduction,
+        progress=given.progress,
+    )
+    answer = Check(
         method=chosen.name,
         verdict=seen.verdict,
         evidence=seen.evidence,
@@ -350,6 +345,7 @@ def _of_seen(problem: Problem, chosen: Method, seen: Observation) -> Check:
         splits=seen.splits,
         wall_s=0.0,
     )
+    return answer, seen
 
 
 def _by_shaking(problem: Problem, chosen: Method, given: Taken) -> _Found:

@@ -53,12 +53,12 @@ class Family:
     """
 
     name: str
-    unit: str
     at: Callable[[float], Problem]
-    low: float
     high: float
-    stands: Stands
-    standing: Callable[[], tuple[Interval, ...] | None]
+    low: float = 0.0
+    unit: str = ""
+    stands: Stands = "low"
+    standing: Callable[[], tuple[Interval, ...] | None] = lambda: None
     remark: Callable[[], str] = str
     start: float | None = None
     spreading: Spreading | None = None
@@ -129,11 +129,8 @@ def _over_load(problem: Problem) -> Family:
         raise InputError("--over", "load", "another parameter: the structure has no live loads")
     return Family(
         name="load",
-        unit="",
         at=problem.with_load,
-        low=0.0,
         high=HIGHEST_FACTOR,
-        stands="low",
         standing=lambda: over_factor(problem),
     )
 
@@ -143,9 +140,7 @@ def _over_tilt(problem: Problem) -> Family:
         name="tilt",
         unit="deg",
         at=lambda value: problem.tilted(math.radians(value)),
-        low=0.0,
         high=90.0,
-        stands="low",
         standing=lambda: tuple(
             Interval(low=math.degrees(each.low), high=math.degrees(each.high))
             for each in over_tilt(problem, 0.0, math.pi / 2)
@@ -158,19 +153,14 @@ def _over_lean(problem: Problem) -> Family:
         name="lean",
         unit="deg",
         at=lambda value: problem.leaning(math.radians(value)),
-        low=0.0,
         high=LEANEST,
-        stands="low",
-        standing=lambda: None,
     )
 
 
 def _over_mu(problem: Problem) -> Family:
     return Family(
         name="mu",
-        unit="",
         at=problem.with_friction,
-        low=0.0,
         high=LARGEST_FRICTION,
         stands="high",
         standing=lambda: least_friction(problem, LARGEST_FRICTION),
@@ -186,9 +176,7 @@ def _over_spread(problem: Problem) -> Family:
         name="spread",
         unit="m",
         at=spreading.at,
-        low=0.0,
         high=spreading.farthest,
-        stands="low",
         standing=lambda: _until(spreading.exact),
         remark=lambda: spreading.words,
         spreading=spreading,
@@ -205,10 +193,7 @@ def _over_amplitude(problem: Problem) -> Family:
         name="amplitude",
         unit="g",
         at=lambda value: replace(problem, shaking=shaking.with_amplitude(value)),
-        low=0.0,
         high=AMPLITUDE.high,
-        stands="low",
-        standing=lambda: None,
         start=shaking.amplitude or None,
     )
 
@@ -221,8 +206,6 @@ def _over_duration(problem: Problem) -> Family:
         at=lambda value: replace(problem, shaking=shaking.with_duration(value)),
         low=DURATION.low,
         high=DURATION.high,
-        stands="low",
-        standing=lambda: None,
         start=shaking.duration,
     )
 

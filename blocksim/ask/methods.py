@@ -158,19 +158,18 @@ def _can_reduce(method: Method) -> bool:
     return isinstance(method, Engine) and method.tells_forces
 
 
-def reduces(method: Method, reduce: bool | None, *, is_planar: bool) -> bool:
-    """Tell whether an arch is reduced: as asked for, else by what the engine says of itself."""
-    if reduce is not None:
-        return reduce
-    return is_planar and isinstance(method, Engine) and method.reduces
+def reduces(
+    method: Method, reduce: bool | None, problem: Problem, *, by_maker: bool = False
+) -> bool:
+    """Tell whether fewer blocks are simulated: as asked for, else as the engine says.
 
-
-def merges(method: Method, reduce: bool | None, problem: Problem) -> bool:
-    """Tell whether blocks of any structure are merged; as `reduces`."""
+    By merging, or as the maker of the problem knows it.
+    """
     if reduce is not None:
         return reduce
     still = problem.is_planar and problem.shaking is None
-    return still and isinstance(method, Engine) and method.merges
+    usual = isinstance(method, Engine) and (method.reduces if by_maker else method.merges)
+    return still and usual
 
 
 def chosen_words(method: str | Method, rung: Method) -> str:

@@ -137,12 +137,6 @@ class Blocks(Stepping):
         """Set the velocities, shape (blocks, 3)."""
         self._velocities = np.array(velocities, dtype=np.float64)
 
-    def start_from(self, other: Blocks) -> None:
-        """Take poses, velocities and contact forces from the same blocks in another world."""
-        self._poses, self._velocities = other._poses.copy(), other._velocities.copy()
-        self._way = other._way
-        self._solution = other._solution and other._solution.carried(other._keys, self._keys)
-
 
 ENGINE = Engine(
     name="direct",

@@ -31,7 +31,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +47,6 @@ from blocksim.blocks.bodies import (
 )
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import Library
-from blocksim.engines.base import Quality, TakesForces, TellsForces, World
 from blocksim.limit import equilibrium, nearest_mechanism
 from blocksim.limit.cones import Cones
 from blocksim.limit.programme import most_common
@@ -137,10 +136,6 @@ class Merging:
         own = self.assembly.centres[self.owner]
         return (self.whole.assembly.centres - own) / self.assembly.size
 
-    def world(self, world: World) -> World:
-        """Return the world of all blocks, from that of the bodies."""
-        return MergedWorld(world, self)
-
     def poses(self, poses: Array) -> Array:
         """Return the poses of all blocks from those of the bodies."""
         return carried_poses(poses, self.owner, self._offsets)
@@ -148,6 +143,14 @@ class Merging:
     def rates(self, rates: Array) -> Array:
         """Return the velocities or accelerations at rest of all blocks likewise."""
         return carried_rates(rates, self.owner, self._offsets)
+
+    def resultants(self, resultants: Array) -> Array:
+        """Return what the joints of the bodies carry."""
+        return resultants
+
+    def handed(self, forces: Array) -> Array:
+        """Return forces in the joints of the bodies, in the unit of theirs."""
+        return self.whole.unit_force / self.problem.unit_force * forces[list(self.kept)]
 
     def mended(
         self,
@@ -158,21 +161,7 @@ class Merging:
         *,
         takes_forces: bool,
     ) -> Merging | None:
-        """Return this where it stands for all blocks, else what comes nearer to that.
-
-        Parameters
-        ----------
-        first : Onset
-            What was seen.
-        resultants : (joints, 3) float
-            Of the joints of `assembly`, as `TellsForces.resultants`.
-        problem : Problem
-            Of all blocks, with the friction the engine takes.
-        allowed : float
-            Force beyond the strength of a joint that counts as none [mean weights].
-        takes_forces : bool
-            Whether the engine can be given some to begin with.
-        """
+        """Return this where it stands for all blocks, else what comes nearer; see `Reduced`."""
         if first.verdict is Verdict.UNDECIDED:
             return None
         holds, rates = self.parting(resultants, problem, allowed)
@@ -192,7 +181,7 @@ class Merging:
     def parting(
         self, resultants: Array, problem: Problem, allowed: float
     ) -> tuple[bool, Array | None]:
-        """Tell whether joints within bodies can bear what is left to them; see `mended`.
+        """Tell whether joints within bodies can bear what is left to them; see `Reduced`.
 
         Returns
         -------
@@ -239,47 +228,6 @@ class Merging:
         total = np.zeros((len(self.assembly.blocks), PLANAR))
         np.add.at(total, self.owner, moved)
         return acting, self.rates(total / (unit * self.assembly.masses))
-
-
-class MergedWorld:
-    """The world of blocks that an engine knows bodies of.
-
-    Parameters
-    ----------
-    world : World
-        Of the bodies.
-    merging : Merging
-    """
-
-    def __init__(self, world: World, merging: Merging) -> None:
-        self._world, self._merging = world, merging
-
-    def hold(self, sweeps: int) -> Array:
-        """Solve the contacts of one step from rest."""
-        return self._merging.rates(self._world.hold(sweeps))
-
-    def begin(self, forces: Array) -> None:
-        """Begin anew, with forces of which those in joints of the bodies are taken."""
-        whole, bodies = self._merging.whole, self._merging.problem
-        unit = whole.unit_force / bodies.unit_force
-        kept = list(self._merging.kept)
-        cast("TakesForces", self._world).begin(unit * forces[kept])
-
-    def advance(self, steps: int) -> None:
-        """Let the bodies move."""
-        self._world.advance(steps)
-
-    def poses(self) -> Array:
-        """Return the poses of all blocks."""
-        return self._merging.poses(self._world.poses())
-
-    def resultants(self) -> Array:
-        """Return what the joints of the bodies carry."""
-        return cast("TellsForces", self._world).resultants()
-
-    def quality(self) -> Quality:
-        """Tell how well contact and friction have been kept so far."""
-        return self._world.quality()
 
 
 def _unless_many(merging: Merging) -> Merging | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import Range
 from blocksim.engines import get_engine
-from blocksim.engines.base import Engine, Quality, Settings, World
+from blocksim.engines.base import Engine, Quality, Settings, TakesForces, TellsForces, World
 from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
@@ -80,8 +80,20 @@ class Reduced(Protocol):
         """Return the problem whose forces its world takes, from that of all blocks."""
         ...
 
-    def world(self, world: World) -> World:
-        """Return the world of all blocks, from that of those simulated."""
+    def poses(self, poses: Array) -> Array:
+        """Return the poses of all blocks, from those of the blocks simulated."""
+        ...
+
+    def rates(self, rates: Array) -> Array:
+        """Return velocities or accelerations at rest likewise."""
+        ...
+
+    def resultants(self, resultants: Array) -> Array:
+        """Return what joints carry at rest, from what those simulated do; see `mended`."""
+        ...
+
+    def handed(self, forces: Array) -> Array:
+        """Return the forces in the joints simulated, from those of `asked`."""
         ...
 
     def mended(
@@ -100,7 +112,7 @@ class Reduced(Protocol):
         first : Onset
             What was seen.
         resultants : (joints, 3) float
-            What `TellsForces.resultants` of its world says.
+            What `ReducedWorld.resultants` says.
         problem : Problem
             Of all blocks, with the friction the engine takes.
         allowed : float
@@ -109,6 +121,44 @@ class Reduced(Protocol):
             Whether the engine can be given some to begin with.
         """
         ...
+
+
+class ReducedWorld:
+    """The world of all blocks, of which an engine knows fewer.
+
+    Parameters
+    ----------
+    world : World
+        Of the blocks simulated.
+    reduction : Reduced
+    """
+
+    def __init__(self, world: World, reduction: Reduced) -> None:
+        self._world, self._reduction = world, reduction
+
+    def hold(self, sweeps: int) -> Array:
+        """Solve the contacts of one step from rest."""
+        return self._reduction.rates(self._world.hold(sweeps))
+
+    def begin(self, forces: Array) -> None:
+        """Begin anew, with forces."""
+        cast("TakesForces", self._world).begin(self._reduction.handed(forces))
+
+    def advance(self, steps: int) -> None:
+        """Let the blocks move."""
+        self._world.advance(steps)
+
+    def poses(self) -> Array:
+        """Return the poses of all blocks."""
+        return self._reduction.poses(self._world.poses())
+
+    def resultants(self) -> Array:
+        """Return what joints carry, at rest."""
+        return self._reduction.resultants(cast("TellsForces", self._world).resultants())
+
+    def quality(self) -> Quality:
+        """Tell how well contact and friction have been kept so far."""
+        return self._world.quality()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -189,7 +239,7 @@ class Simulation:
     def world(self) -> World:
         """Blocks in the engine, at rest."""
         world = self.engine.build(self.simulated, self.settings)
-        return self.reduction.world(world) if self.reduction else world
+        return ReducedWorld(world, self.reduction) if self.reduction else world
 
     @property
     def unsure(self) -> str:

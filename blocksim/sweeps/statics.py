@@ -10,7 +10,8 @@ from typing import cast
 import numpy as np
 
 from blocksim.arch.circular import Weight
-from blocksim.arch.limit.bulk import joints_of, least_thickness_of_joints, which_stand
+from blocksim.arch.limit.bulk import least_thickness_of_joints, which_stand
+from blocksim.arch.limit.statics import half_joints
 from blocksim.arch.theory.arrays import least_thicknesses
 from blocksim.ask.methods import STATIC
 from blocksim.ask.search import ETA_MAX
@@ -63,7 +64,7 @@ def _least_as_built(
     ]
     if not needed:
         return
-    found = least_thickness_of_joints(joints_of(alpha[needed], voussoirs), mu[needed], weight)
+    found = least_thickness_of_joints(half_joints(alpha[needed], voussoirs), mu[needed], weight)
     for i, least in zip(needed, _or_none(found), strict=True):
         row = rows[group[i]]
         ratio = cast("float | None", row.get("ratio"))

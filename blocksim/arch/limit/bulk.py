@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from blocksim.arch.circular import WEIGHTS, Weight
 from blocksim.arch.limit.halfplanes import FEW, Joints, sliding, turning
-from blocksim.arch.limit.statics import ETA_MAX, least_of, thrust_bounds
+from blocksim.arch.limit.statics import ETA_MAX, half_joints, least_of, spread_of, thrust_bounds
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import VOUSSOIRS, require
 
@@ -69,8 +69,8 @@ def which_stand(
     for start in range(0, alpha.size, size):
         part = slice(start, start + size)
         a, e, m = (values[part] for values in flat)
-        joints = Joints(joints_of(a, voussoirs))
-        most, least = short_intervals(joints, e, m, spreads(e, weight))
+        joints = Joints(half_joints(a, voussoirs))
+        most, least = short_intervals(joints, e, m, spread_of(e, weight))
         found[part] = most >= least
     return found.reshape(alpha.shape)
 
@@ -78,17 +78,6 @@ def which_stand(
 def chunk_size(joints: int) -> int:
     """Arches to work on at once where each has that many joints a half."""
     return max(1, WORKING_SET // joints**2)
-
-
-def joints_of(half_angle: Array, voussoirs: int) -> Array:
-    """Angles of the joints of one half of each arch, as `half_joints`, (k, j) [rad]."""
-    steps = 2.0 * np.arange(voussoirs // 2 + 1) + voussoirs % 2
-    return half_angle[:, None] * steps / voussoirs
-
-
-def spreads(eta: Array, weight: Weight) -> Array:
-    """Radius of the distributed weight over the mean radius, less 1, as `spread_of`."""
-    return np.zeros_like(eta) if weight == "centreline" else eta**2 / 12
 
 
 def short_intervals(joints: Joints, depth: Array, mu: Array, spread: Array) -> Intervals:
@@ -163,7 +152,7 @@ def least_thickness_of_joints(angles: Array, mu: Array, weight: Weight) -> Array
 
 
 def _empty(joints: Joints, eta: Array, mu: Array, weight: Weight) -> NDArray[np.bool_]:
-    most, least = short_intervals(joints, eta, mu, spreads(eta, weight))
+    most, least = short_intervals(joints, eta, mu, spread_of(eta, weight))
     return most < least
 
 

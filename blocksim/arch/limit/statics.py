@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from blocksim.arch.modes import ActiveJoint, Mode, name_mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.checks import ANY_FRICTION
 
+Value = TypeVar("Value", float, Array)
 ETA_MAX = 2.0
 ROUGHLY = 1e-3
 """Precision at which the joints that act are known well enough to start from."""
@@ -78,14 +79,14 @@ class LimitState:
         return self.eta is not None and eta >= self.eta
 
 
-def half_joints(half_angle: float, voussoirs: int) -> Array:
-    """Angles of the joints from the crown to the right springing [rad].
+def half_joints(half_angle: float | Array, voussoirs: int) -> Array:
+    """Angles of the joints from the crown to the right springing, a row for each arch [rad].
 
     The first is 0 for an even number of voussoirs, alpha/n for an odd one.
     """
     first = voussoirs % 2
     count = voussoirs // 2 + 1
-    return half_angle * (2.0 * np.arange(count) + first) / voussoirs
+    return np.asarray(half_angle)[..., None] * (2.0 * np.arange(count) + first) / voussoirs
 
 
 def joints_of(arch: Arch) -> Joints:
@@ -93,9 +94,9 @@ def joints_of(arch: Arch) -> Joints:
     return Joints(half_joints(arch.half_angle, arch.voussoirs)[None])
 
 
-def spread_of(eta: float, weight: Weight) -> float:
+def spread_of(eta: Value, weight: Weight) -> Value:
     """Radius of the distributed weight over the mean radius, less 1."""
-    return 0.0 if weight == "centreline" else eta**2 / 12
+    return 0.0 * eta if weight == "centreline" else eta**2 / 12
 
 
 def thrust_bounds(

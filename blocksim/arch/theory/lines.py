@@ -1,4 +1,4 @@
-"""Lines of thrust and of friction along the arch, and eqs (10)-(14).
+"""Lines of thrust and of friction along the arch, eqs (10), (11) and (13).
 
 The second derivation of the paper's section 2.1: no mechanism is assumed. At a section
 at angle x from the crown the resultant of thrust and weight is, scaled,
@@ -13,15 +13,11 @@ where the intrados hinge is and -1 at the extrados; the line of friction e_s_hat
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from blocksim.arch.circular import Weight
-from blocksim.arch.modes import Mode
 from blocksim.arch.theory.critical import Critical
 from blocksim.arch.theory.equations import Value, normal_force
-from blocksim.blocks.assembly import Array
 
 
 def section_moment(
@@ -57,18 +53,6 @@ def thrust_line(
     return -moment / (normal_force(angle, thrust) * eta / 2)
 
 
-def thrust_line_slope(
-    angle: Value, thrust: Value, crown_moment: Value, eta: Value, weight: Weight = "centreline"
-) -> Value:
-    """Differentiate `thrust_line` by the angle, (12)."""
-    factor = 1.0 if weight == "centreline" else 1.0 + eta**2 / 12
-    force = normal_force(angle, thrust)
-    rate = (1 - thrust) * np.sin(angle) + angle * np.cos(angle)
-    moment = section_moment(angle, thrust, crown_moment, eta, weight)
-    moment_rate = factor * np.sin(angle) - rate
-    return -(moment_rate * force - moment * rate) / (force**2 * eta / 2)
-
-
 def friction_line(angle: Value, thrust: Value, mu: Value) -> Value:
     """Eccentricity e_s_hat of the line of friction, (13); 0 at infinite friction.
 
@@ -79,15 +63,6 @@ def friction_line(angle: Value, thrust: Value, mu: Value) -> Value:
     """
     shear = thrust * np.sin(angle) - angle * np.cos(angle)
     return -shear / (mu * normal_force(angle, thrust))
-
-
-def friction_line_slope(angle: Value, thrust: Value, mu: Value) -> Value:
-    """Differentiate `friction_line` by the angle, (14)."""
-    force = normal_force(angle, thrust)
-    shear = thrust * np.sin(angle) - angle * np.cos(angle)
-    rate = (1 - thrust) * np.sin(angle) + angle * np.cos(angle)
-    shear_rate = (thrust - 1) * np.cos(angle) + angle * np.sin(angle)
-    return -(shear_rate * force - shear * rate) / (mu * force**2)
 
 
 def critical_moment(half_angle: float, critical: Critical, weight: Weight) -> float:
@@ -106,46 +81,3 @@ def critical_moment(half_angle: float, critical: Critical, weight: Weight) -> fl
     beta, eta, thrust = critical.beta_r, critical.eta, critical.thrust
     unforced = section_moment(beta, thrust, 0.0, eta, weight)
     return float(-normal_force(beta, thrust) * eta / 2 - unforced)
-
-
-def onset_equations(
-    half_angle: float, mu: float, mode: Mode, unknowns: Sequence[float], weight: Weight
-) -> Array:
-    """Residuals of those of eqs (10)-(14) that a mode fulfils.
-
-    Parameters
-    ----------
-    half_angle, mu : float
-        alpha [rad], friction coefficient.
-    mode : Mode
-        One of rrr, srr, rrs, rsr and rs.
-    unknowns : (4,) or (5,) float
-        eta, h, m, beta_r; for an inner sliding joint beta_s too.
-    weight : {"centreline", "sector"}
-
-    Returns
-    -------
-    (4,) or (5,) float
-        Zero at the onset of collapse.
-    """
-    eta, thrust, moment, beta_r = unknowns[:4]
-
-    def line(angle: float) -> Value:
-        return thrust_line(angle, thrust, moment, eta, weight)
-
-    slope = (
-        # The line of thrust is even: it is tangent at the crown anyhow.
-        beta_r if mode is Mode.RS else thrust_line_slope(beta_r, thrust, moment, eta, weight)
-    )
-    equations = [line(beta_r) - 1, slope]
-    if mode in {Mode.RRR, Mode.SRR}:
-        equations.append(line(0.0) + 1)
-    if mode is not Mode.SRR:
-        equations.append(line(half_angle) + 1)
-    else:
-        equations.append(friction_line(half_angle, thrust, mu) + 1)
-    if mode in {Mode.RRS, Mode.RSR, Mode.RS}:
-        beta_s = unknowns[4]
-        equations.append(friction_line(beta_s, thrust, mu) - 1)
-        equations.append(friction_line_slope(beta_s, thrust, mu))
-    return np.array(equations, dtype=float)

@@ -127,11 +127,6 @@ def region(eta: float, mu: float, weight: Weight = "centreline") -> tuple[Mode, 
     return names_of(int(at_points(eta, mu, weight).modes))
 
 
-def half_angle_at(eta: float, mu: float, weight: Weight = "centreline") -> float:
-    """Half-angle of one point of the map [rad]."""
-    return float(at_points(eta, mu, weight).half_angle)
-
-
 def divide_friction(half_angle: float) -> float:
     """Friction at and below which no thickness stands: both joints slide, (8) and (9)."""
     require(0.01 <= half_angle <= 3.0, "half_angle", half_angle, "from 0.01 to 3")

@@ -111,32 +111,14 @@ class Friction:
         a, b = self.room
         return b * size - a * pressure
 
-    def unfold(self, glued: Array, contacts: Contacts, held: Array) -> Array:
-        """Put y in the place of q, for steep friction.
-
-        Parameters
-        ----------
-        glued : (joints, 4) float
-            Normal forces of both contacts if glued, then tangential ones.
-        contacts : (joints, 2) int
-            What they do.
-        held : (joints, 2) float
-            Size of their friction; looked at where they slide.
-        """
-        if not self.some_steep:
-            return glued
-        normal, along = glued[:, :2], np.abs(glued[:, 2:])
-        place = np.where(contacts == STICKS, normal + (1 - self.flat) * along, held)
-        place = np.where(self.steep & (contacts != OPEN), place, normal)
-        return np.concatenate([place, glued[:, 2:]], axis=1)
-
     def cut(self, place: Array) -> tuple[Array, Contacts]:
         """Return the forces that contacts can carry, and what the contacts do.
 
         Parameters
         ----------
         place : (joints, 4) float
-            As from `unfold`.
+            Normal forces of both contacts, y in the place of q where friction is steep, then
+            tangential ones.
 
         Returns
         -------
@@ -179,7 +161,14 @@ class Friction:
     def as_said(self, glued: Array, contacts: Contacts, held: Array) -> Array:
         """Return forces of contacts that do as said, with what friction is known by itself.
 
-        Parameters are those of `unfold`.
+        Parameters
+        ----------
+        glued : (joints, 4) float
+            Normal forces of both contacts if glued, then tangential ones.
+        contacts : (joints, 2) int
+            What they do.
+        held : (joints, 2) float
+            Size of their friction; looked at where they slide.
         """
         return Doing(self, contacts).forces(glued, held)
 
