@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from blocksim.blocks.maker import Maker, Table, count, metres, parameter
     from blocksim.blocks.problem import Load, Problem
     from blocksim.blocks.space.assembly import FaceJoint, Solid, assembly_in_space
+    from blocksim.blocks.space.maker import SolidMaker
     from blocksim.blocks.space.problem import SpatialLoad, SpatialProblem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
     from blocksim.kinds.arcade import Arcade
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
     from blocksim.kinds.catenary import CatenaryArch
     from blocksim.kinds.circular import CircularArch
     from blocksim.kinds.column import Column
+    from blocksim.kinds.corbeldome import CorbelDome
+    from blocksim.kinds.dome import Dome
     from blocksim.kinds.elliptic import EllipticArch
     from blocksim.kinds.files import load_in_space, load_structure, structure_of
     from blocksim.kinds.flat import FlatArch
@@ -50,8 +53,11 @@ if TYPE_CHECKING:
     from blocksim.kinds.pointed import PointedArch
     from blocksim.kinds.portal import Portal
     from blocksim.kinds.recorded import load_recording
+    from blocksim.kinds.returnwall import ReturnWall
     from blocksim.kinds.rubble import Rubble
+    from blocksim.kinds.skewarch import BarrelVault, SkewArch
     from blocksim.kinds.stack import Stack
+    from blocksim.kinds.tower import Tower
     from blocksim.kinds.wall import Wall
     from blocksim.limit import collapse, equilibrium
     from blocksim.simulation.recording import Recording
@@ -62,6 +68,7 @@ __all__ = [
     "Arcade",
     "Arch",
     "Assembly",
+    "BarrelVault",
     "BasketHandleArch",
     "Block",
     "BlocksimError",
@@ -72,6 +79,8 @@ __all__ = [
     "Check",
     "CircularArch",
     "Column",
+    "CorbelDome",
+    "Dome",
     "EllipticArch",
     "Evidence",
     "FaceJoint",
@@ -94,14 +103,18 @@ __all__ = [
     "Portal",
     "Problem",
     "Recording",
+    "ReturnWall",
     "Rubble",
+    "SkewArch",
     "Solid",
+    "SolidMaker",
     "SpatialBracket",
     "SpatialCheck",
     "SpatialLoad",
     "SpatialProblem",
     "Stack",
     "Table",
+    "Tower",
     "Verdict",
     "Wall",
     "__version__",
@@ -160,6 +173,12 @@ _PLACES = {
     "kinds.rubble": ("Rubble",),
     "kinds.stack": ("Stack",),
     "kinds.wall": ("Wall",),
+    "kinds.corbeldome": ("CorbelDome",),
+    "kinds.dome": ("Dome",),
+    "kinds.returnwall": ("ReturnWall",),
+    "kinds.skewarch": ("BarrelVault", "SkewArch"),
+    "kinds.tower": ("Tower",),
+    "blocks.space.maker": ("SolidMaker",),
     "limit": ("collapse", "equilibrium"),
     "sweeps.run": ("sweep",),
 }

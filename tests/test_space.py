@@ -18,6 +18,13 @@ from space_cases import CASES, GROUND, NAMES, box, case, enclosed, problem_of, r
 import blocksim
 from blocksim import InputError, Solid, SpatialLoad, SpatialProblem, Verdict
 from blocksim.blocks.space.files import problem_in_space
+from blocksim.blocks.space.polyhedron import frame
+from blocksim.common.fields import fields_of
+from blocksim.kinds import SOLID_KINDS
+from blocksim.kinds.dome import Dome
+from blocksim.kinds.returnwall import ReturnWall
+from blocksim.kinds.skewarch import BarrelVault, SkewArch
+from blocksim.kinds.tower import Tower
 from blocksim.limit.space import can_rest, largest_load
 
 
@@ -47,7 +54,7 @@ def test_the_forces_of_a_case_balance_and_lie_within_friction() -> None:
     left = problem.fixed_pull.copy()
     at = 0
     for joint in assembly.joints:
-        first, second = blocksim.blocks.space.polyhedron.frame(joint.normal)
+        first, second = frame(joint.normal)
         for point in joint.points:
             normal, one, other = static.point_forces[at]
             at += 1
@@ -323,3 +330,91 @@ def test_spatial_problems_say_what_they_are() -> None:
     problem = problem_of(tower(0))
     assert isinstance(problem, SpatialProblem)
     assert repr(problem).startswith("SpatialProblem(6 blocks, ")
+
+
+@pytest.mark.parametrize(
+    ("lunes", "courses", "least"), [(8, 5, 0.0373487032422), (12, 7, 0.0410514715596)]
+)
+def test_the_least_thickness_of_a_dome(lunes: int, courses: int, least: float) -> None:
+    """Of a hemisphere with an eye of 8 deg at mu 0.7, by an independent programme."""
+    dome = Dome(lunes=lunes, courses=courses, friction=0.7)
+    for share, exists in ((1 - 1e-6, False), (1 + 1e-6, True)):
+        assert can_rest(dome.but(thickness=share * least).problem()).exists is exists
+
+
+def test_a_bracket_finds_the_least_thickness_of_a_dome_by_command() -> None:
+    """In one line, as a new user would ask."""
+    asked = "bracket dome --mu 0.7 --with lunes=8 --with courses=5 --json"
+    found = json.loads(inside(*asked.split()).stdout)
+    assert found["over"] == "thickness"
+    assert found["limit"] == pytest.approx(0.03734870324217169, rel=1e-6)
+    assert found["low"] < found["limit"] < found["high"]
+
+
+def test_a_skew_arch_is_that_of_the_case() -> None:
+    """Its load factor at the crown, with the loads of the case."""
+    known = case("arch_15_skew_30_crown")
+    problem = SkewArch(radius=4.45, friction=known["scene"]["friction"]).problem()
+    loads = problem_in_space(known["scene"]).live
+    factor = blocksim.check(replace(problem, live=loads)).load_factor
+    assert factor == pytest.approx(known["expected"]["value"], rel=1e-6)
+
+
+def test_a_wall_with_a_return_is_that_of_the_case() -> None:
+    """Pushed out of its plane."""
+    known = case("wall_6_4_2_0_-1_0")
+    problem = ReturnWall(friction=known["scene"]["friction"]).problem()
+    assert len(problem.assembly.joints) == known["faces"]
+    push = SpatialLoad(force=[0, -1, 0], blocks=tuple(range(42)), per_weight=True)
+    factor = blocksim.check(replace(problem, live=(push,))).load_factor
+    assert factor == pytest.approx(known["expected"]["value"], rel=1e-6)
+
+
+@pytest.mark.parametrize("rings", [1, 3])
+@pytest.mark.parametrize("bond", ["none", "half"])
+def test_a_barrel_vault_is_as_thick_as_the_arch_it_is_made_of(rings: int, bond: str) -> None:
+    """Its least thickness is that of the plane arch of as many voussoirs of flat faces."""
+    arch = blocksim.CircularArch(voussoirs=15, weight="chord", friction=0.7)
+    least = blocksim.bracket(arch, over="thickness", method="limit").limit
+    assert least is not None
+    vault = BarrelVault(radius=1.0, length=0.8, rings=rings, bond=bond, friction=0.7)
+    for share, exists in ((1 - 1e-7, False), (1 + 1e-7, True)):
+        assert can_rest(vault.but(thickness=share * least).problem()).exists is exists
+
+
+@pytest.mark.parametrize("blocks", [2, 5, 9])
+def test_a_tower_reaches_out_by_its_length_over_the_number_of_boxes(blocks: int) -> None:
+    """Closed form of equal offsets; boxes that are not turned."""
+    tower = Tower(blocks=blocks, length=1.5, turn_deg=0.0, friction=0.7)
+    assert blocksim.bracket(tower.problem(), over="offset").limit == pytest.approx(
+        1.5 / blocks, rel=1e-7
+    )
+
+
+@pytest.mark.parametrize("name", SOLID_KINDS)
+def test_each_kind_in_space_stands_as_it_comes_at_any_size(name: str) -> None:
+    """And its joints are as many when it is ten times as large."""
+    kind = SOLID_KINDS[name](friction=0.7)
+    problem = kind.problem()
+    assert blocksim.check(problem).verdict is Verdict.STANDS
+    larger = {
+        each: 10 * getattr(kind, each)
+        for each, known in fields_of(type(kind)).items()
+        if known.unit == "m"
+    }
+    scaled = kind.but(**larger).problem()
+    assert len(scaled.assembly.joints) == len(problem.assembly.joints)
+    assert can_rest(scaled).margin == pytest.approx(can_rest(problem).margin, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "options",
+    ["--with lines=3", "--with thickness=-1", "--with thickness=2.5", "--with eye_deg=0",
+     "--with lunes=2.5", "--tolerance 0.1", "--over depth"],
+)  # fmt: skip
+def test_a_parameter_of_a_kind_in_space_that_cannot_be_is_told(options: str) -> None:
+    """In one line, exit code 2."""
+    verb = "bracket" if "--over" in options else "check"
+    done = inside(verb, "dome", "--mu", "0.7", *options.split())
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1

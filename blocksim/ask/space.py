@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import Literal
 
 import numpy as np
@@ -18,14 +19,20 @@ from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
+from blocksim.common.fields import Field
 from blocksim.limit.space import SpatialEquilibrium, can_rest, joint_states, largest_load
 from blocksim.simulation.verdict import Evidence, Verdict, reason_of
 
 METHODS = ("auto", "limit")
 FAMILIES_IN_SPACE = {"load": "", "mu": "", "tilt": "deg"}
 """What may be bracketed over, with its unit."""
+SCANNED = 13
+"""Values of a parameter that are tried before one is halved."""
+WIDEST = 10.0
+"""How far they go from the value at hand, as a ratio to both sides."""
 LEAST_FRICTION = 1e-6
-HALVINGS = 60
+LEAST_MARGIN = -100.0
+"""What stands for no forces at all, even if contacts could pull."""
 STEEPEST = 90.0
 """Farthest that a table tilts [deg]."""
 BESIDE = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
@@ -184,13 +191,21 @@ def bracket_in_space(
     """Find the value at which blocks in space change; see `blocksim.bracket`."""
     started = time.perf_counter()
     _require_method(given)
-    allowed = f"one of {', '.join(FAMILIES_IN_SPACE)}"
+    own: Mapping[str, Field] = {} if problem.maker is None else problem.maker.bracketed
+    allowed = f"one of {', '.join([*FAMILIES_IN_SPACE, *own])}"
+    over = "thickness" if over is None and "thickness" in own else over
     if over is None:
         raise InputError("over", MISSING, allowed)
-    require(over in FAMILIES_IN_SPACE, "over", over, allowed + ", in space")
+    require(over in FAMILIES_IN_SPACE or over in own, "over", over, allowed + ", in space")
     require(within is None, "within", within, "left out by limit, which searches no range")
-    tried = _Tried({"load": _loaded, "mu": _rough, "tilt": _tilted}[over](problem))
-    if over == "load":
+    made_over = partial(_made, name=over)
+    families = {"load": _loaded, "mu": _rough, "tilt": _tilted}
+    tried = _Tried(families.get(over, made_over)(problem))
+    rises, unit = over == "mu", FAMILIES_IN_SPACE.get(over, "")
+    if over in own:
+        rises, unit = own[over].stands == "high", own[over].unit
+        limit = _scanned(tried, *_range(problem, over), rises=rises)
+    elif over == "load":
         require(bool(problem.live), "over", over, "left out: there are no live loads")
         factor = largest_load(problem).factor
         limit = math.inf if factor is not None and factor > HIGHEST_FACTOR else factor
@@ -201,14 +216,13 @@ def bracket_in_space(
         allowed = "left out with loads besides gravity: they would not turn with it"
         require(still, "over", over, allowed)
         limit = _halved(tried, 0.0, STEEPEST, rises=False)
-    rises = over == "mu"
     low, high = (None, None) if limit is None else tried.ends(limit, given.tol, rises=rises)
-    if rises and limit == 0:
+    if over == "mu" and limit == 0:
         low, high = None, LEAST_FRICTION
     return SpatialBracket(
         method="limit",
         over=over,
-        unit=FAMILIES_IN_SPACE[over],
+        unit=unit,
         low=low,
         high=high,
         stands="high" if rises else "low",
@@ -241,6 +255,26 @@ def _tilted(problem: SpatialProblem) -> Callable[[float], SpatialProblem]:
     return lambda degrees: problem.tilted(math.radians(degrees))
 
 
+def _made(problem: SpatialProblem, name: str) -> Callable[[float], SpatialProblem]:
+    """Return what makes it with another value of a parameter, under gravity as it is."""
+    maker = problem.maker
+    assert maker is not None  # noqa: S101 - asked of kinds only
+    allowed = "left out with loads besides gravity: they are of blocks that are made anew"
+    require(not problem.live and not problem.dead, "over", name, allowed)
+    return lambda value: replace(
+        problem, assembly=(made := maker.but(**{name: value})).assembly, maker=made
+    )
+
+
+def _range(problem: SpatialProblem, name: str) -> tuple[float, float]:
+    """Return the values of a parameter that are looked at."""
+    maker = problem.maker
+    assert maker is not None  # noqa: S101 - asked of kinds only
+    (low, high), value = maker.limits(name), float(getattr(maker, name))
+    # Of a parameter that is 0 there is no multiple.
+    return max(low, value / WIDEST), min(high, WIDEST * value) if value else high
+
+
 class _Tried:
     """Problems of a family as they are asked for, counted."""
 
@@ -251,6 +285,12 @@ class _Tried:
         """Ask limit analysis at a value."""
         self.runs += 1
         return can_rest(self._at(value))
+
+    def _tells(self, value: float, stands: bool) -> bool:
+        """Tell whether a verdict is shown at a value, of which something can be made."""
+        with suppress(InputError):
+            return self(value).exists is stands
+        return False
 
     def ends(
         self, limit: float, tol: float, *, rises: bool
@@ -263,30 +303,60 @@ class _Tried:
             up = stands == rises
             step = (1 if up else -1) * max(abs(limit), 1e-6)
             near = (limit + by * step for by in BESIDE if by <= max(tol, BESIDE[0]))
-            found[up] = next((each for each in near if self(each).exists is stands), None)
+            found[up] = next((each for each in near if self._tells(each, stands)), None)
         return found[False], found[True]
 
 
+def _scanned(tried: _Tried, low: float, high: float, *, rises: bool) -> float | None:
+    """Find the first change from the end that is unsafe, of values tried at even ratios.
+
+    None where it falls at all of them, inf where it stands at all.
+    """
+    low = max(low, high / WIDEST**2)
+    values, standing = list[float](), list[bool]()
+    for value in np.geomspace(low, high, SCANNED).tolist():
+        # The range ends where nothing can be made.
+        with suppress(InputError):
+            standing.append(tried(value).margin > 0)
+            values.append(value)
+    if all(standing):
+        return math.inf
+    if not any(standing):
+        return None
+    at = [k for k in range(len(values) - 1) if standing[k] != standing[k + 1]]
+    # From the end at which it falls.
+    right = [k for k in at if standing[k + 1] == rises]
+    if not right:
+        return None
+    k = right[0] if rises else right[-1]
+    return _halved(tried, values[k], values[k + 1], rises=rises)
+
+
 def _halved(tried: _Tried, low: float, high: float, *, rises: bool) -> float | None:
-    """Halve an interval of which one end stands and the other falls.
+    """Find the value in an interval at which contacts no longer press.
 
     None where it falls at the end that is safest; inf where it stands at the other as well
-    (0 where it needs no friction).
+    (0 where it needs no friction). The margin grows from the one to the other, and is a
+    continuous function of the value: bracketed by Alefeld, Potra and Shi's method (1995).
     """
+    from scipy.optimize import toms748
+
     safe, unsafe = (high, low) if rises else (low, high)
     if not tried(safe).exists:
         return None
     if tried(unsafe).exists:
         return 0.0 if rises else math.inf
-    for _ in range(HALVINGS):
-        middle = math.sqrt(low * high) if rises else (low + high) / 2
-        if not low < middle < high or high - low <= 1e-13 * high:
-            break
-        if (tried(middle).margin > 0) == rises:
-            high = middle
-        else:
-            low = middle
-    return float(np.mean([low, high]))
+    over = math.log(high) - math.log(low) > 1 if low > 0 else False
+
+    def margin(at: float) -> float:
+        # No forces at all are as far from standing as it gets.
+        return max(tried(math.exp(at) if over else at).margin, LEAST_MARGIN)
+
+    ends = (math.log(low), math.log(high)) if over else (low, high)
+    if margin(ends[0]) * margin(ends[1]) >= 0:
+        return None
+    found = toms748(margin, *ends, xtol=1e-14 * abs(ends[1]) or 1e-300, rtol=1e-14)
+    return math.exp(found) if over else float(found)
 
 
 def _search_words(

@@ -12,9 +12,19 @@ from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.options import Options
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.cli.options import EXIT_CODES, Given, Loading, named_options, option_of
+from blocksim.cli.options import (
+    EXIT_CODES,
+    Given,
+    Loading,
+    named_options,
+    option_of,
+    parameters_of,
+    require_given,
+)
 from blocksim.cli.output import answer_with
 from blocksim.common.checks import require
+from blocksim.common.errors import InputError
+from blocksim.kinds import SOLID_KINDS
 from blocksim.kinds.files import load_in_space
 from blocksim.report.space import (
     bracket_in_space_lines,
@@ -23,7 +33,7 @@ from blocksim.report.space import (
     check_in_space_record,
 )
 
-IN_SPACE = {"mu", "friction_angle", "unit_weight", "tolerance"}
+IN_SPACE = {"parameters", "mu", "friction_angle", "unit_weight", "tolerance"}
 """Options on what is built that mean something in space."""
 ACTING = {"load", "tilt", "azimuth"}
 """The same of what acts on it."""
@@ -42,7 +52,14 @@ def problem_in_space(scene: str, given: Given, loading: Loading) -> SpatialProbl
     if heavy is not None:
         require_unit_weight("--unit-weight", heavy)
     density = None if heavy is None else 1000 * heavy
-    problem = load_in_space(scene, density, friction=given.friction, tolerance=given.tolerance)
+    if scene in SOLID_KINDS:
+        problem = _made(scene, given, density)
+    else:
+        allowed = "left out: the file has blocks, not a kind"
+        require(not given.parameters, "--with", given.parameters, allowed)
+        problem = load_in_space(
+            scene, density, friction=given.friction, tolerance=given.tolerance
+        )
     if given.friction is not None:
         problem = problem.with_friction(given.friction)
     if loading.load is not None:
@@ -51,6 +68,19 @@ def problem_in_space(scene: str, given: Given, loading: Loading) -> SpatialProbl
     if loading.azimuth is not None:
         problem = replace(problem, azimuth=math.radians(loading.azimuth))
     return problem if loading.tilt is None else problem.tilted(math.radians(loading.tilt))
+
+
+def _made(name: str, given: Given, density: float | None) -> SpatialProblem:
+    """Make a kind in space, of its parameters."""
+    allowed = "left out: a kind of structure has no gaps"
+    require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
+    require_given(mu=given.friction)
+    maker = SOLID_KINDS[name](friction=given.friction, density=density)
+    try:
+        return maker.but(**parameters_of(given.parameters)).problem()
+    except InputError as error:
+        said = f"{error.field}={error.value}"
+        raise InputError("--with", said, error.allowed) from None
 
 
 def refuse(options: dict[str, object], known: set[str] = frozenset()) -> None:  # type: ignore[assignment]

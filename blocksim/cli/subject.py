@@ -21,6 +21,10 @@ def is_structure(scene: str | None) -> bool:
 
 def in_space(scene: str | None) -> bool:
     """Tell a structure in space by what is in its file."""
+    from blocksim.kinds import SOLID_KINDS
+
+    if scene in SOLID_KINDS:
+        return True
     if scene is None or not scene.lower().endswith((".json", ".toml")):
         return False
     from blocksim.kinds.files import lies_in_space

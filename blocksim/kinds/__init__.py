@@ -11,6 +11,7 @@ from blocksim.common.later import Installed, Later, loaded_here
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Maker
+    from blocksim.blocks.space.maker import SolidMaker
 
 
 def _kind(place: str) -> type[Maker]:
@@ -40,6 +41,26 @@ KINDS: Later[type[Maker]] = Later(
     beyond=Installed("blocksim.kinds"),
 )
 """All there are: packages offer theirs under the entry point group `blocksim.kinds`."""
+
+
+def _solid_kind(place: str) -> type[SolidMaker]:
+    """Load a kind in space, given as file and class."""
+    file, _, name = place.partition(".")
+    return getattr(import_module(f"blocksim.kinds.{file}"), name)
+
+
+SOLID_PLACES = {
+    "dome": "dome.Dome",
+    "barrel-vault": "skewarch.BarrelVault",
+    "skew-arch": "skewarch.SkewArch",
+    "tower": "tower.Tower",
+    "return-wall": "returnwall.ReturnWall",
+    "corbel-dome": "corbeldome.CorbelDome",
+}
+"""The same of kinds in space."""
+SOLID_KINDS: Later[type[SolidMaker]] = Later(
+    {name: partial(_solid_kind, place) for name, place in SOLID_PLACES.items()}
+)
 
 
 def own_kind(place: str) -> type[Maker]:

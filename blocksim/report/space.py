@@ -200,7 +200,7 @@ def bracket_in_space_lines(answer: SpatialBracket) -> list[str]:
     """Return a bracket in words."""
     unit = f" {answer.unit}" if answer.unit else ""
     parts = [
-        f"{'stands' if answer.stands == end else 'falls'} at {value:.9g}{unit}"
+        f"{'stands' if answer.stands == end else 'falls'} at {value:.12g}{unit}"
         for end, value in (("low", answer.low), ("high", answer.high))
         if value is not None
     ]

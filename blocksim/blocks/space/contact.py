@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -244,12 +245,19 @@ def _cross(ours: Array, theirs: Array) -> bool:
 
 
 def _apart(points: list[Spot], slack: float) -> Array:
-    """Leave out points that are nearer than `slack` to the one before."""
+    """Leave out points nearer than `slack` to a neighbour, or to the line between both."""
     found: list[Spot] = []
     for point in points:
         near = (found[-1], found[0]) if found else ()
-        if all(np.hypot(point[0] - p[0], point[1] - p[1]) > slack for p in near):
+        if all(math.dist(point, each) > slack for each in near):
             found.append(point)
+    at = 0
+    while len(found) > 3 and at < len(found):
+        before, after = found[at - 1], found[(at + 1) % len(found)]
+        if abs(_turn(before, after, found[at])) <= slack * math.dist(before, after):
+            del found[at]
+        else:
+            at += 1
     return np.array(found).reshape(-1, 2)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from blocksim.common.checks import (
     require_all,
 )
 from blocksim.common.shown import short
+
+if TYPE_CHECKING:
+    from blocksim.blocks.space.maker import SolidMaker
 
 DOWN = np.array([0.0, 0.0, -1.0])
 """Gravity where nothing is tilted."""
@@ -75,6 +79,8 @@ class SpatialProblem:
     azimuth : float
         Towards where a table tilts, from x towards y [rad].
     title, source : str
+    maker : SolidMaker or None
+        What made it, with its parameters; None where its blocks were given.
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given.
     notes : tuple of str
@@ -95,6 +101,7 @@ class SpatialProblem:
     azimuth: float = 0.0
     title: str = ""
     source: str = ""
+    maker: SolidMaker | None = None
     weighed: bool = True
     notes: tuple[str, ...] = ()
 
