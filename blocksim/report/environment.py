@@ -20,10 +20,11 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     made.filters["ratio"] = ratio
-    made.globals |= {
+    colours = {
         "joint_colours": style.JOINTS,
         "thrust_colour": style.THRUST,
         "verdict_colours": style.VERDICTS,
         "load_colours": {"dead": style.DEAD, "live": style.LIVE, "gravity": style.QUIET},
     }
+    made.globals.update(colours)
     return made
