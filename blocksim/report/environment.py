@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from blocksim.common.words import printed
@@ -26,5 +28,5 @@ def environment() -> Environment:
         "verdict_colours": style.VERDICTS,
         "load_colours": {"dead": style.DEAD, "live": style.LIVE, "gravity": style.QUIET},
     }
-    made.globals.update(colours)
+    cast("dict[str, object]", made.globals).update(colours)
     return made
