@@ -24,7 +24,7 @@ from analysis.command import run
 from analysis.rows import write_rows
 from blocksim import Arch, bracket, check
 from blocksim.arch.limit import least_thickness
-from blocksim.ask.methods import METHODS, missing
+from blocksim.ask.methods import METHODS
 from blocksim.kinds.circular import CircularArch
 
 ARCHES = ((90, 0.7), (125, 0.9), (145, 1.6), (155, 3.0), (65, 0.6))
@@ -60,7 +60,7 @@ def main(out: Path, *, quick: bool = False) -> list[Cost]:
     arches = ARCHES[:2] if quick else ARCHES
     costs: list[Cost] = []
     for method in methods:
-        if not missing(METHODS[method]):
+        if not METHODS[method].missing:
             costs.append(_checks(method, arches))
             costs += [_brackets(method, arches, tol) for tol in TOLERANCES.get(method, COMMON)]
             sys.stderr.write(f"{method}\n")

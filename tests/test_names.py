@@ -183,7 +183,7 @@ def test_what_was_not_asked_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = [load_scenario(name) for name in ("semicircle", "semicircle_tilted_stands")]
     plane, *others = unasked(chosen)
     assert (plane.engine, plane.scenarios) == ("pymunk", ("semicircle_tilted_stands",))
-    monkeypatch.setattr("blocksim.studies.validate.missing", lambda _: "get it")
+    monkeypatch.setattr("blocksim.engines.base.Engine.missing", "get it")
     found = unasked(chosen)
     assert [each.scenarios for each in found] == [
         ("semicircle", "semicircle_tilted_stands")

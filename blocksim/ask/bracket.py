@@ -18,7 +18,7 @@ from blocksim.ask.ends import (
     tried_ends,
 )
 from blocksim.ask.families import Family, families_of, family_of
-from blocksim.ask.methods import choose, chosen_words, engine_of, reduces
+from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.searches import (
     FARTHEST,
@@ -35,6 +35,7 @@ from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.shown import Shown
+from blocksim.engines import get_engine
 from blocksim.kinds.offers import Threshold, offers_of
 from blocksim.simulation.simulated import Overrides, given_words
 from blocksim.simulation.verdict import Evidence, aside, reason_of
@@ -244,7 +245,7 @@ def _thinned(
     else:
         reduced = reduces(chosen, given.reduce, problem, by_maker=True)
         found = by_engine(
-            _Reduced(threshold, engine_of(chosen), given.settings, reduce=reduced).held_at,
+            _Reduced(threshold, get_engine(chosen), given.settings, reduce=reduced).held_at,
             threshold.start,
             (threshold.low, threshold.high),
             given.tol,
@@ -373,12 +374,12 @@ def _of_family(
         found = by_programmes(family, exact, rises=rises)
     elif probe.shaking is not None:
         start = min(max(family.start or low + GUESS * (high - low), low), high)
-        found = shaken(family, engine_of(chosen), start, (low, high), given)
+        found = shaken(family, get_engine(chosen), start, (low, high), given)
     else:
         known = exact and math.isfinite(exact) and low <= exact <= high
         start = exact if exact and known else low + GUESS * (high - low)
         reduced = reduces(chosen, given.reduce, probe)
-        ask = _asking(family, engine_of(chosen), given, (low, high), merged=reduced)
+        ask = _asking(family, get_engine(chosen), given, (low, high), merged=reduced)
         found = ask(start, around(family, start) if known else (low, high), rises)
     evidence = (Evidence("search", found.reason), *aside("limit analysis", remark))
     most = len(probe.assembly.blocks)

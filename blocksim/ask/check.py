@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Unpack, overload
 
 from blocksim.ask.carried import carried_of
-from blocksim.ask.methods import choose, chosen_words, engine_of, reduces
+from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
 from blocksim.ask.undecided import undecided_words
@@ -20,6 +20,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.shown import Shown
+from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
@@ -326,7 +327,7 @@ def _simulated(
         reduction = Merging.of(problem) if offered is None else offered.reduction()
     seen = observe(
         problem,
-        engine_of(chosen),
+        get_engine(chosen),
         settings=given.settings,
         reduction=reduction,
         progress=given.progress,
@@ -353,7 +354,7 @@ def _by_shaking(problem: Problem, chosen: Method, given: Taken) -> _Found:
     # What moves blocks is loaded where it is asked for.
     from blocksim.simulation.shaken import shake
 
-    seen = shake(problem, engine_of(chosen), settings=given.settings, progress=given.progress)
+    seen = shake(problem, get_engine(chosen), settings=given.settings, progress=given.progress)
     answer = Check(
         method=chosen.name,
         verdict=seen.verdict,

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 
-from blocksim.ask.methods import METHODS, Method, missing
+from blocksim.ask.methods import METHODS, Method
 from blocksim.common.errors import InputError
 from blocksim.common.version import __version__
 from blocksim.engines import get_engine
@@ -50,7 +50,7 @@ def _finding(name: str) -> Finding:
         method=method.name,
         sees=method.sees,
         finest=method.finest,
-        remedy=missing(method),
+        remedy=method.missing,
         version=_version(method),
     )
 
@@ -72,7 +72,7 @@ def libraries() -> dict[str, str | None]:
 def _version(method: Method) -> str | None:
     if method.is_static:
         return __version__
-    return None if missing(method) else get_engine(method.name).version
+    return None if method.missing else get_engine(method.name).version
 
 
 def _installed(library: str) -> str | None:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from blocksim.blocks.problem import Problem
-from blocksim.common.errors import InputError, MissingPart
+from blocksim.common.errors import InputError
 from blocksim.common.later import Later
 from blocksim.engines import ENGINES, NAMES, engine_named, make_known
 from blocksim.engines.base import Engine, Method
@@ -182,22 +182,3 @@ def chosen_words(method: str | Method, rung: Method) -> str:
         seen = "sees the blocks as built" if rung.is_static else "can move blocks"
     fine = f"brackets down to {rung.finest:g}" if rung.finest else "is exact"
     return f"; auto took {rung.name}, the cheapest method that {seen} and {fine}"
-
-
-def engine_of(method: Method) -> Engine:
-    """Return a method that moves blocks as what moves them.
-
-    Raises
-    ------
-    MissingPart
-        If its library is not installed.
-    """
-    assert isinstance(method, Engine)  # noqa: S101
-    if method.missing:
-        raise MissingPart(method.name, method.missing)
-    return method
-
-
-def missing(method: Method) -> str | None:
-    """Tell how to get what a method lacks here; None where it can run."""
-    return method.missing if isinstance(method, Engine) else None

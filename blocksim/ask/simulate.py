@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Unpack
 
-from blocksim.ask.methods import choose, engine_of
+from blocksim.ask.methods import choose
 from blocksim.ask.options import Asked, Options, problem_of, taken
+from blocksim.engines import get_engine
 
 if TYPE_CHECKING:
     from blocksim.simulation.recording import Recording
@@ -42,7 +43,7 @@ def simulate(
 
     given, problem = taken(options, "reduce", "tol", "confirm"), problem_of(asked)
     chosen = choose(given.method, problem=problem, moving=True, settings=given.settings)
-    engine = engine_of(chosen)
+    engine = get_engine(chosen)
     if problem.shaking is not None:
         seen = shake(
             problem,

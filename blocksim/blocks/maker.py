@@ -158,7 +158,7 @@ class Maker(Shown, Table, ABC):
     def made(self, density: float) -> Made:
         """Make the bodies.
 
-        Fields
+        Parameters
         ----------
         density : float
             Weight per volume [N/m^3].

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
@@ -194,9 +194,7 @@ class Given:
     @property
     def measured(self) -> dict[str, object]:
         """Those that give an arch in metres; empty where none is given."""
-        names = ("span", "rise", "thickness", "at")
-        found = {name: getattr(self, name) for name in names}
-        return {name: each for name, each in found.items() if each is not None}
+        return _given(self, "span", "rise", "thickness", "at")
 
     @property
     def friction(self) -> float | None:
@@ -305,9 +303,7 @@ class Loading:
     @property
     def on_road(self) -> dict[str, object]:
         """Those that lie on the road; empty where none is given."""
-        names = ("fill", "fill_unit_weight", "point_load", "patch_load", "dispersal")
-        found = {name: getattr(self, name) for name in names}
-        return {name: each for name, each in found.items() if each is not None}
+        return _given(self, "fill", "fill_unit_weight", "point_load", "patch_load", "dispersal")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -335,6 +331,12 @@ class Crossed:
             "drawing at the worst place."
         ),
     ] = None
+
+
+def _given(options: object, *names: str) -> dict[str, object]:
+    """Return those of some options that are given."""
+    found = {name: getattr(options, name) for name in names}
+    return {name: each for name, each in found.items() if each is not None}
 
 
 def require_given(instead: str = "", /, **options: object) -> None:
@@ -385,28 +387,8 @@ NAMED = {"parameters": "--with", "half_angle_deg": "--alpha", "friction": "--mu"
 """Options that are not called as their fields."""
 OPTIONS = {
     *NAMED,
-    "ratio",
-    "span",
-    "rise",
-    "thickness",
-    "at",
-    "fill",
-    "dispersal",
-    "vehicle",
-    "shake",
-    "amplitude",
-    "duration",
-    "eta",
-    "mu",
-    "must_rest",
-    "over",
-    "within",
-    "voussoirs",
-    "weight",
-    "depth",
-    "method",
-    "tol",
-    "reduce",
+    *(each.name for group in (Given, Loading, Crossed) for each in fields(group)),
+    *("must_rest", "over", "within", "method", "tol", "reduce"),
 }
 """Fields that are options, too."""
 

@@ -12,7 +12,7 @@ from importlib import import_module
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError, MissingPart
 from blocksim.common.later import Installed, Later, loaded_here
-from blocksim.engines.base import Engine
+from blocksim.engines.base import Engine, Method
 
 GROUP = "blocksim.engines"
 """Entry points by which packages offer engines."""
@@ -99,17 +99,18 @@ def make_known(engine: object, place: str) -> Engine:
     return engine
 
 
-def get_engine(name: str) -> Engine:
-    """Return an engine that can run here, by its name or its place; see `engine_named`.
+def get_engine(asked: str | Method) -> Engine:
+    """Return an engine that can run here: itself, or by its name or place.
 
     Raises
     ------
     InputError
-        If there is none, or it cannot be loaded.
+        If there is none, or it cannot be loaded; see `engine_named`.
     MissingPart
         If its library is not installed.
     """
-    engine = engine_named(name)
+    engine = engine_named(asked) if isinstance(asked, str) else asked
+    assert isinstance(engine, Engine)  # noqa: S101 - a method that moves blocks was chosen
     if engine.missing:
         raise MissingPart(engine.name, engine.missing)
     return engine

@@ -216,6 +216,11 @@ class Method:
         """Whether it answers without motion."""
         return True
 
+    @property
+    def missing(self) -> str | None:
+        """How to install what it needs; None where that is there, or nothing is needed."""
+        return None
+
 
 @dataclass(frozen=True, kw_only=True)
 class Engine(Method):
@@ -295,5 +300,5 @@ class Engine(Method):
 
     @property
     def missing(self) -> str | None:
-        """How to install what it needs; None where that is there."""
+        """How to install its library; None where that is there."""
         return None if find_spec(self.library) else self.remedy

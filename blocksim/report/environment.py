@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from blocksim.common.words import printed
 from blocksim.report.answerwords import ratio
+from blocksim.view import style
 
 
 def environment() -> Environment:
-    """Return templates of this room, which escape what they are given."""
+    """Return templates of this room, which know colours and escape what they are given."""
     made = Environment(
         loader=PackageLoader("blocksim.report"),
         autoescape=select_autoescape(),
@@ -19,4 +22,11 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     made.filters["ratio"] = ratio
+    colours = {
+        "joint_colours": style.JOINTS,
+        "thrust_colour": style.THRUST,
+        "verdict_colours": style.VERDICTS,
+        "load_colours": {"dead": style.DEAD, "live": style.LIVE, "gravity": style.QUIET},
+    }
+    cast("dict[str, object]", made.globals).update(colours)
     return made

@@ -115,10 +115,6 @@ def structure_page(
             took="" if is_dated() else f", in {answer.wall_s:.2g} s",
             command=command,
             settings=settings,
-            joint_colours=style.JOINTS,
-            thrust_colour=style.THRUST,
-            verdict_colours=style.VERDICTS,
-            load_colours={"dead": style.DEAD, "live": style.LIVE, "gravity": style.QUIET},
         )
     )
 

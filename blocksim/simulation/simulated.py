@@ -192,7 +192,7 @@ class Simulation:
         reduction: Reduced | None = None,
     ) -> Simulation:
         """Take the settings that the engine chooses for the blocks, or those given."""
-        found = get_engine(engine) if isinstance(engine, str) else engine
+        found = get_engine(engine)
         given = {name: setting_of(name, value) for name, value in settings.items()}
         return cls(
             problem=problem,

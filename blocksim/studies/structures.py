@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial
 
-from blocksim.ask.methods import choose, missing
+from blocksim.ask.methods import choose
 from blocksim.blocks.entries import ExpectEntry
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
@@ -96,7 +96,7 @@ def _refused(known: Known, expected: ExpectEntry, method: str) -> str:
     if method == "limit":
         return "" if known.problem.shaking is None else _beyond(known, method)
     engine = engine_named(method)
-    remedy = missing(engine)
+    remedy = engine.missing
     if remedy:
         return f"not here: {remedy}"
     if expected.over == SPREAD and not engine.moves_supports:

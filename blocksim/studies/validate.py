@@ -12,7 +12,6 @@ from blocksim.arch.limit.mechanism import mechanism
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.ask.bracket import bracket
-from blocksim.ask.methods import missing
 from blocksim.ask.search import ETA_MAX
 from blocksim.common.progress import Progress, silent
 from blocksim.engines import ENGINES, NAMES, engine_named, get_engine
@@ -42,14 +41,14 @@ def usual(part: str) -> tuple[str, ...]:
 
 def installed() -> tuple[str, ...]:
     """Return the usual engines for arches that can run here."""
-    return tuple(name for name in usual("arches") if missing(ENGINES[name]) is None)
+    return tuple(name for name in usual("arches") if ENGINES[name].missing is None)
 
 
 def unasked(chosen: Sequence[Scenario], engines: Iterable[str] | None = None) -> list[Unasked]:
     """Tell what `validate` does not ask, and why; arguments as there."""
     found: list[Unasked] = []
     for name in usual("arches") if engines is None else engines:
-        remedy = missing(engine_named(name))
+        remedy = engine_named(name).missing
         leaning = tuple(each.name for each in chosen if each.lean)
         if engines is None and remedy:
             every = tuple(each.name for each in chosen)

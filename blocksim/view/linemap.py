@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cache
 
 import matplotlib as mpl
 import numpy as np
@@ -15,16 +14,17 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from blocksim.arch.circular import Weight
-from blocksim.arch.theory import Curve, equations, landmarks, least_thicknesses, regions
+from blocksim.arch.theory import Curve, equations, landmarks, least_thicknesses
 from blocksim.arch.theory.critical import rotational_thrust
 from blocksim.arch.theory.map import special_angles
-from blocksim.view.mapregions import draw_asymptote
+from blocksim.view.mapregions import draw_asymptote, draw_landmarks
 from blocksim.view.mapshapes import (
     COEFFICIENT,
     FrictionAxis,
     iso_angles,
     iso_continued,
     iso_line,
+    map_shapes,
 )
 from blocksim.view.style import FONT, INK, ISO
 
@@ -65,14 +65,8 @@ def _line_map(span: tuple[float, float], weight: Weight, friction: FrictionAxis)
     _iso_lines(axes, span, weight, friction)
     _dividing_lines(axes, weight, friction)
     draw_asymptote(axes, weight)
-    for mark in landmarks(weight).values():
-        if span[0] <= mark.eta <= span[1]:
-            place = float(friction.place(mark.mu)), mark.eta
-            axes.plot(*place, "o", ms=5, mfc="white", mec=INK, zorder=4,
-                      clip_on=False)  # fmt: skip
-            axes.annotate(mark.name, place, xytext=LABELS[mark.name],
-                          fontweight="bold", textcoords="offset points",
-                          annotation_clip=False)  # fmt: skip
+    marks = [each for each in landmarks(weight).values() if span[0] <= each.eta <= span[1]]
+    draw_landmarks(axes, marks, LABELS, friction)
     figure.legend(loc="outside upper center", ncols=4, frameon=False, fontsize=8.5)
     return figure
 
@@ -152,34 +146,21 @@ def _ends(group: Sequence[float], space: float) -> tuple[float, float]:
     return middle - space * len(group) / 2, middle + space * len(group) / 2
 
 
-@cache
-def _between_regions(weight: Weight, friction: FrictionAxis) -> tuple[Curve, Curve, Curve]:
-    """Divide, equal angles and crown hinge, computed once."""
-    marks = landmarks(weight)
-    right_of_s, right_of_j = (friction.frictions(marks[name].mu + 1e-6, 120) for name in "SJ")
-    return (
-        regions.divide(np.linspace(0.02, marks["B"].mu, 200), weight),
-        regions.equal_angles(right_of_s, weight),
-        regions.crown_hinge(right_of_j, weight),
-    )
-
-
 def _dividing_lines(axes: Axes, weight: Weight, friction: FrictionAxis) -> None:
-    marks = landmarks(weight)
-    wide, equal, crown = _between_regions(weight, friction)
+    shapes = map_shapes(weight, friction)
 
     def draw(curve: Curve, name: str, width: float, style: object) -> None:
         axes.plot(
             friction.place(curve.mu), curve.eta, color=INK, lw=width, ls=style, label=name
         )
 
-    draw(wide, r"$\mu=\mu_{ss}=\mu_{is}$", 2.0, "-")
+    draw(shapes.divide, r"$\mu=\mu_{ss}=\mu_{is}$", 2.0, "-")
     # Denser towards the wide arches, where friction runs off to infinity.
     widest = special_angles(weight).zero_thrust
     alpha = widest * (1 - np.linspace(0.985, 1e-4, 240) ** 2)
     thrust = np.array([rotational_thrust(float(a), weight) for a in alpha])
     eta = least_thicknesses(alpha, math.inf, weight).eta
-    below = alpha <= marks["T"].half_angle
+    below = alpha <= shapes.landmarks["T"].half_angle
     for values, real, style, name in (
         (
             equations.shoulder_friction(alpha, thrust),
@@ -197,5 +178,5 @@ def _dividing_lines(axes: Axes, weight: Weight, friction: FrictionAxis) -> None:
         mu = np.asarray(values)
         draw(Curve(mu=mu[real], eta=eta[real]), name, 1.5, style)
         draw(Curve(mu=mu[~real], eta=eta[~real]), "_", 0.7, DASHED)
-    draw(equal, r"$\beta_r=\beta_s$", 1.2, ":")
-    draw(crown, r"$\beta_r=0$", 1.2, "-.")
+    draw(shapes.equal, r"$\beta_r=\beta_s$", 1.2, ":")
+    draw(shapes.crown, r"$\beta_r=0$", 1.2, "-.")

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.patches import Rectangle
 
 from blocksim.arch.circular import Weight
 from blocksim.arch.modes import Mode
+from blocksim.arch.theory import Landmark
 from blocksim.arch.theory.critical import CROWN_ETA
 from blocksim.view.mapshapes import (
     COEFFICIENT,
@@ -132,23 +134,26 @@ def draw_regions(
     for name, curve, style in lines:
         axes.plot(friction.place(curve.mu), curve.eta, style, color=INK, lw=1.1, gid=name)
     _name_regions(axes, section, shapes, friction)
-    for mark in shapes.landmarks.values():
-        if not section.shows(mark.mu, mark.eta):
-            continue
-        place = float(friction.place(mark.mu)), mark.eta
-        axes.plot(*place, "o", ms=5, mfc="white", mec=INK, zorder=4, clip_on=False)
-        axes.annotate(
-            mark.name,
-            place,
-            xytext=LETTERS[mark.name],
-            textcoords="offset points",
-            fontweight="bold",
-            annotation_clip=False,
-        )
+    marks = [each for each in shapes.landmarks.values() if section.shows(each.mu, each.eta)]
+    draw_landmarks(axes, marks, LETTERS, friction)
     low, high = friction.place(section.mu).tolist()
     axes.set(xlim=(low, friction.end if section.mu == WHOLE.mu else high), ylim=section.eta)
     axes.set_xlabel(friction.label)
     axes.set_ylabel(r"thickness-to-radius ratio $\eta = t/r$")
+
+
+def draw_landmarks(
+    axes: Axes,
+    marks: Iterable[Landmark],
+    letters: Mapping[str, tuple[float, float]],
+    friction: FrictionAxis,
+) -> None:
+    """Mark points of the map, each with its letter so many points from it."""
+    for mark in marks:
+        place = float(friction.place(mark.mu)), mark.eta
+        axes.plot(*place, "o", ms=5, mfc="white", mec=INK, zorder=4, clip_on=False)
+        axes.annotate(mark.name, place, xytext=letters[mark.name], fontweight="bold",
+                      textcoords="offset points", annotation_clip=False)  # fmt: skip
 
 
 def draw_asymptote(axes: Axes, weight: Weight = "centreline") -> None:

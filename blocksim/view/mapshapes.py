@@ -114,13 +114,9 @@ class MapShapes:
     landmarks: dict[str, Landmark]
 
 
+@cache
 def map_shapes(weight: Weight = "centreline", axis: FrictionAxis = COEFFICIENT) -> MapShapes:
     """Sample the map's regions and lines from their equations, once."""
-    return _map_shapes(weight, axis)
-
-
-@cache
-def _map_shapes(weight: Weight, axis: FrictionAxis) -> MapShapes:
     marks = theory.landmarks(weight)
     corners = [marks[name].mu for name in "TSJ"]
     mu = np.sort([*axis.frictions(SMALLEST_MU, 4 * POINTS), *corners])
@@ -180,6 +176,7 @@ def iso_angles(weight: Weight = "centreline") -> tuple[float, ...]:
     return tuple(sorted(found))
 
 
+@cache
 def iso_line(
     half_angle: float, weight: Weight = "centreline", axis: FrictionAxis = COEFFICIENT
 ) -> Curve:
@@ -197,11 +194,6 @@ def iso_line(
     Curve
         Empty where the half-angle stands at no friction on the map.
     """
-    return _iso_line(half_angle, weight, axis)
-
-
-@cache
-def _iso_line(half_angle: float, weight: Weight, axis: FrictionAxis) -> Curve:
     line = iso_half_angle(half_angle, axis.frictions(0.02, ISO_POINTS), weight)
     if not line.mu.size:
         return line
@@ -216,6 +208,7 @@ def _iso_line(half_angle: float, weight: Weight, axis: FrictionAxis) -> Curve:
     )
 
 
+@cache
 def iso_continued(
     half_angle: float, weight: Weight = "centreline", axis: FrictionAxis = COEFFICIENT
 ) -> Curve:
@@ -236,11 +229,6 @@ def iso_continued(
     Curve
         From the foot of the upright part down, and to the right to the first sliding.
     """
-    return _iso_continued(half_angle, weight, axis)
-
-
-@cache
-def _iso_continued(half_angle: float, weight: Weight, axis: FrictionAxis) -> Curve:
     level = theory.least_thickness(half_angle, math.inf, weight).eta
     if level is None:
         return Curve(mu=np.empty(0), eta=np.empty(0))
