@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from blocksim.blocks.maker import Maker, Table, count, metres, parameter
     from blocksim.blocks.problem import Load, Problem
     from blocksim.blocks.space.assembly import FaceJoint, Solid, assembly_in_space
+    from blocksim.blocks.space.extruded import extruded
     from blocksim.blocks.space.maker import SolidMaker
     from blocksim.blocks.space.problem import SpatialLoad, SpatialProblem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
@@ -125,6 +126,7 @@ __all__ = [
     "collapse",
     "count",
     "equilibrium",
+    "extruded",
     "load",
     "load_in_space",
     "load_recording",
@@ -178,6 +180,7 @@ _PLACES = {
     "kinds.returnwall": ("ReturnWall",),
     "kinds.skewarch": ("BarrelVault", "SkewArch"),
     "kinds.tower": ("Tower",),
+    "blocks.space.extruded": ("extruded",),
     "blocks.space.maker": ("SolidMaker",),
     "limit": ("collapse", "equilibrium"),
     "sweeps.run": ("sweep",),

@@ -20,7 +20,7 @@ from blocksim.kinds.stack import Stack
 @dataclass(frozen=True, kw_only=True)
 class Tower(Stack):
     '''Blocks of one size, one on the other, by another name.'''
-    name = "tower"
+    name = "campanile"
 """
 
 
@@ -46,7 +46,7 @@ def package(tmp_path: Path) -> Path:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: strangers\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text(
         "[blocksim.engines]\nsprings = own_engine:ENGINE\nbroken = defect:ENGINE\n"
-        "[blocksim.kinds]\ntower = tower_kind:Tower\n"
+        "[blocksim.kinds]\ncampanile = tower_kind:Tower\n"
     )
     (tmp_path / "own_engine.py").write_bytes((EXAMPLES / "own_engine.py").read_bytes())
     (tmp_path / "defect.py").write_text(DEFECT)
@@ -84,7 +84,9 @@ def test_it_brackets_the_angle_at_which_a_column_overturns() -> None:
 
 
 def test_a_package_offers_engines_and_kinds(package: Path) -> None:
-    done = asked("check", "tower", "--mu", "0.7", "--method", "springs", "--json", path=package)
+    done = asked(
+        "check", "campanile", "--mu", "0.7", "--method", "springs", "--json", path=package
+    )
     assert json.loads(done.stdout)["method"] == "springs"
     assert "springs" in (told := asked("doctor", path=package).stdout)
     assert "broken" in told

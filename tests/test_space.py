@@ -14,9 +14,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from running import inside
 from space_cases import CASES, GROUND, NAMES, box, case, enclosed, problem_of, rotation, tower
+from structure_cases import case as plane_case
+from structure_cases import names as plane_names
+from structure_cases import scenes
 
 import blocksim
 from blocksim import InputError, Solid, SpatialLoad, SpatialProblem, Verdict
+from blocksim.blocks.space.extruded import extruded
 from blocksim.blocks.space.files import problem_in_space
 from blocksim.blocks.space.polyhedron import frame
 from blocksim.common.fields import fields_of
@@ -418,3 +422,25 @@ def test_a_parameter_of_a_kind_in_space_that_cannot_be_is_told(options: str) -> 
     done = inside(verb, "dome", "--mu", "0.7", *options.split())
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
+
+
+PLANE = [name for name in plane_names() if plane_case(name)["question"] == "load_factor"][::4]
+
+
+@pytest.mark.parametrize("name", PLANE)
+def test_prisms_have_the_same_load_factor_in_the_plane_and_in_space(name: str) -> None:
+    """Of ten structures, to 1e-8."""
+    (scene, *_) = scenes(name)
+    problem = blocksim.structure_of(scene)
+    plane = blocksim.bracket(problem, over="load", method="limit").limit
+    assert largest_load(extruded(problem)).factor == pytest.approx(plane, rel=1e-8)
+
+
+@pytest.mark.parametrize("lean", [5.0, 20.0])
+def test_a_column_that_leans_falls_where_it_would_turn_over_its_edge(lean: float) -> None:
+    """Out of the plane: half its depth over the height of its centre."""
+    half = math.tan(math.radians(lean)) * 1.5
+    for share, verdict in ((1 + 1e-6, "STANDS"), (1 - 1e-6, "COLLAPSES")):
+        depth = f"depth={2 * half * share:.12g}"
+        asked = f"check column --mu 0.9 --with {depth} --with drum_height=0.5 --lean {lean} --spatial"
+        assert inside(*asked.split()).stdout.startswith(verdict)

@@ -29,6 +29,7 @@ from blocksim.cli.options import (
     Reduce,
     Scene,
     Set,
+    Spatial,
     Within,
     named_options,
     settings_of,
@@ -51,16 +52,17 @@ def check(
     joint: AtJoint = None,
     reduce: Reduce = None,
     must_rest: MustRest = False,
+    spatial: Spatial = False,
     proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
-    if in_space(scene):
+    if spatial or in_space(scene):
         from blocksim.cli.space import check_in_space, problem_in_space
 
         others: dict[str, object] = {"joint": joint, "must_rest": must_rest, "proof": proof}
         asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce}
-        solid = problem_in_space(scene or "", given, loading)
+        solid = problem_in_space(scene, given, loading)
         check_in_space(solid, asked, others, as_json=as_json)
     problem = problem_asked(scene, given, loading, thick=True)
     at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
@@ -94,6 +96,7 @@ def bracket(
     tol: Annotated[float, Option(about="Relative width of the bracket.")] = 0.005,
     settings: Set = None,
     reduce: Reduce = None,
+    spatial: Spatial = False,
     proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
@@ -101,13 +104,13 @@ def bracket(
 
     Of a vehicle that crosses it is the least load factor, and where it stands then.
     """
-    if in_space(scene):
+    if spatial or in_space(scene):
         from blocksim.cli.space import bracket_in_space, problem_in_space
 
         others: dict[str, object] = {**asdict(crossed), "within": within, "proof": proof}
         asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce,
                           "tol": tol}  # fmt: skip
-        solid = problem_in_space(scene or "", given, loading)
+        solid = problem_in_space(scene, given, loading)
         bracket_in_space(solid, over, asked, others, as_json=as_json)
         return
     if crossed.vehicle is not None:

@@ -73,6 +73,13 @@ ProofFile = Annotated[
         about="Write proofs of the answer by limit, JSON, which blocksim verify checks.",
     ),
 ]
+Spatial = Annotated[
+    bool,
+    Option(
+        name="--spatial",
+        about="Ask in space: blocks of the plane are prisms, which may lean out of it.",
+    ),
+]
 AtJoint = Annotated[
     str | None,
     Option(

@@ -11,6 +11,7 @@ from blocksim.arch.dimensions import require_unit_weight
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.options import Options
+from blocksim.blocks.space.extruded import extruded
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.options import (
     EXIT_CODES,
@@ -22,6 +23,7 @@ from blocksim.cli.options import (
     require_given,
 )
 from blocksim.cli.output import answer_with
+from blocksim.cli.subject import in_space, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.kinds import SOLID_KINDS
@@ -39,14 +41,21 @@ ACTING = {"load", "tilt", "azimuth"}
 """The same of what acts on it."""
 
 
-def problem_in_space(scene: str, given: Given, loading: Loading) -> SpatialProblem:
-    """Read a structure in space and put on it what the options say.
+def problem_in_space(scene: str | None, given: Given, loading: Loading) -> SpatialProblem:
+    """Read or make a structure in space and put on it what the options say.
+
+    One of the plane is asked as prisms; a table then tilts towards the azimuth.
 
     Raises
     ------
     InputError
         If the file cannot be used, or an option means nothing in space.
     """
+    if scene is None or not in_space(scene):
+        problem = extruded(
+            problem_asked(scene, given, replace(loading, azimuth=None), thick=True)
+        )
+        return replace(problem, azimuth=math.radians(loading.azimuth or 0.0))
     refuse({**asdict(given), **asdict(loading)}, IN_SPACE | ACTING)
     heavy = given.unit_weight
     if heavy is not None:

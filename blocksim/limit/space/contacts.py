@@ -183,11 +183,15 @@ class Contacts:
             each = (self.matrix.T @ best).reshape(-1, 3)
             slip = np.hypot(each[:, 1], each[:, 2])
             size = float(np.abs(each).max())
-            near = np.abs(self.opening(best)) <= nearness * size
-            if not near.any():
+            rough = np.isinf(self.friction)
+            opening = np.where(rough, each[:, 0], self.opening(best))
+            near = np.abs(opening) <= nearness * size
+            if not (near | rough).any():
                 continue
-            slides = near & (slip > nearness * size) & ~np.isinf(self.friction)
+            slides = near & (slip > nearness * size) & ~rough
             still = np.flatnonzero(near & ~slides)
+            # Without a bound on friction nothing slips, not even what opens.
+            held = np.flatnonzero(rough & ~near)
             at = np.flatnonzero(slides)
             way = each[at, 1:] / slip[at, None] if len(at) else np.zeros((0, 2))
             rows = sparse.vstack(
@@ -196,9 +200,10 @@ class Contacts:
                     - sparse.diags(self.friction[at] * way[:, 0]) @ matrix[3 * at + 1]
                     - sparse.diags(self.friction[at] * way[:, 1]) @ matrix[3 * at + 2],
                     *(matrix[3 * still + axis] for axis in range(3)),
+                    *(matrix[3 * held + axis] for axis in (1, 2)),
                 ]
             ).tocsc()
-            left = np.concatenate([self.opening(best)[at], *(each[still].T)])
+            left = np.concatenate([self.opening(best)[at], *each[still].T, *each[held, 1:].T])
             normal = rows.T @ rows
             normal = normal + sparse.identity(normal.shape[0]) * (
                 SOFT * normal.diagonal().max()

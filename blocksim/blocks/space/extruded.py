@@ -1,0 +1,114 @@
+"""Plane problems as prisms in space: x stays, the plane's y points up, depth lies along y."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from blocksim.blocks.acting import Load
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
+from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
+from blocksim.blocks.space.polyhedron import Polyhedron
+from blocksim.blocks.space.problem import SpatialLoad, SpatialProblem
+from blocksim.common.checks import require
+
+UP = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
+"""The plane in space."""
+
+
+def extruded(problem: Problem) -> SpatialProblem:
+    """Return a plane problem as prisms in space, with its own joints, weights and loads.
+
+    Parameters
+    ----------
+    problem : Problem
+        Gravity may lean out of its plane.
+
+    Raises
+    ------
+    InputError
+        If the ground shakes or supports move, which is of the plane.
+
+    Examples
+    --------
+    >>> import blocksim
+    >>> arch = blocksim.CircularArch(half_angle_deg=90, eta=0.2, friction=0.7, voussoirs=9)
+    >>> extruded(arch.problem())
+    SpatialProblem('circular-arch', 9 blocks, 10 joints, mu=0.7)
+    """
+    assembly = problem.assembly
+    allowed = "left out: the ground is at rest in space"
+    require(problem.shaking is None, "shake", "ground that shakes", allowed)
+    x, y, out = problem.gravity.tolist()
+    return SpatialProblem(
+        assembly=_prisms(assembly),
+        mu=problem.mu,
+        # Out of the plane is towards who looks at it: against y.
+        gravity=np.array([x, -out, y]),
+        dead=tuple(map(_load, problem.dead)),
+        live=tuple(map(_load, problem.live)),
+        load=problem.load,
+        title=problem.title,
+        source=problem.source,
+        weighed=problem.weighed,
+        notes=(*problem.notes, "blocks of the plane as prisms"),
+    )
+
+
+def _prisms(assembly: Assembly) -> SpatialAssembly:
+    deep = max(block.depth for block in assembly.blocks)
+    return SpatialAssembly(
+        blocks=tuple(
+            SolidBlock(
+                hulls=tuple(_prism(part, block.depth) for part in block.polygons),
+                name=block.name or str(at),
+                weight=block.mass * STANDARD_GRAVITY,
+                centre=UP @ block.centre,
+                moments=np.diag([0.0, block.inertia / block.mass, 0.0]),
+            )
+            for at, block in enumerate(assembly.blocks)
+        ),
+        supports=tuple(
+            SolidBlock(
+                hulls=tuple(_prism(part, deep) for part in support.polygons),
+                name=support.name or f"support {at}",
+                weight=0.0,
+                centre=np.zeros(3),
+                moments=np.zeros((3, 3)),
+            )
+            for at, support in enumerate(assembly.supports)
+        ),
+        joints=tuple(_face(joint, assembly) for joint in assembly.joints),
+    )
+
+
+def _prism(polygon: Array, depth: float) -> Polyhedron:
+    return Polyhedron(np.concatenate([_at(polygon, -depth / 2), _at(polygon, depth / 2)]))
+
+
+def _at(points: Array, y: float) -> Array:
+    """Put points of the plane at a distance from it, (k, 3)."""
+    return points @ UP.T + np.array([0.0, y, 0.0])
+
+
+def _face(joint: Joint, assembly: Assembly) -> FaceJoint:
+    """Return a joint over the depth that both blocks have."""
+    sides = [each for each in (joint.before, joint.after) if each != SUPPORT]
+    half = min(assembly.blocks[each].depth for each in sides) / 2
+    ends = joint.inner[None] if joint.is_corner else np.stack([joint.inner, joint.outer])
+    return FaceJoint(
+        before=joint.before,
+        after=joint.after,
+        points=np.concatenate([_at(ends, -half), _at(ends[::-1], half)]),
+        normal=UP @ joint.normal,
+        friction=joint.friction,
+        support=joint.support,
+        gap=joint.gap,
+    )
+
+
+def _load(load: Load) -> SpatialLoad:
+    point = None if load.point is None else UP @ load.point
+    return SpatialLoad(
+        force=UP @ load.force, blocks=load.blocks, point=point, per_weight=load.per_weight
+    )
