@@ -204,7 +204,7 @@ MUTATIONS = (
     ),
     Mutation(
         "names of joints off by one",
-        "report/problems.py",
+        "blocks/joints.py",
         "return assembly.blocks[index].name or",
         "return assembly.blocks[index - 1].name or",
         "test_carried.py test_dimensions.py",
