@@ -442,5 +442,6 @@ def test_a_column_that_leans_falls_where_it_would_turn_over_its_edge(lean: float
     half = math.tan(math.radians(lean)) * 1.5
     for share, verdict in ((1 + 1e-6, "STANDS"), (1 - 1e-6, "COLLAPSES")):
         depth = f"depth={2 * half * share:.12g}"
-        asked = f"check column --mu 0.9 --with {depth} --with drum_height=0.5 --lean {lean} --spatial"
+        asked = f"check column --mu 0.9 --with {depth} --with drum_height=0.5 --lean {lean}"
+        asked += " --spatial"
         assert inside(*asked.split()).stdout.startswith(verdict)
