@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState, side_name
 from blocksim.blocks.problem import Move, Problem
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
@@ -158,23 +158,17 @@ class Spreading:
     def events(self) -> tuple[Happening, ...]:
         """What happens on the way, each with the joints that are open after it."""
         assembly = self.problem.assembly
-
-        def name(index: int, support: int | None) -> str:
-            if index != SUPPORT:
-                return assembly.blocks[index].name or str(index)
-            return assembly.supports[support or 0].name or "support"
-
         return tuple(
             Happening(
                 value=event.value,
                 what=event.what,
                 joints=tuple(
                     OpenJoint(
-                        a=name(joint.before, joint.support),
-                        b=name(joint.after, joint.support),
+                        a=side_name(assembly, index, 0),
+                        b=side_name(assembly, index, 1),
                         state=state.value,
                     )
-                    for joint, state in zip(assembly.joints, event.after.states, strict=True)
+                    for index, state in enumerate(event.after.states)
                     if state is not JointState.CLOSED
                 ),
             )

@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly
+from blocksim.blocks.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly
 
 
 class JointState(StrEnum):
@@ -247,3 +247,22 @@ def _turning(opening: list[float], parted: float, *, slides: bool) -> JointState
     if opening[0] < opening[1]:
         return JointState.HINGE_INTRADOS
     return JointState.HINGE_EXTRADOS
+
+
+def joint_names(assembly: Assembly) -> list[str]:
+    """Name each joint by the bodies on its two sides."""
+    return [
+        f"{side_name(assembly, k, 0)}-{side_name(assembly, k, 1)}"
+        for k in range(len(assembly.joints))
+    ]
+
+
+def side_name(assembly: Assembly, joint: int, side: int) -> str:
+    """Name the body on a side of a joint."""
+    here = assembly.joints[joint]
+    index = (here.before, here.after)[side]
+    if index != SUPPORT:
+        return assembly.blocks[index].name or str(index)
+    if here.support is None:
+        return "support"
+    return assembly.supports[here.support].name or "support"

@@ -11,6 +11,7 @@ from blocksim.ask.bracket import bracket as ask_bracket
 from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
 from blocksim.ask.options import Options
+from blocksim.blocks.joints import joint_names
 from blocksim.cli.arguments import Option
 from blocksim.cli.crossing import cross
 from blocksim.cli.options import (
@@ -40,7 +41,6 @@ from blocksim.cli.subject import in_space, is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
-from blocksim.report.problems import joint_names
 
 
 def check(

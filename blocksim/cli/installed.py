@@ -12,9 +12,7 @@ from blocksim.cli.terminal import Table, show
 
 def doctor() -> None:
     """Tell what is installed and what each method can do here."""
-    table = Table()
-    for heading in ("method", "version", "here", "finest bracket", "sees"):
-        table.add_column(heading)
+    table = Table("method", "version", "here", "finest bracket", "sees")
     for finding in examine():
         finest = "exact" if finding.finest == 0 else f"{finding.finest:g}"
         here = finding.remedy or "ready"

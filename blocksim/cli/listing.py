@@ -15,15 +15,13 @@ from blocksim.kinds import KINDS, SOLID_KINDS
 from blocksim.kinds.scenarios import load_scenario, shipped
 from blocksim.studies.structures import structures
 
-NUMBERS = {"alpha", "mu", "n", "eta"}
+NUMBERS = {"alpha", "mu", "n", "eta", "blocks"}
 """Columns of numbers."""
 
 
 def list_scenarios() -> None:
     """List the scenarios, structures and vehicles that come with blocksim."""
-    table = Table()
-    for heading in ("name", "alpha", "mu", "n", "eta", "title", "source"):
-        table.add_column(heading, justify="right" if heading in NUMBERS else "left")
+    table = Table("name", "alpha", "mu", "n", "eta", "title", "source", right=NUMBERS)
     for name in shipped():
         each = load_scenario(name)
         arch = each.arch(1.0)
@@ -32,9 +30,7 @@ def list_scenarios() -> None:
         table.add_row(name, *numbers, eta, each.title, each.source)
     show(table)
     say("")
-    built = Table()
-    for heading in ("structure", "blocks", "mu", "known", "title", "source"):
-        built.add_column(heading, justify="right" if heading in {"blocks", "mu"} else "left")
+    built = Table("structure", "blocks", "mu", "known", "title", "source", right=NUMBERS)
     for known in structures(quick=False):
         told = [
             f"{one.verdict}" if one.verdict else f"--over {one.over} {one.value:.6g}"
@@ -45,9 +41,7 @@ def list_scenarios() -> None:
         built.add_row(known.name, *size, ", ".join(told), problem.title, problem.source)
     show(built)
     say("")
-    vehicles = Table()
-    for heading in ("vehicle", "axles", "title", "source"):
-        vehicles.add_column(heading)
+    vehicles = Table("vehicle", "axles", "title", "source")
     for name in shipped_vehicles():
         each = vehicle_of(name)
         axles = ", ".join(f"{weight / 1e3:g} kN at {x:g} m" for x, weight in each.axles)
@@ -61,10 +55,8 @@ def list_kinds(
     ] = None,
 ) -> None:
     """List the kinds of structures, or the parameters of one."""
-    table = Table()
     if name is None:
-        for heading in ("kind", "what it is", "parameters"):
-            table.add_column(heading)
+        table = Table("kind", "what it is", "parameters")
         for kind in (*KINDS.values(), *SOLID_KINDS.values()):
             where = " (in space)" if kind.name in SOLID_KINDS else ""
             table.add_row(kind.name, kind.about + where, ", ".join(fields_of(kind)))
@@ -73,8 +65,7 @@ def list_kinds(
     known = [*KINDS, *SOLID_KINDS]
     if name not in known:
         raise InputError("kind", name, f"one of {', '.join(known)}{perhaps(name, known)}")
-    for heading in ("parameter", "if left out", "may be", "what it is", "--over"):
-        table.add_column(heading)
+    table = Table("parameter", "if left out", "may be", "what it is", "--over")
     usual = SOLID_KINDS[name]() if name in SOLID_KINDS else KINDS[name]()
     for each, known in fields_of(type(usual)).items():
         over = ", ".join(over for over in usual.bracketed if over.partition(".")[0] == each)

@@ -8,6 +8,7 @@ from typing import Annotated
 import click
 
 from blocksim.cli.arguments import Argument, Option
+from blocksim.cli.options import Json
 from blocksim.cli.output import answer_with, say
 from blocksim.report.referee import known_scores, read_score, score_lines, write_score
 from blocksim.suite.answers import read_answers
@@ -41,9 +42,7 @@ def score(
         str | None,
         Option(about="A score.json of before: exit code 1 where a level has become worse."),
     ] = None,
-    as_json: Annotated[
-        bool, Option(name="--json", about="Print one JSON object, nothing else.")
-    ] = False,
+    as_json: Json = False,
 ) -> None:
     """Hold what an engine said of these scenes to the truth."""
     before = None if expect is None else read_score(expect)

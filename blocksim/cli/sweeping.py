@@ -47,23 +47,8 @@ def sweep(
         extra = " and --out" if out is None else ""
         raise InputError(f"DESIGN{extra}", ALL_MISSING if extra else MISSING, "given")
     require_given(out=out)
-    run_sweep(
-        design, out or Path(), workers, scheduler, parquet=parquet, csv=csv, as_json=as_json
-    )
-
-
-def run_sweep(
-    path: Path,
-    out: Path,
-    workers: int,
-    scheduler: str | None,
-    *,
-    parquet: bool,
-    csv: bool,
-    as_json: bool,
-) -> None:
-    """Run a design on processes or on a cluster, and say what was done."""
-    design = load_design(path)
+    out = out or Path()
+    asked = load_design(design)
     if parquet:
         require_parquet()
     with ExitStack() as stack:
@@ -71,7 +56,7 @@ def run_sweep(
         if scheduler is not None:
             executor, workers = stack.enter_context(cluster(scheduler))
         report = stack.enter_context(progress())
-        done = ask_sweep(design, out, executor=executor, workers=workers, progress=report)
+        done = ask_sweep(asked, out, executor=executor, workers=workers, progress=report)
         if parquet:
             write_parquet(out, out / "rows.parquet")
         if csv:

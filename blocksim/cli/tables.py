@@ -15,21 +15,10 @@ from blocksim.studies.questions import StructureRow
 
 def validation_table(rows: list[Validation]) -> Table:
     """Lay out validation rows for a terminal: a line an arch, a column an engine."""
-    table = Table()
     engines = list(dict.fromkeys(row.engine for row in rows))
+    headings = ("#", "scenario", "alpha", "mu", "n", "mode", "published", "limit", *engines)
     words = {"scenario", "mode", *engines}
-    for heading in (
-        "#",
-        "scenario",
-        "alpha",
-        "mu",
-        "n",
-        "mode",
-        "published",
-        "limit",
-        *engines,
-    ):
-        table.add_column(heading, justify="left" if heading in words else "right", no_wrap=True)
+    table = Table(*headings, right={*headings} - words, wrap=False)
     for name, number in numbered(rows).items():
         answers = {row.engine: row for row in rows if row.scenario == name}
         row = next(iter(answers.values()))
@@ -62,10 +51,8 @@ def validation_lines(rows: list[Validation], unasked: Sequence[Unasked] = ()) ->
 
 def structure_table(rows: list[StructureRow]) -> Table:
     """Lay out rows on structures for a terminal: a line an answer."""
-    table = Table()
-    for heading in ("structure", "over", "known", "published", "method", "answer", ""):
-        side = "right" if heading in {"known", "published"} else "left"
-        table.add_column(heading, justify=side, no_wrap=True)
+    headings = ("structure", "over", "known", "published", "method", "answer", "")
+    table = Table(*headings, right={"known", "published"}, wrap=False)
     for row in rows:
         wanted = "" if row.expected is None else f"{row.expected:.8g}"
         known = row.expected_verdict.value if row.expected_verdict else wanted
@@ -89,19 +76,8 @@ def structure_lines(rows: list[StructureRow], unasked: Sequence[Unasked] = ()) -
 
 def chart_table(points: list[Point]) -> Table:
     """Lay out what was measured for the chart, one line a bracket."""
-    table = Table()
-    for heading in (
-        "arch",
-        "method",
-        "knob",
-        "value",
-        "error",
-        "s",
-        "contact solves",
-        "",
-    ):
-        side = "left" if heading in {"arch", "method", "knob", ""} else "right"
-        table.add_column(heading, justify=side, no_wrap=True)
+    numbers = ("value", "error", "s", "contact solves")
+    table = Table("arch", "method", "knob", *numbers, "", right=numbers, wrap=False)
     best = on_front(points)
     for point in points:
         error = f"{point.error:.1e}" if math.isfinite(point.error) else "none"

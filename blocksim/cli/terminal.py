@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Container, Generator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -31,10 +31,13 @@ def bar() -> Generator[Report]:
 
 
 class Table(RichTable):
-    """A table of columns with headings; its cells are text, as it is."""
+    """A table of columns with headings, those of numbers to the right; cells are text."""
 
-    def __init__(self) -> None:
+    def __init__(self, *headings: str, right: Container[str] = (), wrap: bool = True) -> None:
         super().__init__(box=None, header_style="bold", pad_edge=False)
+        for each in headings:
+            side = "right" if each in right else "left"
+            self.add_column(each, justify=side, no_wrap=not wrap)
 
     def add_row(self, *cells: str) -> None:  # type: ignore[override]
         """Add a row."""

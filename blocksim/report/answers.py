@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.joints import JointState, joint_names, side_name
 from blocksim.common.version import __version__
 from blocksim.report.carried import carried_record
-from blocksim.report.problems import joint_names, measured_line, problem_record, side_name
+from blocksim.report.problems import measured_line, problem_record
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer

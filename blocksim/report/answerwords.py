@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 from blocksim.arch.dimensions import friction_angle
 from blocksim.ask.check import SOUGHT, proof_words
 from blocksim.ask.rest import rest_words
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.joints import JointState, joint_names
 from blocksim.report.answers import state_words
 from blocksim.report.carried import carried_lines
 from blocksim.report.problems import (
     described,
     is_metric,
-    joint_names,
     measured_line,
     size_lines,
     tilt_and_lean,

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, BinaryIO
 
+from blocksim.blocks.joints import joint_names
 from blocksim.common.sheets import write_sheet
 from blocksim.common.version import __version__
 from blocksim.limit.margins import crown
-from blocksim.report.problems import described, joint_names, problem_record, size_lines
+from blocksim.report.problems import described, problem_record, size_lines
 
 if TYPE_CHECKING:
     from blocksim.ask.crossing import Crossing, Place

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from blocksim.arch.circular import Arch
 from blocksim.arch.dimensions import At, Line, dimensions_of, friction_angle
-from blocksim.blocks.assembly import SUPPORT, Assembly
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
 from blocksim.blocks.shaking import shaking_record
@@ -186,25 +185,6 @@ def tilt_and_lean(problem: Problem) -> dict[str, float]:
         "tilt_deg": math.degrees(math.atan2(x, -y)),
         "lean_deg": math.degrees(math.atan2(z, math.hypot(x, y))),
     }
-
-
-def joint_names(assembly: Assembly) -> list[str]:
-    """Name each joint by the bodies on its two sides."""
-    return [
-        f"{side_name(assembly, k, 0)}-{side_name(assembly, k, 1)}"
-        for k in range(len(assembly.joints))
-    ]
-
-
-def side_name(assembly: Assembly, joint: int, side: int) -> str:
-    """Name the body on a side of a joint."""
-    here = assembly.joints[joint]
-    index = (here.before, here.after)[side]
-    if index != SUPPORT:
-        return assembly.blocks[index].name or str(index)
-    if here.support is None:
-        return "support"
-    return assembly.supports[here.support].name or "support"
 
 
 def described(problem: Problem) -> str:

@@ -10,12 +10,13 @@ import numpy as np
 
 from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
+from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
 from blocksim.kinds.circular import weighed_arch
 from blocksim.limit import reactions, resultants
 from blocksim.limit.carried import Carried
-from blocksim.report.problems import joint_names, tilt_and_lean
+from blocksim.report.problems import tilt_and_lean
 from blocksim.view.arrows import forces_of
 from blocksim.view.dimensions import Angle, dimensions_of
 from blocksim.view.sheet import LARGEST, Sheet

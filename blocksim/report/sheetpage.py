@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from blocksim.arch.modes import Mode
 from blocksim.ask.check import Check, check
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
@@ -16,7 +16,6 @@ from blocksim.limit import equilibrium
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
 from blocksim.report.motion import Drawing, mechanism_drawing
-from blocksim.report.problems import joint_names
 from blocksim.report.sheetfacts import (
     MOST,
     Fact,
