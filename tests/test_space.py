@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,7 @@ from blocksim.kinds.returnwall import ReturnWall
 from blocksim.kinds.skewarch import BarrelVault, SkewArch
 from blocksim.kinds.tower import Tower
 from blocksim.limit.space import can_rest, largest_load
+from blocksim.view.solidfigure import solid_figure
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -443,4 +445,36 @@ def test_a_column_that_leans_falls_where_it_would_turn_over_its_edge(lean: float
     for share, verdict in ((1 + 1e-6, "STANDS"), (1 - 1e-6, "COLLAPSES")):
         depth = f"depth={2 * half * share:.12g}"
         asked = f"check column --mu 0.9 --with {depth} --with drum_height=0.5 --lean {lean}"
-        assert inside(*asked.split(), "--spatial").stdout.startswith(verdict)
+        asked += " --spatial"
+        assert inside(*asked.split()).stdout.startswith(verdict)
+
+
+def test_a_picture_shows_the_verdict_and_what_joints_do(tmp_path: Path) -> None:
+    """In words and colours; a film is refused in one line."""
+    out = tmp_path / "dome.svg"
+    asked = f"render dome --mu 0.7 --with thickness=0.03 --out {out}"
+    assert inside(*asked.split()).returncode == 0
+    drawn = out.read_text(encoding="utf-8")
+    for words in ("COLLAPSES", "dome, 84 blocks, mu 0.7", "hinge", "as it begins to fall"):
+        assert words in drawn or words in "".join(re.findall(r"<!-- (.*?) -->", drawn))
+    assert "#0072b2" in drawn.lower()
+    film = tmp_path / "dome.mp4"
+    done = inside(*f"render dome --mu 0.7 --out {film}".split())
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert not film.exists()
+
+
+def test_a_picture_has_every_block_within_its_frame() -> None:
+    """Of each kind: the polygons lie within the axes."""
+    for name in SOLID_KINDS:
+        problem = SOLID_KINDS[name](friction=0.7).problem()
+        (axes,) = solid_figure(blocksim.check(problem)).axes
+        (polygons,) = axes.collections
+        points = np.concatenate([each.vertices for each in polygons.get_paths()])
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        assert left <= points[:, 0].min()
+        assert points[:, 0].max() <= right
+        assert low <= points[:, 1].min()
+        assert points[:, 1].max() <= high
+        assert len(polygons.get_paths()) >= len(problem.assembly.blocks)

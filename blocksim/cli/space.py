@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, replace
+from pathlib import Path
 
 import click
 
@@ -22,7 +23,7 @@ from blocksim.cli.options import (
     parameters_of,
     require_given,
 )
-from blocksim.cli.output import answer_with
+from blocksim.cli.output import answer_with, save_picture
 from blocksim.cli.subject import in_space, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
@@ -97,6 +98,22 @@ def refuse(options: dict[str, object], known: set[str] = frozenset()) -> None:  
     for name, value in options.items():
         unset = value is None or value is False or name in known
         require(unset, option_of(name), value, "left out: it is not known in space")
+
+
+def draw_in_space(
+    out: Path, kind: str, problem: SpatialProblem, others: dict[str, object]
+) -> None:
+    """Answer the command render: a still in perspective."""
+    height = others.pop("height")
+    refuse(others)
+    allowed = "a .png, .svg or .pdf: there are no films in space"
+    require(kind in {"png", "svg", "pdf"}, "--out", str(out), allowed)
+    pixels = height if isinstance(height, int) else None
+    require(pixels is None or kind == "png", "--height", pixels, "left out of a drawing")
+    # Drawing takes a second to import, which other commands need not wait for.
+    from blocksim.view.solidfigure import solid_figure
+
+    save_picture(solid_figure(check(problem)), out, kind, pixels)
 
 
 def check_in_space(
