@@ -61,6 +61,16 @@ def test_a_study_takes_a_folder_with_a_slash(
     assert capsys.readouterr().out == f"{tmp_path}/rows True\n"
 
 
+def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
+    """More lunes and less friction need more thickness."""
+    rows = {
+        (each.lunes, each.mu): each.least
+        for each in study("dome_map").main(tmp_path, quick=True)
+    }
+    assert rows[4, 0.7] < rows[8, 0.7] < rows[8, 0.3]
+    assert (tmp_path / "dome_map.png").stat().st_size > 0
+
+
 def test_random_arches_have_no_false_answer_and_small_error(tmp_path: Path) -> None:
     result = study("random_arches").main(tmp_path, quick=True)
     assert result.arches == result.confirmed == result.same_mode == 4

@@ -17,6 +17,7 @@ clarabel = cast("Any", Library("clarabel"))
 
 FINEST = 1e-11
 """Gap and residuals at which Clarabel may end; it ends where it gets no farther."""
+CERTAIN = ("Solved", "PrimalInfeasible", "DualInfeasible")
 SOLVED = ("Solved", "AlmostSolved", "InsufficientProgress", "MaxIterations", "NumericalError")
 """What it says where it has values, which are judged by what they are."""
 
@@ -75,15 +76,11 @@ def most(matrix: Any, pull: Array, friction: Array, **sought: Array) -> Answer:
         cones.append(clarabel.NonnegativeConeT(1))
     cost = np.zeros(3 * points + 1)
     cost[-1] = -1.0
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = FINEST
-    empty = sparse.csc_matrix((len(cost), len(cost)))
-    stacked = sparse.vstack(blocks, format="csc")
-    found = clarabel.DefaultSolver(
-        empty, cost, stacked, np.concatenate(right), cones, settings
-    ).solve()
+    programme = cost, sparse.vstack(blocks, format="csc"), np.concatenate(right), cones
+    # Equations come in units of their own: the solver's scaling mostly does harm.
+    found = _solved(programme, scaled=False)
+    if str(found.status) not in CERTAIN:
+        found = min(found, _solved(programme, scaled=True), key=_left_over)
     said = str(found.status)
     values: Array = np.array(found.x)
     prices: Array = np.array(found.z)
@@ -94,6 +91,25 @@ def most(matrix: Any, pull: Array, friction: Array, **sought: Array) -> Answer:
     if said not in SOLVED or not np.isfinite(values).all() or not np.isfinite(prices).all():
         raise Unsolved
     return Answer(values[:-1], float(values[-1]), prices[:rows])
+
+
+def _solved(programme: tuple[Any, ...], *, scaled: bool) -> Any:
+    """Solve a programme, scaled by the solver or not."""
+    cost, matrix, right, cones = programme
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    settings.equilibrate_enable = scaled
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = FINEST
+    empty = sparse.csc_matrix((len(cost), len(cost)))
+    return clarabel.DefaultSolver(empty, cost, matrix, right, cones, settings).solve()
+
+
+def _left_over(found: Any) -> tuple[bool, float]:
+    """Return how far from solved a programme was left, to choose between two."""
+    gap = abs(float(found.obj_val) - float(found.obj_val_dual))
+    left = max(float(found.r_prim), float(found.r_dual), gap)
+    return str(found.status) not in CERTAIN, left if np.isfinite(left) else np.inf
 
 
 def _law(friction: Array, press: Array) -> tuple[Any, list[Any]]:

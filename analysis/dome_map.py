@@ -1,0 +1,127 @@
+"""Least thickness of a hemispherical dome over friction and number of lunes.
+
+Question: how thin can a dome of voussoirs be, and does it fall by turning or by sliding? Each
+dome has seven courses and an eye of 8 degrees. Limit analysis in space brackets its thickness;
+the mechanism just below says what joints do. Beside it the continuous hemisphere with open
+meridians, usually given as 0.042 to 0.043 of the radius (Heyman 1967, Lau 2006).
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+import blocksim
+from analysis.command import run
+from analysis.rows import write_rows
+from blocksim import Dome, JointState
+from blocksim.common.files import make_folder
+from blocksim.limit.space import can_rest, joint_states
+from blocksim.view.drawing import save_figure
+
+FRICTIONS = (0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1.0)
+LUNES = (4, 6, 8, 12, 16, 24)
+PUBLISHED = (0.042, 0.043)
+SLIDING = {JointState.SLIDES, JointState.HINGE_AND_SLIDES}
+COLOURS = ("#332288", "#0072B2", "#009E73", "#B8860B", "#D55E00", "#AA4499")
+MARKERS = "PosD^v"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """The least thickness of a dome, over its radius, and its joints just below.
+
+    Parameters
+    ----------
+    lunes, courses : int
+    mu : float
+    least : float or None
+        None where no thickness up to the radius stands.
+    low, high : float or None
+        Where it was told to fall, and to stand.
+    meridians_part, beds_turn, slide : int
+        Joints between lunes that open or turn, beds that turn, and joints that slide.
+    """
+
+    lunes: int
+    courses: int
+    mu: float
+    least: float | None
+    low: float | None
+    high: float | None
+    meridians_part: int
+    beds_turn: int
+    slide: int
+
+
+def row(lunes: int, mu: float, courses: int = 7) -> Row:
+    """Bracket one dome."""
+    dome = Dome(lunes=lunes, courses=courses, friction=mu)
+    found = blocksim.bracket(dome.problem(), over="thickness")
+    parts = turns = slides = 0
+    if found.low is not None:
+        problem = dome.but(thickness=found.low * (1 - 1e-4)).problem()
+        rates = can_rest(problem).mechanism
+        states = () if rates is None else joint_states(problem, rates)
+        for joint, state in zip(problem.assembly.joints, states, strict=bool(states)):
+            # Meridian joints stand upright; beds do not.
+            upright = abs(joint.normal[2]) < 1e-9
+            slides += int(state in SLIDING)
+            if state is not JointState.CLOSED and state not in SLIDING:
+                parts, turns = parts + int(upright), turns + int(not upright)
+    return Row(
+        lunes=lunes,
+        courses=courses,
+        mu=mu,
+        least=found.limit,
+        low=found.low,
+        high=found.high,
+        meridians_part=parts,
+        beds_turn=turns,
+        slide=slides,
+    )
+
+
+def figure(rows: list[Row]) -> Figure:
+    """Draw thickness over friction, a line a number of lunes; hollow where joints slide."""
+    drawn = Figure(figsize=(7.5, 5))
+    axes = drawn.add_subplot()
+    axes.axhspan(*PUBLISHED, color="#dddddd", label="continuous hemisphere, published")
+    for at, lunes in enumerate(sorted({each.lunes for each in rows})):
+        mine = [each for each in rows if each.lunes == lunes and each.least is not None]
+        tone = COLOURS[at % len(COLOURS)]
+        axes.plot([e.mu for e in mine], [e.least or 0.0 for e in mine], color=tone, lw=1)
+        for each in mine:
+            axes.plot(
+                each.mu, each.least or 0.0, MARKERS[at % len(MARKERS)], color=tone,
+                markerfacecolor="white" if each.slide else tone,
+            )  # fmt: skip
+        if mine:
+            end = mine[-1]
+            axes.annotate(
+                f"{lunes} lunes", (end.mu, end.least or 0.0), xytext=(6, 0),
+                textcoords="offset points", va="center", color=tone,
+            )  # fmt: skip
+    axes.set_xlabel("friction coefficient mu")
+    axes.set_ylabel("least thickness over radius")
+    axes.set_title("Dome of seven courses, eye of 8 deg; hollow: joints slide", loc="left")
+    axes.set_xlim(0.15, 1.15)
+    axes.legend(frameon=False, loc="upper right")
+    return drawn
+
+
+def main(out: Path, *, quick: bool = False) -> list[Row]:
+    """Bracket all domes, and draw their least thickness."""
+    lunes, frictions = ((4, 8), (0.3, 0.7)) if quick else (LUNES, FRICTIONS)
+    rows = [row(each, mu, 3 if quick else 7) for each in lunes for mu in frictions]
+    make_folder(out)
+    write_rows(out / "dome_map.csv", [asdict(each) for each in rows])
+    with (out / "dome_map.png").open("wb") as file:
+        save_figure(figure(rows), file, "png")
+    return rows
+
+
+if __name__ == "__main__":
+    run(main)
