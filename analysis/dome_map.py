@@ -21,8 +21,8 @@ from blocksim.common.files import make_folder
 from blocksim.limit.space import can_rest, joint_states
 from blocksim.view.drawing import save_figure
 
-FRICTIONS = (0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1.0)
-LUNES = (4, 6, 8, 12, 16, 24)
+FRICTIONS = (0.18, 0.2, 0.21, 0.22, 0.24, 0.26, 0.3, 0.35, 0.4, 0.5, 0.7)
+LUNES = (4, 6, 12, 24)
 PUBLISHED = (0.042, 0.043)
 SLIDING = {JointState.SLIDES, JointState.HINGE_AND_SLIDES}
 COLOURS = ("#332288", "#0072B2", "#009E73", "#B8860B", "#D55E00", "#AA4499")
@@ -99,22 +99,22 @@ def figure(rows: list[Row]) -> Figure:
                 markerfacecolor="white" if each.slide else tone,
             )  # fmt: skip
         if mine:
-            end = mine[-1]
+            # Where they turn all lie on each other: each is named where it begins.
             axes.annotate(
-                f"{lunes} lunes", (end.mu, end.least or 0.0), xytext=(6, 0),
-                textcoords="offset points", va="center", color=tone,
+                f"{lunes} lunes", (mine[0].mu, mine[0].least or 0.0), xytext=(6, 2),
+                textcoords="offset points", color=tone,
             )  # fmt: skip
     axes.set_xlabel("friction coefficient mu")
     axes.set_ylabel("least thickness over radius")
     axes.set_title("Dome of seven courses, eye of 8 deg; hollow: joints slide", loc="left")
-    axes.set_xlim(0.15, 1.15)
+    axes.set_xlim(0.15, 0.75)
     axes.legend(frameon=False, loc="upper right")
     return drawn
 
 
 def main(out: Path, *, quick: bool = False) -> list[Row]:
     """Bracket all domes, and draw their least thickness."""
-    lunes, frictions = ((4, 8), (0.3, 0.7)) if quick else (LUNES, FRICTIONS)
+    lunes, frictions = ((4, 8), (0.25, 0.7)) if quick else (LUNES, FRICTIONS)
     rows = [row(each, mu, 3 if quick else 7) for each in lunes for mu in frictions]
     make_folder(out)
     write_rows(out / "dome_map.csv", [asdict(each) for each in rows])

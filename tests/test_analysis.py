@@ -62,12 +62,13 @@ def test_a_study_takes_a_folder_with_a_slash(
 
 
 def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
-    """More lunes and less friction need more thickness."""
+    """Where it turns a lune of any width carries itself; where it slides it needs more."""
     rows = {
         (each.lunes, each.mu): each.least
         for each in study("dome_map").main(tmp_path, quick=True)
     }
-    assert rows[4, 0.7] < rows[8, 0.7] < rows[8, 0.3]
+    assert rows[4, 0.7] == pytest.approx(rows[8, 0.7], rel=1e-6)
+    assert rows[4, 0.25] > rows[4, 0.7]
     assert (tmp_path / "dome_map.png").stat().st_size > 0
 
 

@@ -228,7 +228,7 @@ def bracket_in_space(
         stands="high" if rises else "low",
         limit=limit,
         runs=tried.runs,
-        evidence=(Evidence("search", _search_words(limit, low, high, rises=rises)),),
+        evidence=(Evidence("search", _search_words(limit, low, high, over)),),
         problem=problem,
         tol=given.tol,
         wall_s=time.perf_counter() - started,
@@ -359,15 +359,14 @@ def _halved(tried: _Tried, low: float, high: float, *, rises: bool) -> float | N
     return math.exp(found) if over else float(found)
 
 
-def _search_words(
-    limit: float | None, low: float | None, high: float | None, *, rises: bool
-) -> str:
-    """Say what a search found."""
+def _search_words(limit: float | None, low: float | None, high: float | None, over: str) -> str:
+    """Say what a search found; of a parameter 13 values are tried."""
+    tried = "" if over in FAMILIES_IN_SPACE else f" of {SCANNED} that were tried"
     if limit is None:
-        return "no forces of equilibrium exist at any value"
+        return f"no forces of equilibrium exist at any value{tried}"
     if math.isinf(limit):
-        return "forces of equilibrium exist at all values"
-    if rises and limit == 0:
+        return f"forces of equilibrium exist at all values{tried}"
+    if over == "mu" and limit == 0:
         return "it needs no friction"
     if low is None or high is None:
         return "limit analysis tells the value, but not both sides of it within the tolerance"
