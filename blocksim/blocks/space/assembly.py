@@ -216,8 +216,7 @@ def _block_of(solid: Solid, at: int, density: float, slack: float) -> SolidBlock
         hulls = tuple(Polyhedron(part) for part in solid.parts)
         # Rounding bends faces, but no more than a fraction of the block.
         hulls = tuple(
-            Polyhedron(part, slack=min(slack, MOST_SHARE * hull.thickness))
-            for part, hull in zip(solid.parts, hulls, strict=True)
+            hull.with_slack(min(slack, MOST_SHARE * hull.thickness)) for hull in hulls
         )
     except InputError as error:
         raise InputError(f"block {name}: {error.field}", error.value, error.allowed) from None

@@ -78,10 +78,7 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
 
 def _by_faces(first: Polyhedron, second: Polyhedron) -> tuple[Array, Array]:
     """Return the normals of all faces, from the first into the second, and the gaps there."""
-    ours = np.array([face.normal for face in first.faces])
-    theirs = np.array([face.normal for face in second.faces])
-    ends = np.array([face.offset for face in first.faces])
-    beyond = np.array([face.offset for face in second.faces])
+    (ours, ends), (theirs, beyond) = first.planes, second.planes
     gaps = np.concatenate(
         [
             (ours @ second.corners.T).min(axis=1) - ends,

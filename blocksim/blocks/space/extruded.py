@@ -34,7 +34,7 @@ def extruded(problem: Problem) -> SpatialProblem:
     >>> import blocksim
     >>> arch = blocksim.CircularArch(half_angle_deg=90, eta=0.2, friction=0.7, voussoirs=9)
     >>> extruded(arch.problem())
-    SpatialProblem('circular-arch', 9 blocks, 10 joints, mu=0.7)
+    SpatialProblem(9 blocks, 10 joints, mu=0.7)
     """
     assembly = problem.assembly
     allowed = "left out: the ground is at rest in space"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -127,6 +128,19 @@ class Polyhedron:
         return tuple(outwards)
 
     @cached_property
+    def planes(self) -> tuple[Array, Array]:
+        """Normals, (faces, 3), and offsets, (faces,), of its faces."""
+        normals = np.array([face.normal for face in self.faces])
+        return normals, np.array([face.offset for face in self.faces])
+
+    def with_slack(self, slack: float) -> Polyhedron:
+        """Return the same, whose corners may lie as far off the planes of its faces [m]."""
+        other = object.__new__(Polyhedron)
+        known = {"corners": self.corners, "slack": slack, "_triangles": self.triangles}
+        vars(other).update(known, thickness=self.thickness)
+        return other
+
+    @cached_property
     def thickness(self) -> float:
         """The least distance between two planes around it, one of which is a face's [m]."""
         triangles = self.triangles
@@ -182,11 +196,13 @@ def frame(normal: Array) -> Array:
     array([[1., 0., 0.],
            [0., 1., 0.]])
     """
-    least = np.zeros(3)
-    least[int(np.argmin(np.abs(normal)))] = 1.0
-    first = least - (least @ normal) * normal
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(normal, first)])
+    way = normal.tolist()
+    least = min(range(3), key=lambda axis: abs(way[axis]))
+    first = [(axis == least) - way[least] * way[axis] for axis in range(3)]
+    long = math.hypot(*first)
+    x, y, z = (each / long for each in first)
+    a, b, c = way
+    return np.array([[x, y, z], [b * z - c * y, c * x - a * z, a * y - b * x]])
 
 
 def _around(plane: Array, normal: Array) -> Array:
