@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import doctest
+import importlib
 import json
 import re
 import runpy
@@ -406,3 +408,19 @@ def test_help_and_version_are_where_they_are_looked_for() -> None:
     assert said.decode().split() == ["blocksim", __version__]
     pages = (DOCS / "guide" / "commands.md").read_text(encoding="utf-8")
     assert all(f"\n## {name}\n" in pages for name in ("check", "bracket", "sweep", "cite"))
+
+
+WITH_EXAMPLES = [
+    path
+    for path in sorted((ROOT / "blocksim").rglob("*.py"))
+    if "    >>> " in path.read_text(encoding="utf-8")
+]
+
+
+@pytest.mark.parametrize("path", WITH_EXAMPLES, ids=name_of)
+def test_examples_of_docstrings_say_what_comes_of_them(path: Path) -> None:
+    place = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    module = importlib.import_module(place.removesuffix(".__init__"))
+    done = doctest.testmod(module)
+    assert done.attempted
+    assert done.failed == 0

@@ -206,7 +206,7 @@ def check(
     >>> from blocksim.kinds.circular import CircularArch
     >>> seen = check(CircularArch(half_angle_deg=90, eta=0.2, friction=0.7), method="limit")
     >>> seen.verdict.value, seen.arch.mode_limit.value
-    ('stands', 'FM1')
+    ('stands', 'rrr')
     """
     started = time.perf_counter()
     given = taken(options, "tol", "confirm")

@@ -32,7 +32,7 @@ def cite(*methods: str) -> str:
     --------
     >>> import blocksim
     >>> [line for line in blocksim.cite("mujoco").splitlines() if line[:1] == "@"]
-    ['@software{blocksim,', '@unpublished{CocchettiRizzi2024,', '@inproceedings{Todorov2012,']
+    ['@software{blocksim,', '@article{CocchettiRizzi2024,', '@inproceedings{Todorov2012,']
     """
     for each in methods:
         known = each == "all" or each in METHODS

@@ -160,7 +160,7 @@ def crossing(
     >>> from blocksim.kinds.circular import CircularArch
     >>> arch = CircularArch(half_angle_deg=60, eta=0.2, friction=0.7, density=2e4)
     >>> round(crossing(arch.problem(), vehicle_of("1@0")).load_factor, 3)
-    19.279
+    19.793
     """
     started = time.perf_counter()
     require(is_number(gap, 0, 0.1), "gap", gap, "above 0 and at most 0.1")

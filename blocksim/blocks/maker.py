@@ -122,6 +122,7 @@ class Maker(Shown, Table, ABC):
     Examples
     --------
     >>> from dataclasses import dataclass
+    >>> from blocksim import Body
     >>> @dataclass(frozen=True, kw_only=True)
     ... class Cube(Maker):
     ...     name = "cube"
