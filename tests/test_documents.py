@@ -418,7 +418,10 @@ WITH_EXAMPLES = [
 
 
 @pytest.mark.parametrize("path", WITH_EXAMPLES, ids=name_of)
-def test_examples_of_docstrings_say_what_comes_of_them(path: Path) -> None:
+def test_examples_of_docstrings_say_what_comes_of_them(
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # for what they write
     place = ".".join(path.relative_to(ROOT).with_suffix("").parts)
     module = importlib.import_module(place.removesuffix(".__init__"))
     done = doctest.testmod(module)
