@@ -18,7 +18,8 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import Library
 from blocksim.limit.cones import ROUND_OFF, Cones
-from blocksim.limit.linear import LinearProgramme
+from blocksim.limit.crushing import crushing_forces, most_before_crushing
+from blocksim.limit.linear import LinearProgramme, Optimum
 from blocksim.limit.programme import most, most_common, scaled
 
 if TYPE_CHECKING:
@@ -72,7 +73,14 @@ class Capacity:
         cones = self.cones
         column = sparse.csc_array(cones.loads(live)[:, None])
         right = -cones.loads(self._dead)
-        found = most(cones, column, right, (-math.inf, math.inf), self._solver)
+        return self._collapse(most(cones, column, right, (-math.inf, math.inf), self._solver))
+
+    def crushed(self, live: Array, crushing: Array) -> Collapse:
+        """Find the largest factor on live loads of joints that crush (`crushing_forces`)."""
+        return self._collapse(most_before_crushing(self.cones, crushing, live, self._dead))
+
+    def _collapse(self, found: Optimum) -> Collapse:
+        cones = self.cones
         if found.unbounded:
             return Collapse(load_factor=math.inf, forces=None, mechanism=None)
         if not found.exists:
@@ -80,7 +88,7 @@ class Capacity:
         return Collapse(
             load_factor=float(found.values[-1]),
             forces=cones.forces(found.values[:-1]),
-            mechanism=scaled(cones.rates(found.prices)),
+            mechanism=scaled(cones.rates(found.prices[: cones.balance.shape[0]])),
         )
 
     def at_most(self, live: Array) -> float:
@@ -113,7 +121,7 @@ class Capacity:
         return parts, spread, solve
 
 
-def collapse(problem: Problem) -> Collapse:
+def collapse(problem: Problem, *, strength: float | None = None) -> Collapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
     The problem's own load factor does not matter.
@@ -122,11 +130,21 @@ def collapse(problem: Problem) -> Collapse:
     ----------
     problem : Problem
         In its plane, with live loads.
+    strength : float, optional
+        Compressive strength of the blocks [Pa] (`limit.crushing`); by default they are rigid.
 
     Returns
     -------
     Collapse
+
+    Raises
+    ------
+    InputError
+        If a strength is out of range, or nothing is known that it could be compared with.
     """
     capacity = Capacity(problem)
     still = np.zeros(capacity.cones.shape)
-    return capacity.of(sum((problem.of_load(load) for load in problem.live), still))
+    live = sum((problem.of_load(load) for load in problem.live), still)
+    if strength is None:
+        return capacity.of(live)
+    return capacity.crushed(live, crushing_forces(problem, strength))

@@ -133,6 +133,12 @@ class Cones:
         low = np.where(self.bounded > 0, 0.0, -math.inf)
         return low, np.full(self.count, math.inf)
 
+    @cached_property
+    def pressing(self) -> Any:
+        """Sparse (2 joints, parts): what the parts press at each end of each joint."""
+        at = (self._end, np.arange(self.count))
+        return sparse.csr_array((self._normal, at), shape=(2 * self._joints, self.count))
+
     def part(self, index: int) -> tuple[int, int, Fraction, Fraction]:
         """Return joint and end of a part, and its share of normal and tangent, exactly."""
         joint, end = divmod(int(self._end[index]), 2)
