@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,7 +12,27 @@ from blocksim.common.checks import COORDINATE, FACTOR, FORCE, require_all
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Load:
+class Acting:
+    """What loads are in the plane and in space: a force on blocks, with its ranges."""
+
+    dimensions: ClassVar[int]
+
+    force: Array
+    blocks: tuple[int, ...]
+    point: Array | None = None
+    per_weight: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the ranges, and make the arrays read-only."""
+        object.__setattr__(self, "force", frozen(self.force, (self.dimensions,)))
+        require_all(FACTOR if self.per_weight else FORCE, "force", self.force)
+        if self.point is not None:
+            object.__setattr__(self, "point", frozen(self.point, (self.dimensions,)))
+            require_all(COORDINATE, "point", self.point)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Load(Acting):
     """A force on a block, or on several in proportion to their weights.
 
     Parameters
@@ -26,18 +47,7 @@ class Load:
         Whether it is a body force.
     """
 
-    force: Array
-    blocks: tuple[int, ...]
-    point: Array | None = None
-    per_weight: bool = False
-
-    def __post_init__(self) -> None:
-        """Check the ranges, and make the arrays read-only."""
-        object.__setattr__(self, "force", frozen(self.force, (2,)))
-        require_all(FACTOR if self.per_weight else FORCE, "force", self.force)
-        if self.point is not None:
-            object.__setattr__(self, "point", frozen(self.point, (2,)))
-            require_all(COORDINATE, "point", self.point)
+    dimensions: ClassVar[int] = 2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -107,7 +107,47 @@ class Table:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Maker(Shown, Table, ABC):
+class Kind(Table, ABC):
+    """What makers in the plane and in space are: a name, friction and density."""
+
+    name: ClassVar[str]
+    about: ClassVar[str] = ""
+
+    friction: float | None = None
+    density: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters, then friction and density."""
+        super().__post_init__()
+        self._check_forces()
+
+    def _check_forces(self) -> None:
+        if self.friction is not None:
+            SMOOTH_OR_ROUGH.require("friction", self.friction)
+        if self.density is not None:
+            PER_VOLUME.require("density", self.density)
+
+    @property
+    def known_friction(self) -> float:
+        """Friction coefficient, which a problem needs.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if self.friction is None:
+            raise InputError("friction", MISSING, "given")
+        return self.friction
+
+    @property
+    def unit_weight(self) -> float:
+        """Weight per volume [N/m^3]; 1 where none was given."""
+        return UNIT_WEIGHT if self.density is None else self.density
+
+
+@dataclass(frozen=True, kw_only=True)
+class Maker(Shown, Kind):
     """What makes a problem of its parameters.
 
     A class of one's own has a `name`, parameters, and `made`.
@@ -136,24 +176,8 @@ class Maker(Shown, Table, ABC):
     1.0
     """
 
-    name: ClassVar[str]
-    about: ClassVar[str] = ""
     is_arch: ClassVar[bool] = False
     row_types: ClassVar[Mapping[str, type[Table]]] = {}
-
-    friction: float | None = None
-    density: float | None = None
-
-    def __post_init__(self) -> None:
-        """Check the parameters, then friction and density."""
-        super().__post_init__()
-        self._check_forces()
-
-    def _check_forces(self) -> None:
-        if self.friction is not None:
-            SMOOTH_OR_ROUGH.require("friction", self.friction)
-        if self.density is not None:
-            PER_VOLUME.require("density", self.density)
 
     @abstractmethod
     def made(self, density: float) -> Made:
@@ -173,12 +197,10 @@ class Maker(Shown, Table, ABC):
         InputError
             If there is no friction, or nothing can be built of the parameters.
         """
-        if self.friction is None:
-            raise InputError("friction", MISSING, "given")
-        built = self.built
+        mu, built = self.known_friction, self.built
         return Problem(
             assembly=built.assembly,
-            mu=self.friction,
+            mu=mu,
             dead=built.fills,
             title=self.name,
             maker=self,
@@ -204,11 +226,6 @@ class Maker(Shown, Table, ABC):
         See `blocksim.kinds.offers.Offers`.
         """
         return None
-
-    @property
-    def unit_weight(self) -> float:
-        """Weight per volume [N/m^3]; 1 where none was given."""
-        return UNIT_WEIGHT if self.density is None else self.density
 
     @property
     def length_name(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from blocksim.common.errors import InputError
 from blocksim.common.later import Installed, Later, loaded_here
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from blocksim.blocks.space.maker import SolidMaker
 
 
-def _kind(place: str) -> type[Maker]:
+def _kind(place: str) -> Any:
     """Load a kind, given as file and class."""
     file, _, name = place.partition(".")
     return getattr(import_module(f"blocksim.kinds.{file}"), name)
@@ -43,12 +43,6 @@ KINDS: Later[type[Maker]] = Later(
 """All there are: packages offer theirs under the entry point group `blocksim.kinds`."""
 
 
-def _solid_kind(place: str) -> type[SolidMaker]:
-    """Load a kind in space, given as file and class."""
-    file, _, name = place.partition(".")
-    return getattr(import_module(f"blocksim.kinds.{file}"), name)
-
-
 SOLID_PLACES = {
     "dome": "dome.Dome",
     "barrel-vault": "skewarch.BarrelVault",
@@ -59,7 +53,7 @@ SOLID_PLACES = {
 }
 """The same of kinds in space."""
 SOLID_KINDS: Later[type[SolidMaker]] = Later(
-    {name: partial(_solid_kind, place) for name, place in SOLID_PLACES.items()}
+    {name: partial(_kind, place) for name, place in SOLID_PLACES.items()}
 )
 
 

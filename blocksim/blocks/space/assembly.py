@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,8 +22,8 @@ SLACK = 1e-7
 """Share of the thinner block by which faces that touch may part, whatever the rounding."""
 STEPS = 2.0
 """Steps of rounding by which they may part besides."""
-MOST_SHARE = 1 / 40
-"""Share of the thinner block up to which gaps are closed."""
+MOST_SHARE, GIVEN_SHARE = 1 / 40, 1 / 10
+"""Share of the thinner block up to which gaps are closed: due to rounding, and asked for."""
 MOST_SOLIDS = 10_000
 """Blocks, beyond which pairs that may touch would not fit into memory."""
 LONGEST_BLOCK = 1000.0
@@ -74,15 +74,12 @@ class SolidBlock:
         [N]
     centre : (3,) float
         Centre of mass [m].
-    moments : (3, 3) float
-        Second moments of its mass about the centre, over its mass [m2].
     """
 
     hulls: tuple[Polyhedron, ...]
     name: str
     weight: float
     centre: Array
-    moments: Array
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -164,8 +161,8 @@ def assembly_in_space(
     density : float
         Weight of a unit of volume [N/m3].
     tolerance : float, optional
-        Gaps and overlaps up to this are closed [m], but no more than 1/40 of the thinner
-        block; by default what rounding of the corners explains.
+        Gaps and overlaps up to this are closed [m], but no more than a tenth of the thinner
+        block; by default what rounding of the corners explains, up to a fortieth.
 
     Raises
     ------
@@ -224,13 +221,10 @@ def _block_of(solid: Solid, at: int, density: float, slack: float) -> SolidBlock
     allowed = f"blocks up to {LONGEST_BLOCK:g} m long: are these millimetres?"
     require(solid.fixed or long <= LONGEST_BLOCK, f"block {name}", f"{long:g} m long", allowed)
     volumes = np.array([hull.volume for hull in hulls])
-    centroids = np.array([hull.moments[1] for hull in hulls])
+    centroids = np.array([hull.centroid for hull in hulls])
     volume = float(volumes.sum())
     centroid = volumes @ centroids / volume
     centre = centroid if solid.centre is None else np.asarray(solid.centre, dtype=float)
-    second = np.zeros((3, 3))
-    for own, at_own, hull in zip(volumes, centroids, hulls, strict=True):
-        second += hull.moments[2] + own * np.outer(at_own - centroid, at_own - centroid)
     weight = density * volume if solid.weight is None else float(solid.weight)
     _require_apart(hulls, name, slack)
     return SolidBlock(
@@ -238,7 +232,6 @@ def _block_of(solid: Solid, at: int, density: float, slack: float) -> SolidBlock
         name=name,
         weight=weight,
         centre=frozen(centre, (3,)),
-        moments=frozen(second / volume, (3, 3)),
     )
 
 
@@ -269,7 +262,7 @@ def _found(
         a, b = owner[one], owner[other]
         if a == b or (fixed[a] and fixed[b]):
             continue
-        share = 4 * MOST_SHARE if given else MOST_SHARE
+        share = GIVEN_SHARE if given else MOST_SHARE
         own = _slack_of(hulls[one], hulls[other], slack, share)
         found = contact(hulls[one], hulls[other], own)
         if isinstance(found, Overlap):
@@ -302,15 +295,7 @@ def _near(hulls: Sequence[Polyhedron], slack: float) -> Iterable[tuple[int, int]
 
 def _placed(joint: FaceJoint, fixed: Flags, place: Places) -> FaceJoint:
     """Return a joint by the places of blocks among those that move."""
-    a, b = joint.before, joint.after
-    ends = [SUPPORT if fixed[each] else int(place[each]) for each in (a, b)]
-    support = next((int(place[each]) for each in (a, b) if fixed[each]), None)
-    return FaceJoint(
-        before=ends[0],
-        after=ends[1],
-        points=joint.points,
-        normal=joint.normal,
-        friction=joint.friction,
-        support=support,
-        gap=joint.gap,
-    )
+    sides = joint.before, joint.after
+    before, after = (SUPPORT if fixed[each] else int(place[each]) for each in sides)
+    support = next((int(place[each]) for each in sides if fixed[each]), None)
+    return replace(joint, before=before, after=after, support=support)

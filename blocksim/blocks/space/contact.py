@@ -61,11 +61,13 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
     if gaps.max() > slack:
         return None
     if gaps.max() < -slack:
+        deepest = gaps.max()
         normals, gaps = _by_edges(first, second)
-        if len(gaps) == 0 or gaps.max() > slack:
-            return None if len(gaps) else Overlap(float(-_by_faces(first, second)[1].max()))
-        if gaps.max() < -slack:
-            return Overlap(float(-max(gaps.max(), _by_faces(first, second)[1].max())))
+        widest = gaps.max(initial=deepest)
+        if widest > slack:
+            return None
+        if widest < -slack:
+            return Overlap(float(-widest))
     found: list[Contact] = []
     for index in np.argsort(-gaps):
         if gaps[index] < -slack:
@@ -184,12 +186,7 @@ def _clipped(ours: Array, theirs: Array, slack: float) -> Array:
     return _apart(kept, slack)
 
 
-def _inside(
-    kept: list[Spot],
-    start: Spot,
-    end: Spot,
-    slack: float,
-) -> list[Spot]:
+def _inside(kept: list[Spot], start: Spot, end: Spot, slack: float) -> list[Spot]:
     """Keep what lies to the left of a line; a point or a segment on it, too."""
     long = float(np.hypot(end[0] - start[0], end[1] - start[1]))
     if not (long and kept):
@@ -208,11 +205,8 @@ def _inside(
             found.append(here)
         if a * b < 0:
             share = a / (a - b)
-            x, y = (
-                here[0] + share * (there[0] - here[0]),
-                here[1] + share * (there[1] - here[1]),
-            )
-            found.append((x, y))
+            x = here[0] + share * (there[0] - here[0])
+            found.append((x, here[1] + share * (there[1] - here[1])))
         if len(kept) == 2 and b >= 0:
             found.append(there)
     return found

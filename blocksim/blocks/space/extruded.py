@@ -64,7 +64,6 @@ def _prisms(assembly: Assembly) -> SpatialAssembly:
                 name=block.name or str(at),
                 weight=block.mass * STANDARD_GRAVITY,
                 centre=UP @ block.centre,
-                moments=np.diag([0.0, block.inertia / block.mass, 0.0]),
             )
             for at, block in enumerate(assembly.blocks)
         ),
@@ -74,7 +73,6 @@ def _prisms(assembly: Assembly) -> SpatialAssembly:
                 name=support.name or f"support {at}",
                 weight=0.0,
                 centre=np.zeros(3),
-                moments=np.zeros((3, 3)),
             )
             for at, support in enumerate(assembly.supports)
         ),

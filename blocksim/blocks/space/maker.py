@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
-from blocksim.blocks.maker import UNIT_WEIGHT, Table
+from blocksim.blocks.maker import Kind
 from blocksim.blocks.space.assembly import Solid, SpatialAssembly, assembly_in_space
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.common.checks import PER_VOLUME, SMOOTH_OR_ROUGH, require
-from blocksim.common.errors import MISSING, InputError
+from blocksim.common.checks import require
 from blocksim.common.fields import Field, fields_of
 
 
 @dataclass(frozen=True, kw_only=True)
-class SolidMaker(Table, ABC):
+class SolidMaker(Kind):
     """What makes a problem in space of its parameters.
 
     A class of one's own has a `name`, parameters, and `solids`.
@@ -30,19 +29,6 @@ class SolidMaker(Table, ABC):
         Weight per volume [N/m^3]; without it only ratios of forces have a meaning.
     """
 
-    name: ClassVar[str]
-    about: ClassVar[str] = ""
-
-    friction: float | None = None
-    density: float | None = None
-
-    def __post_init__(self) -> None:
-        """Check the parameters, then friction and density."""
-        super().__post_init__()
-        for known, field in ((SMOOTH_OR_ROUGH, "friction"), (PER_VOLUME, "density")):
-            if getattr(self, field) is not None:
-                known.require(field, getattr(self, field))
-
     @abstractmethod
     def solids(self) -> tuple[Solid, ...]:
         """Make the blocks; joints are found."""
@@ -50,8 +36,7 @@ class SolidMaker(Table, ABC):
     @cached_property
     def assembly(self) -> SpatialAssembly:
         """The blocks and their joints, made once."""
-        density = UNIT_WEIGHT if self.density is None else self.density
-        return assembly_in_space(self.solids(), density=density)
+        return assembly_in_space(self.solids(), density=self.unit_weight)
 
     def problem(self) -> SpatialProblem:
         """Return what is made, under its own weight.
@@ -61,11 +46,10 @@ class SolidMaker(Table, ABC):
         InputError
             If there is no friction, or nothing can be built of the parameters.
         """
-        if self.friction is None:
-            raise InputError("friction", MISSING, "given")
+        mu = self.known_friction
         return SpatialProblem(
             assembly=self.assembly,
-            mu=self.friction,
+            mu=mu,
             title=self.name,
             maker=self,
             weighed=self.density is not None,

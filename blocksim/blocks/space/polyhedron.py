@@ -1,4 +1,4 @@
-"""Convex polyhedra: their faces, volume, and moments."""
+"""Convex polyhedra: their faces, volume, and centroid."""
 
 from __future__ import annotations
 
@@ -86,8 +86,7 @@ class Polyhedron:
         object.__setattr__(self, "slack", slack)
         # Triangles of the hull, turned counter-clockwise seen from outside.
         triangles = points[hull.simplices]
-        cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-        inwards = np.einsum("ij,ij->i", cross, hull.equations[:, :3]) < 0
+        inwards = np.einsum("ij,ij->i", _crosses(triangles), hull.equations[:, :3]) < 0
         triangles[inwards] = triangles[inwards][:, ::-1]
         object.__setattr__(self, "_triangles", triangles)
 
@@ -106,7 +105,7 @@ class Polyhedron:
         """Its faces: triangles in one plane are one."""
         triangles, corners = self.triangles, self.corners
         middle = corners.mean(axis=0)
-        cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        cross = _crosses(triangles)
         areas = np.linalg.norm(cross, axis=1)
         slack = max(self.slack, COPLANAR * self.thickness)
         found: list[Face] = []
@@ -143,8 +142,7 @@ class Polyhedron:
     @cached_property
     def thickness(self) -> float:
         """The least distance between two planes around it, one of which is a face's [m]."""
-        triangles = self.triangles
-        cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        cross = _crosses(self.triangles)
         areas = np.linalg.norm(cross, axis=1)
         large = areas > 1e-6 * areas.max()
         heights = (cross[large] / areas[large, None]) @ self.corners.T
@@ -161,23 +159,29 @@ class Polyhedron:
         return np.array(list(ends))
 
     @cached_property
-    def moments(self) -> tuple[float, Array, Array]:
-        """Volume [m3], centroid [m], and second moments about it, (3, 3) [m5]."""
+    def _mass(self) -> tuple[float, Array]:
+        """Volume [m3] and centroid [m]: of tetrahedra from one point within."""
         about = self.corners.mean(axis=0)
         legs = self.triangles - about
         volumes = np.linalg.det(legs) / 6
         volume = float(volumes.sum())
-        sums = legs.sum(axis=1)
-        centre = (volumes[:, None] * sums).sum(axis=0) / (4 * volume)
-        # Of a tetrahedron with a corner at the origin: V/20 (sum of squares + square of sum).
-        second = np.einsum("t,tij,tik->jk", volumes / 20, legs, legs)
-        second += np.einsum("t,tj,tk->jk", volumes / 20, sums, sums)
-        return volume, about + centre, second - volume * np.outer(centre, centre)
+        centre = (volumes[:, None] * legs.sum(axis=1)).sum(axis=0) / (4 * volume)
+        return volume, about + centre
 
     @property
     def volume(self) -> float:
         """Its volume [m3]."""
-        return self.moments[0]
+        return self._mass[0]
+
+    @property
+    def centroid(self) -> Array:
+        """Its centroid [m], (3,)."""
+        return self._mass[1]
+
+
+def _crosses(triangles: Array) -> Array:
+    """Return normals of triangles, (k, 3), twice as long as their areas."""
+    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
 
 
 def _normal_of(plane: Array, near: Array) -> Array:

@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from blocksim.blocks.acting import Acting
 from blocksim.blocks.assembly import Array, frozen
 from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.common.checks import (
-    COORDINATE,
     FACTOR,
-    FORCE,
     SMOOTH_OR_ROUGH,
     TURN,
     is_number,
@@ -31,7 +30,7 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SpatialLoad:
+class SpatialLoad(Acting):
     """A force on a block, or on several in proportion to their weights.
 
     Parameters
@@ -45,18 +44,7 @@ class SpatialLoad:
         Whether it is a body force.
     """
 
-    force: Array
-    blocks: tuple[int, ...]
-    point: Array | None = None
-    per_weight: bool = False
-
-    def __post_init__(self) -> None:
-        """Check the ranges, and make the arrays read-only."""
-        object.__setattr__(self, "force", frozen(self.force, (3,)))
-        require_all(FACTOR if self.per_weight else FORCE, "force", self.force)
-        if self.point is not None:
-            object.__setattr__(self, "point", frozen(self.point, (3,)))
-            require_all(COORDINATE, "point", self.point)
+    dimensions: ClassVar[int] = 3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
