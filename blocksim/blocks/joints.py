@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly
+
+if TYPE_CHECKING:
+    from blocksim.blocks.space.assembly import SpatialAssembly
 
 
 class JointState(StrEnum):
@@ -249,7 +253,7 @@ def _turning(opening: list[float], parted: float, *, slides: bool) -> JointState
     return JointState.HINGE_EXTRADOS
 
 
-def joint_names(assembly: Assembly) -> list[str]:
+def joint_names(assembly: Assembly | SpatialAssembly) -> list[str]:
     """Name each joint by the bodies on its two sides."""
     return [
         f"{side_name(assembly, k, 0)}-{side_name(assembly, k, 1)}"
@@ -257,7 +261,7 @@ def joint_names(assembly: Assembly) -> list[str]:
     ]
 
 
-def side_name(assembly: Assembly, joint: int, side: int) -> str:
+def side_name(assembly: Assembly | SpatialAssembly, joint: int, side: int) -> str:
     """Name the body on a side of a joint."""
     here = assembly.joints[joint]
     index = (here.before, here.after)[side]

@@ -12,6 +12,7 @@ from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
 from blocksim.ask.options import Options
 from blocksim.blocks.joints import joint_names
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.arguments import Option
 from blocksim.cli.crossing import cross
 from blocksim.cli.options import (
@@ -37,7 +38,7 @@ from blocksim.cli.options import (
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
 from blocksim.cli.question import joint_of
-from blocksim.cli.subject import in_space, is_structure, problem_asked
+from blocksim.cli.subject import anything_asked, is_structure
 from blocksim.common.checks import require
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
@@ -57,14 +58,13 @@ def check(
     as_json: Json = False,
 ) -> None:
     """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
-    if spatial or in_space(scene):
-        from blocksim.cli.space import check_in_space, problem_in_space
+    problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
+    if isinstance(problem, SpatialProblem):
+        from blocksim.cli.space import check_in_space
 
         others: dict[str, object] = {"joint": joint, "must_rest": must_rest, "proof": proof}
         asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce}
-        solid = problem_in_space(scene, given, loading)
-        check_in_space(solid, asked, others, as_json=as_json)
-    problem = problem_asked(scene, given, loading, thick=True)
+        check_in_space(problem, asked, others, as_json=as_json)
     at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
     with named_options(), progress() as report:
         answer = ask_check(
@@ -104,30 +104,36 @@ def bracket(
 
     Of a vehicle that crosses it is the least load factor, and where it stands then.
     """
-    if spatial or in_space(scene):
-        from blocksim.cli.space import bracket_in_space, problem_in_space
+    crosses = crossed.vehicle is not None
+    for option in ("along", "out") if not crosses else ():
+        value = getattr(crossed, option)
+        require(value is None, f"--{option}", value, "left out, or --vehicle beside it")
+    # The thickness of an arch under its own weight need not be given to be sought.
+    sought = (
+        over in {None, THICKNESS}
+        and not (crosses or spatial or loading.given)
+        and not is_structure(scene)
+    )
+    for name in ("eta", "ratio") if sought else ():
+        value = getattr(given, name)
+        require(value is None, f"--{name}", value, "left out over thickness")
+    problem = anything_asked(
+        scene, given, loading, spatial=spatial, thick=not sought, sought=sought
+    )
+    if isinstance(problem, SpatialProblem):
+        from blocksim.cli.space import bracket_in_space
 
         others: dict[str, object] = {**asdict(crossed), "within": within, "proof": proof}
         asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce,
                           "tol": tol}  # fmt: skip
-        solid = problem_in_space(scene, given, loading)
-        bracket_in_space(solid, over, asked, others, as_json=as_json)
+        bracket_in_space(problem, over, asked, others, as_json=as_json)
         return
-    if crossed.vehicle is not None:
+    if crosses:
         usual = {"--over": over in {None, "load"}, "--within": within is None,
                  "--method": method in {"auto", "limit"}, "--set": settings is None,
                  "--reduce": reduce is None}  # fmt: skip
-        cross(problem_asked(scene, given, loading, thick=True), crossed, usual, as_json=as_json)
+        cross(problem, crossed, usual, as_json=as_json)
         return
-    for option in ("along", "out"):
-        value = getattr(crossed, option)
-        require(value is None, f"--{option}", value, "left out, or --vehicle beside it")
-    # The thickness of an arch under its own weight need not be given to be sought.
-    sought = over in {None, THICKNESS} and not loading.given and not is_structure(scene)
-    for name in ("eta", "ratio") if sought else ():
-        value = getattr(given, name)
-        require(value is None, f"--{name}", value, "left out over thickness")
-    problem = problem_asked(scene, given, loading, thick=not sought, sought=sought)
     with named_options(), progress() as report:
         answer = ask_bracket(
             problem,

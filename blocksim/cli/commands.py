@@ -39,7 +39,7 @@ from blocksim.cli.options import (
 )
 from blocksim.cli.output import picture_kind, progress, say
 from blocksim.cli.question import question
-from blocksim.cli.subject import in_space, problem_asked
+from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
@@ -142,14 +142,6 @@ def render(
     require_given(out=out)
     out = out or Path()
     kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", *MODELS, *TABLES))
-    if in_space(scene):
-        from blocksim.cli.space import draw_in_space, problem_in_space
-
-        seen = None if view == "2d" else view
-        others: dict[str, object] = {"beside": beside, "slow": slow, "time": time}
-        others |= {"method": method, "view": seen, "height": height}
-        draw_in_space(out, kind, problem_in_space(scene, given, loading), others)
-        return
     if kind in (*MODELS, *TABLES):
         options = {"beside": beside, "slow": slow, "time": time, "height": height}
         for name, value in options.items():

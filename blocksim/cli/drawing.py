@@ -7,11 +7,13 @@ from pathlib import Path
 from blocksim.arch.theory import least_thickness
 from blocksim.ask.check import check
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import Given, Loading, named_options
 from blocksim.cli.output import progress, save_picture, say
 from blocksim.cli.question import question
-from blocksim.cli.subject import is_structure, problem_asked
+from blocksim.cli.space import draw_in_space
+from blocksim.cli.subject import anything_asked, is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.files import write_whole
@@ -34,9 +36,11 @@ def write_still(
     built = is_structure(scene) or loading.given
     asked = None if built else question(scene, given)
     if asked is None or (not asked.lean and asked.has_thickness):
-        _write_sheet(
-            out, kind, problem_asked(scene, given, loading, thick=True), method, height
-        )
+        problem = anything_asked(scene, given, loading, thick=True)
+        if isinstance(problem, SpatialProblem):
+            draw_in_space(out, kind, problem, method, height)
+        else:
+            _write_sheet(out, kind, problem, method, height)
         return
     require(method is None, "--method", method, "left out: the picture is of no motion")
     flat = "a .png, .svg or .pdf: it leans" if asked.lean else (

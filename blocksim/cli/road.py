@@ -26,8 +26,6 @@ def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
         if loading.load is not None:
             require(bool(problem.live), "--load", loading.load, "left out: no live loads")
             problem = problem.with_load(loading.load)
-        allowed = "left out: it is of blocks in space"
-        require(loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
         if loading.tilt is not None:
             problem = problem.tilted(math.radians(loading.tilt))
         if given.lean is not None:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import NoReturn
 
 import click
 
-from blocksim.arch.dimensions import require_unit_weight
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.options import Options
-from blocksim.blocks.space.extruded import extruded
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.options import (
     EXIT_CODES,
@@ -20,15 +20,9 @@ from blocksim.cli.options import (
     Loading,
     named_options,
     option_of,
-    parameters_of,
-    require_given,
 )
 from blocksim.cli.output import answer_with, save_picture
-from blocksim.cli.subject import in_space, problem_asked
 from blocksim.common.checks import require
-from blocksim.common.errors import InputError
-from blocksim.kinds import SOLID_KINDS
-from blocksim.kinds.files import load_in_space
 from blocksim.report.space import (
     bracket_in_space_lines,
     bracket_in_space_record,
@@ -42,58 +36,25 @@ ACTING = {"load", "tilt", "azimuth"}
 """The same of what acts on it."""
 
 
-def problem_in_space(scene: str | None, given: Given, loading: Loading) -> SpatialProblem:
-    """Read or make a structure in space and put on it what the options say.
-
-    One of the plane is asked as prisms; a table then tilts towards the azimuth.
+def loaded_in_space(problem: SpatialProblem, given: Given, loading: Loading) -> SpatialProblem:
+    """Put on a problem in space what the options say.
 
     Raises
     ------
     InputError
-        If the file cannot be used, or an option means nothing in space.
+        If an option means nothing in space.
     """
-    if scene is None or not in_space(scene):
-        problem = extruded(
-            problem_asked(scene, given, replace(loading, azimuth=None), thick=True)
-        )
-        return replace(problem, azimuth=math.radians(loading.azimuth or 0.0))
     refuse({**asdict(given), **asdict(loading)}, IN_SPACE | ACTING)
-    heavy = given.unit_weight
-    if heavy is not None:
-        require_unit_weight("--unit-weight", heavy)
-    density = None if heavy is None else 1000 * heavy
-    if scene in SOLID_KINDS:
-        problem = _made(scene, given, density)
-    else:
-        allowed = "left out: the file has blocks, not a kind"
-        require(not given.parameters, "--with", given.parameters, allowed)
-        problem = load_in_space(
-            scene, density, friction=given.friction, tolerance=given.tolerance
-        )
     if given.friction is not None:
         problem = problem.with_friction(given.friction)
     if loading.load is not None:
         require(bool(problem.live), "--load", loading.load, "left out: no live loads")
         problem = problem.with_load(loading.load)
-    if loading.azimuth is not None:
-        problem = replace(problem, azimuth=math.radians(loading.azimuth))
+    problem = replace(problem, azimuth=math.radians(loading.azimuth or 0.0))
     return problem if loading.tilt is None else problem.tilted(math.radians(loading.tilt))
 
 
-def _made(name: str, given: Given, density: float | None) -> SpatialProblem:
-    """Make a kind in space, of its parameters."""
-    allowed = "left out: a kind of structure has no gaps"
-    require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
-    require_given(mu=given.friction)
-    maker = SOLID_KINDS[name](friction=given.friction, density=density)
-    try:
-        return maker.but(**parameters_of(given.parameters)).problem()
-    except InputError as error:
-        said = f"{error.field}={error.value}"
-        raise InputError("--with", said, error.allowed) from None
-
-
-def refuse(options: dict[str, object], known: set[str] = frozenset()) -> None:  # type: ignore[assignment]
+def refuse(options: Mapping[str, object], known: Collection[str] = ()) -> None:
     """Refuse options that are given and mean nothing in space."""
     for name, value in options.items():
         unset = value is None or value is False or name in known
@@ -101,24 +62,22 @@ def refuse(options: dict[str, object], known: set[str] = frozenset()) -> None:  
 
 
 def draw_in_space(
-    out: Path, kind: str, problem: SpatialProblem, others: dict[str, object]
+    out: Path, kind: str, problem: SpatialProblem, method: str | None, height: int | None
 ) -> None:
     """Answer the command render: a still in perspective."""
-    height = others.pop("height")
-    refuse(others)
-    allowed = "a .png, .svg or .pdf: there are no films in space"
+    allowed = "a .png, .svg or .pdf: it is drawn in perspective"
     require(kind in {"png", "svg", "pdf"}, "--out", str(out), allowed)
-    pixels = height if isinstance(height, int) else None
-    require(pixels is None or kind == "png", "--height", pixels, "left out of a drawing")
     # Drawing takes a second to import, which other commands need not wait for.
     from blocksim.view.solidfigure import solid_figure
 
-    save_picture(solid_figure(check(problem)), out, kind, pixels)
+    with named_options():
+        answer = check(problem, method=method or "auto")
+    save_picture(solid_figure(answer), out, kind, height)
 
 
 def check_in_space(
     problem: SpatialProblem, options: Options, others: dict[str, object], *, as_json: bool
-) -> None:
+) -> NoReturn:
     """Answer the command check."""
     refuse(others)
     with named_options():

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.options import Given, Loading, option_of, parameters_of, require_given
 from blocksim.cli.road import loaded
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import read_file, toml_of
-from blocksim.kinds import KINDS, own_kind
+from blocksim.kinds import KINDS, SOLID_KINDS, own_kind
 from blocksim.kinds.files import (
     changed,
     is_drawing,
-    load_structure,
+    load_any,
     shipped_structures,
     structure_of,
     weighed,
@@ -26,7 +27,7 @@ LARGEST_PEEK = 1 << 20
 
 def is_structure(scene: str | None) -> bool:
     """Tell a structure from a scenario of an arch: by its name, or by what is in the file."""
-    if scene in KINDS or scene in shipped_structures():
+    if scene in KINDS or scene in SOLID_KINDS or scene in shipped_structures():
         return True
     if scene is None:
         return False
@@ -43,7 +44,7 @@ def is_structure(scene: str | None) -> bool:
     return "blocks" in table or "kind" in table
 
 
-def structure(scene: str, given: Given, loading: Loading) -> Problem:
+def structure(scene: str, given: Given, loading: Loading) -> Problem | SpatialProblem:
     """Read or make a structure and put on it what the options say.
 
     Raises
@@ -60,7 +61,13 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
         require_unit_weight("--unit-weight", heavy)
     density = None if heavy is None else 1000 * heavy
     try:
-        if scene in KINDS or _is_place(scene):
+        if scene in SOLID_KINDS:
+            require_given(mu=given.friction)
+            allowed = "left out: a kind of structure has no gaps"
+            require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
+            maker = SOLID_KINDS[scene](friction=given.friction, density=density)
+            built = maker.but(**changes).problem()
+        elif scene in KINDS or _is_place(scene):
             own = () if scene in KINDS else (own_kind(scene),)
             name = own[0].name if own else scene
             allowed = "left out: a kind of structure has no gaps"
@@ -71,7 +78,7 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
         else:
             if is_drawing(scene):
                 require_given(mu=given.friction)
-            built = load_structure(
+            built = load_any(
                 scene, changes, density, friction=given.friction, tolerance=given.tolerance
             )
     except InputError as error:
@@ -79,7 +86,11 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem:
         if name not in changes:
             raise
         raise InputError("--with", f"{error.field}={error.value}", error.allowed) from None
-    return loaded(built, given, loading)
+    if isinstance(built, Problem):
+        return loaded(built, given, loading)
+    from blocksim.cli.space import loaded_in_space
+
+    return loaded_in_space(built, given, loading)
 
 
 def _is_place(scene: str) -> bool:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.options import Given, Loading, named_options, require_given
 from blocksim.cli.question import question
+from blocksim.common.checks import require
+from blocksim.common.errors import InputError
 
 
 def is_structure(scene: str | None) -> bool:
@@ -19,19 +23,6 @@ def is_structure(scene: str | None) -> bool:
     return is_structure(scene)
 
 
-def in_space(scene: str | None) -> bool:
-    """Tell a structure in space by what is in its file."""
-    from blocksim.kinds import SOLID_KINDS
-
-    if scene in SOLID_KINDS:
-        return True
-    if scene is None or not scene.lower().endswith((".json", ".toml")):
-        return False
-    from blocksim.kinds.files import lies_in_space
-
-    return lies_in_space(scene)
-
-
 def problem_asked(
     scene: str | None,
     given: Given,
@@ -41,13 +32,36 @@ def problem_asked(
     sought: bool = False,
     **needed: object,
 ) -> Problem:
-    """Return what is asked about, and what the options put on it.
+    """Return what is asked about in the plane; see `anything_asked`."""
+    found = anything_asked(
+        scene, given, loading, spatial=False, thick=thick, sought=sought, **needed
+    )
+    if not isinstance(found, Problem):
+        from blocksim.kinds.files import IN_PLANE
+
+        raise InputError("blocks", "three coordinates", IN_PLANE, where=scene)
+    return found
+
+
+def anything_asked(
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    *,
+    spatial: bool = False,
+    thick: bool = False,
+    sought: bool = False,
+    **needed: object,
+) -> Problem | SpatialProblem:
+    """Return what is asked about, in the plane or in space, and what the options put on it.
 
     Parameters
     ----------
     scene, given, thick, needed
         As of `question`.
     loading : Loading
+    spatial : bool
+        Whether blocks of the plane are asked as prisms.
     sought : bool
         Whether the thickness of an arch is what is sought.
     """
@@ -55,7 +69,30 @@ def problem_asked(
         from blocksim.cli.structures import structure
 
         require_given(**needed)
-        return structure(scene, given, loading)
+        found = structure(scene, given, loading)
+    else:
+        found = _arch(scene, given, loading, thick=thick, sought=sought, **needed)
+    if isinstance(found, SpatialProblem):
+        return found
+    if not spatial:
+        allowed = "left out: it is of blocks in space"
+        require(loading.azimuth is None, "--azimuth", loading.azimuth, allowed)
+        return found
+    from blocksim.blocks.space.extruded import extruded
+
+    return replace(extruded(found), azimuth=math.radians(loading.azimuth or 0.0))
+
+
+def _arch(
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    *,
+    thick: bool,
+    sought: bool,
+    **needed: object,
+) -> Problem:
+    """Return the circular arch that is asked about, by its options or a scenario."""
     asked = question(scene, given, thick=thick, **needed)
     with named_options():
         if sought and not asked.has_thickness:

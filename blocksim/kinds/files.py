@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 LARGEST_FILES = {".json": 20_000_000, ".toml": 1_000_000}
 """Bytes; a larger file is not read: TOML takes a second for each of these."""
 WRITTEN = {".json": "JSON", ".toml": "TOML"}
+IN_PLANE = "x and y: in space check, bracket and render answer, and load_in_space reads"
+"""What is accepted where blocks have to lie in the plane."""
 DRAWN = {".dxf": read_dxf, ".svg": read_svg}
 """Endings of drawings, and who reads them."""
 
@@ -80,11 +82,10 @@ def load_structure(
     InputError
         In one line: file, entry, value, and what would be accepted.
     """
-    with named_file(path) as said:
-        data = said if friction is None else with_friction(said, friction)
-        data = data if tolerance is None else within(data, tolerance)
-        table = changed(data, changes) if changes else data
-        return structure_of(table if density is None else weighed(table, density))
+    found = load_any(path, changes, density, friction=friction, tolerance=tolerance)
+    if not isinstance(found, Problem):
+        raise InputError("blocks", "three coordinates", IN_PLANE, where=os.fspath(path))
+    return found
 
 
 def load_in_space(
@@ -106,25 +107,41 @@ def load_in_space(
     InputError
         In one line: file, entry, value, and what would be accepted.
     """
+    found = load_any(path, {}, density, friction=friction, tolerance=tolerance)
+    if isinstance(found, Problem):
+        allowed = "blocks with three coordinates: load_structure reads plane ones"
+        raise InputError("blocks", "in the plane", allowed, where=os.fspath(path))
+    return found
+
+
+def load_any(
+    path: AnyPath,
+    changes: Mapping[str, object] = MappingProxyType({}),
+    density: float | None = None,
+    *,
+    friction: float | None = None,
+    tolerance: float | None = None,
+) -> Problem | SpatialProblem:
+    """Read a structure file, which says by its corners whether it lies in the plane.
+
+    Parameters
+    ----------
+    path, changes, density, friction, tolerance
+        As of `load_structure`.
+
+    Raises
+    ------
+    InputError
+        In one line: file, entry, value, and what would be accepted.
+    """
     from blocksim.blocks.space.files import is_spatial, problem_in_space
 
     with named_file(path) as said:
         data = said if friction is None else with_friction(said, friction)
         data = data if tolerance is None else within(data, tolerance)
-        allowed = "blocks with three coordinates: load_structure reads plane ones"
-        require(is_spatial(data), "blocks", "in the plane", allowed)
-        return problem_in_space(data if density is None else weighed(data, density))
-
-
-def lies_in_space(path: AnyPath) -> bool:
-    """Tell whether a structure file, JSON or TOML, has blocks in space."""
-    from blocksim.blocks.space.files import is_spatial
-
-    if Path(path).suffix.lower() not in WRITTEN:
-        return False
-    with suppress(InputError), named_file(path) as said:
-        return is_spatial(said)
-    return False
+        table: object = changed(data, changes) if changes else data
+        table = table if density is None else weighed(table, density)
+        return problem_in_space(table) if is_spatial(table) else structure_of(table)
 
 
 def with_friction(data: object, friction: float) -> object:
@@ -275,8 +292,10 @@ def structure_of(data: object, *own: type[Maker]) -> Problem:
         In one line: the first entry that is wrong, its value, and what would be accepted.
     """
     if not isinstance(data, dict) or "kind" not in data:
-        allowed = "x and y: in space check and bracket answer, and load_in_space reads"
-        require(not _has_depth(cast("object", data)), "blocks", "three coordinates", allowed)
+        from blocksim.blocks.space.files import is_spatial
+
+        plane = not is_spatial(cast("object", data))
+        require(plane, "blocks", "three coordinates", IN_PLANE)
         return structure.structure_of(cast("object", data))
     table = cast("dict[str, Any]", data)
     require("blocks" not in table, "kind", table["kind"], "left out beside blocks")
@@ -284,16 +303,6 @@ def structure_of(data: object, *own: type[Maker]) -> Problem:
     said = {key: table[key] for key in table if key not in AROUND}
     forces = {"friction": around.friction, "density": around.density}
     return problem_of(kind_of(said, (*ALL, *own), forces=forces), around)
-
-
-def _has_depth(data: object) -> bool:
-    """Tell by its first block whether a structure lies in space, without reading the rest."""
-    from blocksim.blocks.space.files import is_spatial
-
-    table = cast("dict[str, Any]", data) if isinstance(data, dict) else {}
-    blocks: Any = table.get("blocks")
-    first = cast("list[Any]", blocks)[:1] if isinstance(blocks, list) else []
-    return is_spatial({"blocks": first})
 
 
 ALL = tuple(KINDS.values())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -23,10 +23,12 @@ if TYPE_CHECKING:
         ArchRecord,
         BracketRecord,
         CheckRecord,
+        EvidenceRecord,
         JointRecord,
         MovementRecord,
         ShakenRecord,
     )
+    from blocksim.simulation.verdict import Evidence
 
 HINGE = "hinge"
 HINGED = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
@@ -46,7 +48,7 @@ def check_record(answer: Check, carried: Carried | None = None) -> CheckRecord:
         "method": answer.method,
         "verdict": answer.verdict.value,
         "proved": answer.proved,
-        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
+        "evidence": evidence_record(answer.evidence),
         "reason": answer.reason,
         "problem": problem_record(problem),
         "load_factor": answer.load_factor,
@@ -82,7 +84,7 @@ def bracket_record(answer: Bracket) -> BracketRecord:
         "runs": answer.runs,
         "undecided": answer.undecided,
         "tol": answer.tol,
-        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
+        "evidence": evidence_record(answer.evidence),
         "reason": answer.reason,
         "problem": problem_record(answer.problem, answer.over),
         "events": answer.events and [asdict(each) for each in answer.events],  # type: ignore[typeddict-item]
@@ -92,6 +94,11 @@ def bracket_record(answer: Bracket) -> BracketRecord:
         "wall_s": answer.wall_s,
         "arch": _arch_bracket(answer),
     }
+
+
+def evidence_record(evidence: Iterable[Evidence]) -> list[EvidenceRecord]:
+    """Tell what was seen, by which test."""
+    return [{"test": each.test, "found": each.found} for each in evidence]
 
 
 def state_words(problem: Problem) -> Callable[[JointState], str]:

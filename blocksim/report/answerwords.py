@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from blocksim.ask.bracket import Bracket
     from blocksim.ask.check import Check
     from blocksim.ask.ends import End
+    from blocksim.ask.space import SpatialBracket
     from blocksim.blocks.assembly import Array, Assembly
     from blocksim.blocks.problem import Problem
     from blocksim.limit.carried import Carried
@@ -66,7 +67,7 @@ def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
     if told := _active(answer):
         lines.append(f"  joints  {told}")
     if of is None and answer.mechanism is not None:
-        movers = _few(_movers(answer.mechanism, problem.assembly))
+        movers = few(_movers(answer.mechanism, problem.assembly))
         lines.append(f"  moves   {movers} (the fastest first)")
     return lines
 
@@ -74,7 +75,7 @@ def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
 def bracket_lines(answer: Bracket) -> list[str]:
     """Return a bracket in words."""
     of = answer.arch
-    head = _head(answer) if of is None else _head_of_arch(of)
+    head = values_tried(answer) if of is None else _head_of_arch(of)
     lines = [f"{head}  ({answer.method}, {answer.wall_s:.2g} s)"]
     if of is not None:
         lines.append(_arch_line(of, answer.problem, tried=False))
@@ -101,14 +102,14 @@ def ends_proved_words(answer: Bracket) -> str:
     return "falls to one side of each change and stands to the other, in rational arithmetic"
 
 
-def _head(answer: Bracket) -> str:
+def values_tried(answer: Bracket | SpatialBracket, digits: int = 9) -> str:
     """Say the two values tried."""
     if answer.low is None and answer.high is None:
         return f"NO LIMIT OVER {answer.over.upper()}"
     unit = f" {answer.unit}" if answer.unit else ""
     ends = (("low", answer.low), ("high", answer.high))
     parts = [
-        f"{'stands' if answer.stands == end else 'falls'} at {value:.9g}{unit}"
+        f"{'stands' if answer.stands == end else 'falls'} at {value:.{digits}g}{unit}"
         for end, value in ends
         if value is not None
     ]
@@ -253,7 +254,7 @@ def _active(answer: Check) -> str:
             for _, each in active
         )
     names = joint_names(answer.problem.assembly)
-    return _few([f"{names[k]} {words(each.state)}" for k, each in active])
+    return few([f"{names[k]} {words(each.state)}" for k, each in active])
 
 
 def _movers(rates: Array, assembly: Assembly) -> list[str]:
@@ -264,7 +265,8 @@ def _movers(rates: Array, assembly: Assembly) -> list[str]:
     return [assembly.blocks[k].name or str(k) for k in order]
 
 
-def _few(names: Sequence[str]) -> str:
+def few(names: Sequence[str]) -> str:
+    """List names in a line, and say how many more there are."""
     more = len(names) - SHOWN
     return ", ".join(names[:SHOWN]) + (f" and {more} more" if more > 0 else "")
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from blocksim.arch.dimensions import friction_angle
-from blocksim.blocks.assembly import SUPPORT
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.joints import JointState, joint_names, side_name
 from blocksim.common.version import __version__
 from blocksim.common.words import counted
-from blocksim.report.answers import HINGE, HINGED
+from blocksim.report.answers import HINGE, HINGED, evidence_record
+from blocksim.report.answerwords import few, values_tried
 from blocksim.report.schema import (
     BracketRecord,
     CarriedRecord,
@@ -24,11 +24,8 @@ from blocksim.report.schema import (
 
 if TYPE_CHECKING:
     from blocksim.ask.space import SpatialBracket, SpatialCheck
-    from blocksim.blocks.space.assembly import FaceJoint
     from blocksim.blocks.space.problem import SpatialProblem
 
-SHOWN = 8
-"""Joints and blocks told in a line of text."""
 STILL = 1e-6
 """Rate below which a block is told to rest."""
 
@@ -45,7 +42,7 @@ def check_in_space_record(answer: SpatialCheck) -> CheckRecord:
         "method": answer.method,
         "verdict": answer.verdict.value,
         "proved": False,
-        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
+        "evidence": evidence_record(answer.evidence),
         "reason": answer.reason,
         "problem": _problem_record(problem),
         "load_factor": factor,
@@ -80,7 +77,7 @@ def bracket_in_space_record(answer: SpatialBracket) -> BracketRecord:
         "runs": answer.runs,
         "undecided": 0,
         "tol": answer.tol,
-        "evidence": [{"test": each.test, "found": each.found} for each in answer.evidence],
+        "evidence": evidence_record(answer.evidence),
         "reason": answer.reason,
         "problem": problem,
         "wall_s": answer.wall_s,
@@ -117,13 +114,14 @@ def _tilt(problem: SpatialProblem) -> float:
 
 def _joints(answer: SpatialCheck) -> list[JointRecord]:
     told: list[JointRecord] = []
-    for at, joint in enumerate(answer.problem.assembly.joints):
+    assembly = answer.problem.assembly
+    for at, joint in enumerate(assembly.joints):
         force = None if answer.forces is None else answer.forces[at]
         state = answer.joints[at]
         told.append(
             {
-                "a": _side(answer.problem, joint, joint.before),
-                "b": _side(answer.problem, joint, joint.after),
+                "a": side_name(assembly, at, 0),
+                "b": side_name(assembly, at, 1),
                 "ends": joint.points.tolist(),
                 "gap": joint.gap,
                 "angle_deg": None,
@@ -140,14 +138,6 @@ def _joints(answer: SpatialCheck) -> list[JointRecord]:
 
 def _state(state: JointState) -> str:
     return HINGE if state in HINGED else state.value
-
-
-def _side(problem: SpatialProblem, joint: FaceJoint, index: int) -> str:
-    """Name the body on a side of a joint."""
-    assembly = problem.assembly
-    if index != SUPPORT:
-        return assembly.blocks[index].name
-    return "support" if joint.support is None else assembly.supports[joint.support].name
 
 
 def _mechanism(answer: SpatialCheck) -> list[MovementRecord] | None:
@@ -180,34 +170,27 @@ def check_in_space_lines(answer: SpatialCheck) -> list[str]:
     if answer.load_factor is not None:
         at = f", asked at {problem.load:g}" if problem.load else ""
         lines.append(f"  load    factor at collapse {answer.load_factor:.9g}{at}")
+    names = joint_names(problem.assembly)
     active = [
-        f"{_side(problem, joint, joint.before)}-{_side(problem, joint, joint.after)} "
-        f"{_state(state)}"
-        for joint, state in zip(problem.assembly.joints, answer.joints, strict=True)
+        f"{name} {_state(state)}"
+        for name, state in zip(names, answer.joints, strict=True)
         if state is not JointState.CLOSED
     ]
     if active:
-        lines.append(f"  joints  {_few(active)}")
+        lines.append(f"  joints  {few(active)}")
     if answer.mechanism is not None:
         speeds = np.abs(answer.mechanism).max(axis=1)
         order = [int(at) for at in np.argsort(-speeds, kind="stable") if speeds[at] > STILL]
         movers = [problem.assembly.blocks[at].name for at in order]
-        lines.append(f"  moves   {_few(movers)} (the fastest first)")
+        lines.append(f"  moves   {few(movers)} (the fastest first)")
     return lines
 
 
 def bracket_in_space_lines(answer: SpatialBracket) -> list[str]:
     """Return a bracket in words."""
     unit = f" {answer.unit}" if answer.unit else ""
-    parts = [
-        f"{'stands' if answer.stands == end else 'falls'} at {value:.12g}{unit}"
-        for end, value in (("low", answer.low), ("high", answer.high))
-        if value is not None
-    ]
-    head = f"{answer.over.upper()}: {', '.join(parts)}" if parts else ""
     lines = [
-        f"{head or f'NO LIMIT OVER {answer.over.upper()}'}  "
-        f"({answer.method}, {answer.wall_s:.2g} s)",
+        f"{values_tried(answer, digits=12)}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  what    {described_in_space(answer.problem)}",
         f"  because {answer.reason}",
     ]
@@ -233,8 +216,3 @@ def described_in_space(problem: SpatialProblem) -> str:
         )
     said.append(f"L = {assembly.size:g} m")
     return ", ".join(said)
-
-
-def _few(told: list[str]) -> str:
-    more = len(told) - SHOWN
-    return ", ".join(told[:SHOWN]) + (f" and {more} more" if more > 0 else "")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from functools import partial
@@ -16,15 +17,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
+from blocksim.blocks.space.polyhedron import Polyhedron
 from blocksim.view.drawing import literal, state_of_any, words_of
 from blocksim.view.order import painting_order
 from blocksim.view.style import FONT, GROUND, INK, PAPER, QUIET, STONE, VERDICTS
 
 if TYPE_CHECKING:
     from blocksim.ask.space import SpatialCheck
-    from blocksim.blocks.space.polyhedron import Polyhedron
 
 ASIDE, ABOVE = math.radians(-60.0), math.radians(22.0)
 """Where the eye is: azimuth from x towards y, and height."""
@@ -57,8 +58,8 @@ def solid_figure(answer: SpatialCheck) -> Figure:
     -------
     Figure
     """
-    pieces = _pieces(answer)
     low, high = _box(answer)
+    pieces = _pieces(answer, low, high)
     middle = (low + high) / 2
     away = np.array(
         [math.cos(ASIDE) * math.cos(ABOVE), math.sin(ASIDE) * math.cos(ABOVE), math.sin(ABOVE)]
@@ -83,16 +84,15 @@ def solid_figure(answer: SpatialCheck) -> Figure:
         return _figure(answer, polygons, fills)
 
 
-def _pieces(answer: SpatialCheck) -> list[_Piece]:
+def _pieces(answer: SpatialCheck, low: Array, high: Array) -> list[_Piece]:
     """Return the convex parts of supports and blocks, where they are drawn."""
     assembly = answer.problem.assembly
-    low, high = _box(answer)
     bed = BED * assembly.size
     found = [
         _cut(hull, low - bed, high + bed) for each in assembly.supports for hull in each.hulls
     ]
     found = [each for each in found if len(each.faces)]
-    rates = answer.mechanism
+    rates, marks = answer.mechanism, _marks(answer)
     for at, block in enumerate(assembly.blocks):
         turn, shift = np.eye(3), np.zeros(3)
         if rates is not None:
@@ -100,13 +100,12 @@ def _pieces(answer: SpatialCheck) -> list[_Piece]:
             shift = WAY * assembly.size * rates[at, :3]
 
         put = partial(_put, turn=turn, shift=shift, about=block.centre)
-        marks = _marks(answer, at)
         for hull in block.hulls:
             faces = [(put(each.corners), turn @ each.normal, STONE) for each in hull.faces]
             # What joints do is painted on the faces they are on.
             faces += [
                 (put(points), turn @ normal, tone)
-                for points, normal, tone in marks
+                for points, normal, tone in marks.get(at, [])
                 if _lies_on(points, normal, hull)
             ]
             found.append(_Piece(put(hull.corners), faces))
@@ -118,16 +117,15 @@ def _put(points: Array, turn: Array, shift: Array, about: Array) -> Array:
     return (points - about) @ turn.T + about + shift
 
 
-def _marks(answer: SpatialCheck, block: int) -> list[tuple[Array, Array, str]]:
-    """Return joints of a block that take part, each with its normal out of it and a colour."""
-    told: list[tuple[Array, Array, str]] = []
+def _marks(answer: SpatialCheck) -> dict[int, list[tuple[Array, Array, str]]]:
+    """Return joints that take part by block, each with its normal out of it and a colour."""
+    told: dict[int, list[tuple[Array, Array, str]]] = {}
     for joint, state in zip(answer.problem.assembly.joints, answer.joints, strict=True):
         if state is JointState.CLOSED or len(joint.points) < 3:
             continue
         tone = words_of(state, is_arch=False)[1]
         for side, sign in ((joint.before, 1.0), (joint.after, -1.0)):
-            if side == block != SUPPORT:
-                told.append((joint.points, sign * joint.normal, tone))
+            told.setdefault(side, []).append((joint.points, sign * joint.normal, tone))
     return told
 
 
@@ -142,17 +140,12 @@ def _lies_on(points: Array, normal: Array, hull: Polyhedron) -> bool:
 
 def _cut(hull: Polyhedron, low: Array, high: Array) -> _Piece:
     """Return the box around a support, cut off beyond what is shown; or itself if within."""
-    within = bool((hull.box[0] >= low).all() and (hull.box[1] <= high).all())
-    if within:
-        return _Piece(hull.corners, [(f.corners, f.normal, GROUND) for f in hull.faces])
-    from blocksim.blocks.space.polyhedron import Polyhedron
-
-    lower, upper = np.maximum(hull.box[0], low), np.minimum(hull.box[1], high)
-    if not (upper - lower > 1e-9).all():
-        return _Piece(np.zeros((0, 3)), [])
-    corners = np.array(np.meshgrid(*zip(lower, upper, strict=True))).reshape(3, -1).T
-    box = Polyhedron(corners)
-    return _Piece(box.corners, [(f.corners, f.normal, GROUND) for f in box.faces])
+    if not ((hull.box[0] >= low).all() and (hull.box[1] <= high).all()):
+        lower, upper = np.maximum(hull.box[0], low), np.minimum(hull.box[1], high)
+        if not (upper - lower > 1e-9).all():
+            return _Piece(np.zeros((0, 3)), [])
+        hull = Polyhedron(list(itertools.product(*zip(lower, upper, strict=True))))
+    return _Piece(hull.corners, [(f.corners, f.normal, GROUND) for f in hull.faces])
 
 
 def _box(answer: SpatialCheck) -> Array:

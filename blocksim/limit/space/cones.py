@@ -42,7 +42,7 @@ class Answer:
     rates: Array
 
 
-def most(matrix: Any, pull: Array, friction: Array, **sought: Array) -> Answer:
+def most(matrix: Any, pull: Array, friction: Array, live: Array | None = None) -> Answer:
     """Find forces within friction that balance, at the largest value of one unknown.
 
     Parameters
@@ -53,10 +53,9 @@ def most(matrix: Any, pull: Array, friction: Array, **sought: Array) -> Answer:
         What they balance.
     friction : (points,) float
         inf allowed.
-    **sought : array
-        `live`, (rows,): pulls times the unknown besides; or `press`, (points,): each point
-        presses by as much times the unknown more than friction needs, and the unknown is at
-        most 1.
+    live : (rows,) float, optional
+        Pulls times the unknown besides. Without, the unknown is what each point presses by
+        more than friction needs, and at most 1.
 
     Raises
     ------
@@ -64,13 +63,13 @@ def most(matrix: Any, pull: Array, friction: Array, **sought: Array) -> Answer:
         If the solver gives up.
     """
     rows, points = int(matrix.shape[0]), len(friction)
-    live, press = sought.get("live"), sought.get("press")
+    presses = live is None
     column = np.zeros(rows) if live is None else live
     equal = sparse.hstack([matrix, sparse.csc_matrix(column[:, None])], format="csc")
-    law, kinds = _law(friction, np.zeros(points) if press is None else press)
+    law, kinds = _law(friction, 1.0 if presses else 0.0)
     blocks, right = [equal, -law], [-pull, np.zeros(law.shape[0])]
     cones: list[Any] = [clarabel.ZeroConeT(rows), *kinds]
-    if press is not None:
+    if presses:
         blocks.append(sparse.csc_matrix(([1.0], ([0], [3 * points])), (1, 3 * points + 1)))
         right.append(np.ones(1))
         cones.append(clarabel.NonnegativeConeT(1))
@@ -112,7 +111,7 @@ def _left_over(found: Any) -> tuple[bool, float]:
     return str(found.status) not in CERTAIN, left if np.isfinite(left) else np.inf
 
 
-def _law(friction: Array, press: Array) -> tuple[Any, list[Any]]:
+def _law(friction: Array, press: float) -> tuple[Any, list[Any]]:
     """Return what friction asks of the forces, and the cones in which that lies."""
     points = len(friction)
     rough, smooth = np.isinf(friction), friction == 0
@@ -124,7 +123,7 @@ def _law(friction: Array, press: Array) -> tuple[Any, list[Any]]:
     first = 3 * np.arange(len(round_))
     rows = [first, first, first + 1, first + 2]
     columns = [3 * round_, np.full(len(round_), last), 3 * round_ + 1, 3 * round_ + 2]
-    values = [ones, -press[round_], scale, scale]
+    values = [ones, -press * ones, scale, scale]
     kinds: list[Any] = [clarabel.SecondOrderConeT(3)] * len(round_)
     flat = np.flatnonzero(rough | smooth)
     start = 3 * len(round_)
@@ -132,7 +131,7 @@ def _law(friction: Array, press: Array) -> tuple[Any, list[Any]]:
         each = start + np.arange(len(flat))
         rows += [each, each]
         columns += [3 * flat, np.full(len(flat), last)]
-        values += [np.ones(len(flat)), -press[flat]]
+        values += [np.ones(len(flat)), np.full(len(flat), -press)]
         kinds.append(clarabel.NonnegativeConeT(len(flat)))
         start += len(flat)
     slippery = np.flatnonzero(smooth)

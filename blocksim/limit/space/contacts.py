@@ -131,10 +131,8 @@ class Contacts:
         """
         each = np.repeat(self.own, 3)
         matrix = sparse.diags(1 / self.rows) @ self.matrix @ sparse.diags(each)
-        sought = (
-            {"press": np.ones(len(self.own))} if live is None else {"live": live / self.rows}
-        )
-        found = most(matrix, pull / self.rows, self.friction, **sought)
+        scaled = None if live is None else live / self.rows
+        found = most(matrix, pull / self.rows, self.friction, scaled)
         forces = found.forces * each if len(found.forces) else found.forces
         return Answer(forces, found.value, found.rates / self.rows)
 

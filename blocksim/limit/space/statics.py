@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from blocksim.blocks.assembly import Array
@@ -18,6 +19,14 @@ BALANCED = 1e-12
 """Of each block's own weight: forces and moments that may be left over."""
 FARTHEST = 1e5
 """Times all weight: forces up to which those that would balance are ruled out."""
+STATES: dict[tuple[bool | None, bool], JointState] = {
+    (None, False): JointState.OPEN,
+    (False, False): JointState.HINGE_INTRADOS,
+    (False, True): JointState.HINGE_AND_SLIDES,
+    (True, False): JointState.CLOSED,
+    (True, True): JointState.SLIDES,
+}
+"""What a joint does, by whether all its points stay together, and whether one slides."""
 SEEN = 1e-5
 """Of the largest way: rates from which on a joint is told to open or to slide."""
 ROUNDED = 1e-14
@@ -79,7 +88,7 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
 
     Forces are mended until they balance in floating-point numbers, each strictly within its
     cone. A motion is held to the rates at which points open: no forces could balance but
-    those of a million times the weight.
+    those of many times all weight.
 
     Parameters
     ----------
@@ -182,31 +191,19 @@ def _ruled_out(contacts: Contacts, pull: Array, rates: Array) -> float:
     if not gained > 0:
         return math.inf
     error = float(-np.minimum(contacts.opening(rates), 0.0).min(initial=0.0))
-    # Sliding without friction to speak of has no force across.
     blocks = contacts.problem.assembly.weights / contacts.unit
     return error * float(blocks.sum()) / gained
 
 
 def _unit(contacts: Contacts, rates: Array) -> Array:
-    """Scale rates so that the largest way of a corner is 1."""
-    return unit_rates(contacts.problem, rates.reshape(-1, 6))
-
-
-def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
-    """Scale rates of blocks so that the largest way of a corner is 1, in units of the size.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    rates : (blocks, 6) float
-    """
-    assembly = problem.assembly
+    """Scale rates so that the largest way of a corner is 1 [size], (blocks, 6)."""
+    assembly, each = contacts.problem.assembly, rates.reshape(-1, 6)
     largest = 0.0
-    for block, rate in zip(assembly.blocks, rates, strict=True):
+    for block, rate in zip(assembly.blocks, each, strict=True):
         arms = np.concatenate([hull.corners for hull in block.hulls]) - block.centre
         ways = rate[:3] + np.cross(rate[3:], arms / assembly.size)
         largest = max(largest, float(np.linalg.norm(ways, axis=1).max()))
-    return rates / largest if largest > 0 else rates
+    return each / largest if largest > 0 else each
 
 
 def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...]:
@@ -226,16 +223,12 @@ def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...
     slip = np.hypot(each[:, 1], each[:, 2])
     mu = np.where(np.isinf(contacts.friction), 0.0, contacts.friction)
     together = each[:, 0] - mu * slip <= SEEN
-    states: list[JointState] = []
-    for joint in range(len(problem.assembly.joints)):
-        here = contacts.joint == joint
-        if not together[here].any():
-            states.append(JointState.OPEN)
-            continue
-        slides = bool((slip[here & together] > SEEN).any())
-        parts = not together[here].all()
-        if slides:
-            states.append(JointState.HINGE_AND_SLIDES if parts else JointState.SLIDES)
-        else:
-            states.append(JointState.HINGE_INTRADOS if parts else JointState.CLOSED)
-    return tuple(states)
+    slides = together & (slip > SEEN)
+    ends = np.cumsum([len(each.points) for each in problem.assembly.joints])[:-1]
+    pairs = zip(np.split(together, ends), np.split(slides, ends), strict=True)
+    return tuple(STATES[_some_or_all(one), bool(two.any())] for one, two in pairs)
+
+
+def _some_or_all(together: NDArray[np.bool_]) -> bool | None:
+    """Tell whether all points stay together; None where none does."""
+    return bool(together.all()) if together.any() else None
