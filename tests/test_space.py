@@ -239,6 +239,7 @@ BROKEN = {
     "both": (with_block(vertices=CUBE, polyhedra=[CUBE]), "polyhedra"),
     "none": (with_block(), "vertices"),
     "twice": (scene(blocks=[*scene()["blocks"], scene()["blocks"][1]]), "id"),
+    "fixed by a number": (with_block(vertices=CUBE, fixed=1), "blocks[1].fixed"),
     "all fixed": (with_block(vertices=CUBE, fixed=True), "fixed"),
     "all free": (scene(blocks=[scene()["blocks"][1], {"id": 2, "vertices": CUBE}]), "fixed"),
     "no friction": ({"blocks": scene()["blocks"]}, "friction"),

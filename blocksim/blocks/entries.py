@@ -42,17 +42,13 @@ _Any = Annotated[int, Field(strict=True, ge=-(10**9), le=10**9)] | Name
 Id = Annotated[_Any, Words("the id of a block")]
 NewId = Annotated[_Any, Words("a whole number or a name of up to 100 characters")]
 Note = Annotated[str, Field(max_length=2000, strict=True)]
+Fixed = Annotated[bool, Field(strict=True)]
 MOST_NOTES = 20
 
 
-def some(least: int, most: int) -> Any:
+def listed(least: int, most: int) -> Any:
     """Return what says how many entries a list may have."""
     return Field(min_length=least, max_length=most)
-
-
-def most(length: int) -> Any:
-    """Return the same of a list or a text that may be empty."""
-    return Field(max_length=length)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +80,7 @@ class BlockEntry(Written):
     polygons: Annotated[list[Corners], Field(min_length=1, max_length=MOST_CORNERS)] | None = (
         None
     )
-    fixed: Annotated[bool, Field(strict=True)] = False
+    fixed: Fixed = False
     weight: Annotated[float, WEIGHT] | None = None
     centre: Point | None = None
     inertia: Annotated[float, INERTIA] | None = None
@@ -220,7 +216,25 @@ class ExpectEntry(Written):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Around(Written):
+class Said(Written):
+    """What structure files say in the plane and in space alike; see `Around`."""
+
+    friction: Friction
+    title: Annotated[str, Field(max_length=200, strict=True)] = ""
+    source: Annotated[str, Field(max_length=500, strict=True)] = ""
+    density: Density | None = None
+    load: Times = 0.0
+    notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
+    expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
+
+    @property
+    def unit_weight(self) -> float:
+        """Weight of a unit of volume [N/m^3]."""
+        return UNIT_WEIGHT if self.density is None else self.density
+
+
+@dataclass(frozen=True, kw_only=True)
+class Around(Said):
     """What a structure file says besides its blocks: friction, weight and loads.
 
     Parameters
@@ -254,24 +268,12 @@ class Around(Written):
         Whether `validate --quick` asks it.
     """
 
-    friction: Friction
-    title: Annotated[str, Field(max_length=200, strict=True)] = ""
-    source: Annotated[str, Field(max_length=500, strict=True)] = ""
-    density: Density | None = None
     dead: Annotated[list[LoadEntry], Field(max_length=MOST_BLOCKS)] | None = None
     live: Annotated[tuple[LoadEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     move: Annotated[tuple[MoveEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     shake: ShakeEntry | None = None
-    load: Times = 0.0
     size: Length | None = None
-    notes: Annotated[tuple[Note, ...], Field(max_length=MOST_NOTES)] = ()
-    expect: Annotated[tuple[ExpectEntry, ...], Field(max_length=MOST_BLOCKS)] = ()
     quick: Annotated[bool, Field(strict=True)] = False
-
-    @property
-    def unit_weight(self) -> float:
-        """Weight of a unit of volume [N/m^3]."""
-        return UNIT_WEIGHT if self.density is None else self.density
 
 
 UNIT_WEIGHT = 1.0

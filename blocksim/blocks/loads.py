@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from blocksim.blocks.entries import Id, LoadEntry
+from blocksim.blocks.entries import BlockEntry, Id, JointEntry, LoadEntry
 from blocksim.blocks.patch import Profile
 from blocksim.blocks.polygons import Body
 from blocksim.blocks.problem import Load
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
+
+if TYPE_CHECKING:
+    from blocksim.blocks.space.assembly import Solid
+    from blocksim.blocks.space.files import FaceEntry, SolidEntry
 
 FORMS = ("body", "block", "patch")
 """What a load acts on: blocks by their weight, one block, or what lies uppermost."""
@@ -20,13 +25,65 @@ FORMS = ("body", "block", "patch")
 class Names:
     """Bodies by name."""
 
-    def __init__(self, bodies: Sequence[Body]) -> None:
+    def __init__(self, bodies: Sequence[Body] | Sequence[Solid]) -> None:
         self._index = {body.name: at for at, body in enumerate(bodies)}
 
     def __call__(self, name: Id, field: str) -> int:
         """Return the place of a body."""
         require(str(name) in self._index, field, name, "the id of a block")
         return self._index[str(name)]
+
+
+def name_of(
+    block: BlockEntry | SolidEntry, field: str, known: set[str], parts: Sized | None, key: str
+) -> str:
+    """Return the name of a block, which no other has and which has one outline.
+
+    Parameters
+    ----------
+    block : BlockEntry or SolidEntry
+    field : str
+        Where it stands.
+    known : set of str
+        Names so far; this one is added.
+    parts : sized or None
+        What it consists of where it has no `vertices`, under its key.
+    key : str
+
+    Raises
+    ------
+    InputError
+        In one line.
+    """
+    name = str(block.id)
+    require(name not in known, f"{field}.id", block.id, "an id that no other block has")
+    known.add(name)
+    if block.vertices is None and parts is None:
+        raise InputError(f"{field}.vertices", MISSING, "given")
+    if block.vertices is not None and parts is not None:
+        beside = f"{len(parts)} beside vertices"
+        raise InputError(f"{field}.{key}", beside, "left out, or vertices")
+    return name
+
+
+def sides_of(
+    joint: JointEntry | FaceEntry,
+    field: str,
+    bodies: Sequence[Body] | Sequence[Solid],
+    body_of: Names,
+) -> tuple[int, int]:
+    """Return the places of the two bodies of a joint, one of which moves.
+
+    Raises
+    ------
+    InputError
+        In one line.
+    """
+    a, b = body_of(joint.a, f"{field}.a"), body_of(joint.b, f"{field}.b")
+    require(a != b, f"{field}.b", joint.b, "another block than a")
+    both = bodies[a].fixed and bodies[b].fixed
+    require(not both, field, "two fixed blocks", "left out")
+    return a, b
 
 
 class LoadsOf:

@@ -15,7 +15,7 @@ import numpy as np
 from blocksim.blocks.assembly import SUPPORT, Assembly
 from blocksim.blocks.entries import Around, LoadEntry, StructureFile, entries_of
 from blocksim.blocks.given import GivenJoint
-from blocksim.blocks.loads import LoadsOf, Names
+from blocksim.blocks.loads import LoadsOf, Names, name_of, sides_of
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
@@ -61,17 +61,7 @@ def _bodies(written: StructureFile) -> list[Body]:
     index = set[str]()
     bodies: list[Body] = []
     for at, block in enumerate(written.blocks):
-        name, field = str(block.id), f"blocks[{at}]"
-        require(name not in index, f"{field}.id", block.id, "an id that no other block has")
-        index.add(name)
-        if block.vertices is None and block.polygons is None:
-            raise InputError(f"{field}.vertices", MISSING, "given")
-        require(
-            block.vertices is None or block.polygons is None,
-            f"{field}.polygons",
-            f"{len(block.polygons or [])} beside vertices",
-            "left out, or vertices",
-        )
+        name = name_of(block, f"blocks[{at}]", index, block.polygons, "polygons")
         bodies.append(
             Body(
                 polygons=tuple(block.polygons or [block.vertices or []]),
@@ -92,11 +82,7 @@ def _joints(written: StructureFile, bodies: Sequence[Body]) -> list[GivenJoint] 
     body_of = Names(bodies)
     joints: list[GivenJoint] = []
     for at, joint in enumerate(written.joints):
-        a = body_of(joint.a, f"joints[{at}].a")
-        b = body_of(joint.b, f"joints[{at}].b")
-        require(a != b, f"joints[{at}].b", joint.b, "another block than a")
-        both = bodies[a].fixed and bodies[b].fixed
-        require(not both, f"joints[{at}]", "two fixed blocks", "left out")
+        a, b = sides_of(joint, f"joints[{at}]", bodies, body_of)
         joints.append(
             GivenJoint(
                 a=a,

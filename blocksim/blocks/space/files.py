@@ -12,21 +12,18 @@ from typing import Annotated, Any, cast
 import numpy as np
 
 from blocksim.blocks.entries import (
-    UNIT_WEIGHT,
     Coordinate,
-    Density,
-    ExpectEntry,
+    Fixed,
     Friction,
     Id,
     NewId,
     Newtons,
-    Note,
-    Number,
+    Said,
     Step,
     Times,
-    most,
-    some,
+    listed,
 )
+from blocksim.blocks.loads import Names, name_of, sides_of
 from blocksim.blocks.space.assembly import (
     MOST_SOLIDS,
     FaceJoint,
@@ -45,7 +42,7 @@ SPACE = 3
 Point = tuple[Coordinate, Coordinate, Coordinate]
 Way = tuple[Times, Times, Times]
 Force = tuple[Newtons, Newtons, Newtons]
-Corners = Annotated[list[Point], some(1, MOST_CORNERS)]
+Corners = Annotated[list[Point], listed(1, MOST_CORNERS)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,8 +67,8 @@ class SolidEntry(Written):
 
     id: NewId
     vertices: Corners | None = None
-    polyhedra: Annotated[list[Corners], some(1, MOST_PARTS)] | None = None
-    fixed: bool = False
+    polyhedra: Annotated[list[Corners], listed(1, MOST_PARTS)] | None = None
+    fixed: Fixed = False
     weight: Annotated[float, WEIGHT] | None = None
     centre: Point | None = None
 
@@ -118,14 +115,14 @@ class SpatialLoadEntry(Written):
     """
 
     body: Way | None = None
-    blocks: Annotated[list[Id], some(1, MOST_SOLIDS)] | None = None
+    blocks: Annotated[list[Id], listed(1, MOST_SOLIDS)] | None = None
     block: Id | None = None
     point: Point | None = None
     force: Force | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpatialFile(Written):
+class SpatialFile(Said):
     """A structure file in space as written.
 
     Parameters
@@ -154,18 +151,11 @@ class SpatialFile(Written):
         What its source says, for `validate`.
     """
 
-    friction: Friction
-    blocks: Annotated[list[SolidEntry], some(2, MOST_SOLIDS)]
-    title: Annotated[str, most(200)] = ""
-    source: Annotated[str, most(500)] = ""
-    density: Density | None = None
-    dead: Annotated[list[SpatialLoadEntry], most(MOST_SOLIDS)] | None = None
-    live: Annotated[tuple[SpatialLoadEntry, ...], most(MOST_SOLIDS)] = ()
-    load: Number = 0.0
-    joints: Annotated[list[FaceEntry], most(20 * MOST_SOLIDS)] | None = None
+    blocks: Annotated[list[SolidEntry], listed(2, MOST_SOLIDS)]
+    dead: Annotated[list[SpatialLoadEntry], listed(0, MOST_SOLIDS)] | None = None
+    live: Annotated[tuple[SpatialLoadEntry, ...], listed(0, MOST_SOLIDS)] = ()
+    joints: Annotated[list[FaceEntry], listed(0, 20 * MOST_SOLIDS)] | None = None
     tolerance: Step | None = None
-    notes: Annotated[tuple[Note, ...], most(20)] = ()
-    expect: Annotated[tuple[ExpectEntry, ...], most(MOST_SOLIDS)] = ()
 
 
 def is_spatial(data: object) -> bool:
@@ -208,7 +198,7 @@ def problem_in_space(data: object) -> SpatialProblem:
     assembly = assembly_in_space(
         solids,
         _joints(written, solids),
-        density=UNIT_WEIGHT if written.density is None else written.density,
+        density=written.unit_weight,
         tolerance=written.tolerance,
     )
     loads_of = _Loads(solids)
@@ -246,13 +236,7 @@ def _solids(written: SpatialFile) -> list[Solid]:
     known = set[str]()
     solids: list[Solid] = []
     for at, block in enumerate(written.blocks):
-        name, field = str(block.id), f"blocks[{at}]"
-        require(name not in known, f"{field}.id", block.id, "an id that no other block has")
-        known.add(name)
-        if block.vertices is None and block.polyhedra is None:
-            raise InputError(f"{field}.vertices", MISSING, "given")
-        one = block.vertices is None or block.polyhedra is None
-        require(one, f"{field}.polyhedra", "beside vertices", "left out, or vertices")
+        name = name_of(block, f"blocks[{at}]", known, block.polyhedra, "polyhedra")
         solids.append(
             Solid(
                 parts=tuple(block.polyhedra or [block.vertices or []]),
@@ -270,16 +254,10 @@ def _joints(written: SpatialFile, solids: Sequence[Solid]) -> list[FaceJoint] | 
         return None
     allowed = "left out: joints are given, none is found"
     require(written.tolerance is None, "tolerance", written.tolerance, allowed)
-    places = {solid.name: at for at, solid in enumerate(solids)}
+    body_of = Names(solids)
     joints: list[FaceJoint] = []
     for at, joint in enumerate(written.joints):
-        for side in ("a", "b"):
-            name = str(getattr(joint, side))
-            require(name in places, f"joints[{at}].{side}", name, "the id of a block")
-        a, b = places[str(joint.a)], places[str(joint.b)]
-        require(a != b, f"joints[{at}].b", joint.b, "another block than a")
-        both = solids[a].fixed and solids[b].fixed
-        require(not both, f"joints[{at}]", "two fixed blocks", "left out")
+        a, b = sides_of(joint, f"joints[{at}]", solids, body_of)
         long = float(np.linalg.norm(joint.normal))
         require(long > 0, f"joints[{at}].normal", joint.normal, "a direction")
         joints.append(
