@@ -81,6 +81,17 @@ class SolidBlock:
     weight: float
     centre: Array
 
+    @cached_property
+    def gyration(self) -> Array:
+        """Moments of inertia about its centroid over its mass [m2], (3, 3).
+
+        As of one material, whatever its centre of mass is.
+        """
+        volumes = np.array([hull.volume for hull in self.hulls])
+        centroid = volumes @ np.array([hull.centroid for hull in self.hulls]) / volumes.sum()
+        spread = sum(hull.second_moment(centroid) for hull in self.hulls) / volumes.sum()
+        return np.trace(spread) * np.eye(3) - spread
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FaceJoint:

@@ -178,6 +178,19 @@ class Polyhedron:
         """Its centroid [m], (3,)."""
         return self._mass[1]
 
+    def second_moment(self, about: Array) -> Array:
+        """Return the integral of ``x x^T`` over it, x from a point [m5], (3, 3).
+
+        Parameters
+        ----------
+        about : (3,) float
+        """
+        legs = self.triangles - about
+        sums = legs.sum(axis=1)
+        # Of a tetrahedron with its tip at the point.
+        each = np.einsum("tki,tkj->tij", legs, legs) + sums[:, :, None] * sums[:, None]
+        return np.einsum("t,tij->ij", np.linalg.det(legs), each) / 120
+
 
 def _crosses(triangles: Array) -> Array:
     """Return normals of triangles, (k, 3), twice as long as their areas."""

@@ -1,0 +1,1 @@
+"""Blocks in space that move: convex polyhedra with Coulomb's friction, round cones."""

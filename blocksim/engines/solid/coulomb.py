@@ -1,0 +1,275 @@
+"""One step of blocks in space: unilateral contact and Coulomb's friction, round cones.
+
+For x, the accelerations of the blocks, scaled by the roots of their masses, and p, the forces,
+
+    x = f + H^T p,    u = H x + w,    0 <= p_n  _|_  u_n >= 0,    |p_t| <= mu p_n, against u_t,
+
+where u are velocities at the points of contact at the end of the step over its length. Slip
+opens nothing.
+
+A solution is looked for by Newton's method on springs that follow it: p is the point of the
+friction cone that is nearest, across its axis, to p - r u, with stiff springs r. From nothing
+forces come from a cone programme in which slip opens by mu times itself, and from a few more in
+which that is taken off again (Acary and Brogliato 2008, 13.4): of rest and motion, where
+Coulomb's law allows both, that is rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from blocksim.blocks.assembly import Array
+from blocksim.common.later import Library
+
+# It has no types.
+clarabel = cast("Any", Library("clarabel"))
+
+STIFF = 1e5
+"""Springs over the mean mass."""
+ROUNDS, TRIES = 25, 60
+"""Most times that springs follow, and most of Newton's steps for each."""
+HALVINGS = 6
+PASSES = 40
+"""Most cone programmes from nothing."""
+SAME = 1e-9
+"""Change of slip, over the largest velocity, after which they are the same."""
+EXACT = 1e-13
+"""Residual at which nothing is left to do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """What a step asks.
+
+    Parameters
+    ----------
+    matrix : (3 points, 6 blocks) sparse
+        Velocities at the points, along the normal and two ways across, of scaled ones.
+    drift : (3 points,) float
+        Velocities without acceleration, over the step.
+    free : (6 blocks,) float
+        Accelerations without contact, scaled.
+    friction : (points,) float
+    """
+
+    matrix: Any
+    drift: Array
+    free: Array
+    friction: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """Accelerations and forces.
+
+    Parameters
+    ----------
+    x : (6 blocks,) float
+    forces : (points, 3) float
+    residual : float
+        Worst of imbalance, penetration and friction off its law, over the largest
+        acceleration where that is above 1.
+    """
+
+    x: Array
+    forces: Array
+    residual: float
+
+
+def solve(step: Step, forces: Array | None) -> Answer:
+    """Solve a step, from forces close by or from nothing.
+
+    Parameters
+    ----------
+    step : Step
+    forces : (points, 3) float or None
+    """
+    if not len(step.friction):
+        return Answer(step.free, np.zeros((0, 3)), 0.0)
+    best: Answer | None = None
+    if forces is not None:
+        best = _followed(step, forces)
+        if best.residual <= 1e-9:
+            return best
+    begun = _from_nothing(step)
+    for guess in begun:
+        found = _followed(step, guess)
+        if best is None or found.residual < best.residual:
+            best = found
+        if best.residual <= 1e-9:
+            break
+    assert best is not None  # noqa: S101
+    return best
+
+
+def _followed(step: Step, forces: Array) -> Answer:
+    """Let springs follow forces until these are the solution, or come no nearer."""
+    p = forces
+    x = step.free + step.matrix.T @ p.ravel()
+    best = Answer(x, p, residual(step, x, p))
+    stiff, worse = STIFF, 0
+    for _ in range(ROUNDS):
+        x, p = _balanced(step, x, p, stiff)
+        if not np.isfinite(p).all():
+            return best
+        found = Answer(x, p, residual(step, x, p))
+        worse = worse + 1 if found.residual > 0.3 * best.residual else 0
+        if found.residual < best.residual:
+            best = found
+        if best.residual <= EXACT or worse > 2:
+            break
+    return best
+
+
+def _balanced(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array, Array]:
+    """Find accelerations that balance springs which begin with forces, by Newton's method."""
+    scale = 1.0 + float(np.abs(step.free).max(initial=0.0))
+    left, q, pushed = _imbalance(step, x, forces, stiff)
+    size = float(np.abs(left).max())
+    for _ in range(TRIES):
+        if size <= 1e-15 * scale * (1 + float(np.abs(q).max())):
+            break
+        change = _newton(step, pushed, left, stiff)
+        if change is None:
+            break
+        share, best = 1.0, None
+        for _ in range(HALVINGS):
+            tried = x + share * change
+            there = _imbalance(step, tried, forces, stiff)
+            reached = float(np.abs(there[0]).max())
+            if best is None or reached < best[0]:
+                best = (reached, tried, there)
+            if reached < (1 - 0.25 * share) * size:
+                break
+            share /= 2
+        assert best is not None  # noqa: S101
+        if best[0] >= 0.999 * size and size < 1e-11 * scale:
+            break
+        size, x, (left, q, pushed) = best
+    return x, q
+
+
+def _imbalance(
+    step: Step, x: Array, forces: Array, stiff: float
+) -> tuple[Array, Array, Array]:
+    """Return what is left over, the forces within friction, and what springs ask for."""
+    u = (step.matrix @ x + step.drift).reshape(-1, 3)
+    pushed = forces - stiff * u
+    q = projected(pushed, step.friction)
+    return x - step.free - step.matrix.T @ q.ravel(), q, pushed
+
+
+def projected(pushed: Array, friction: Array) -> Array:
+    """Return the pressure that is left of forces, and friction cut to what it bears."""
+    found = pushed.copy()
+    found[:, 0] = np.maximum(found[:, 0], 0.0)
+    across = np.hypot(found[:, 1], found[:, 2])
+    most = friction * found[:, 0]
+    slides = across > most
+    found[slides, 1:] *= (most[slides] / across[slides])[:, None]
+    found[found[:, 0] <= 0, 1:] = 0.0
+    return found
+
+
+def _newton(step: Step, pushed: Array, left: Array, stiff: float) -> Array | None:
+    """Return Newton's step of the accelerations."""
+    closed = np.flatnonzero(pushed[:, 0] > 0)
+    size = len(left)
+    system = sparse.identity(size, format="csc")
+    if len(closed):
+        tau, mu = pushed[closed], step.friction[closed]
+        across = np.hypot(tau[:, 1], tau[:, 2])
+        slides = across > mu * tau[:, 0]
+        blocks = np.broadcast_to(np.eye(3), (len(closed), 3, 3)).copy()
+        if slides.any():
+            way = tau[slides, 1:] / across[slides, None]
+            share = mu[slides] * tau[slides, 0] / across[slides]
+            turn = np.eye(2) - way[:, :, None] * way[:, None]
+            blocks[slides, 1:, 1:] = share[:, None, None] * turn
+            blocks[slides, 1:, 0] = mu[slides, None] * way
+        rows = _rows_of(step.matrix, closed)
+        springs: Any = sparse.bsr_matrix(
+            (blocks, np.arange(len(closed)), np.arange(len(closed) + 1)),
+            shape=(3 * len(closed), 3 * len(closed)),
+        )
+        system = system + stiff * (rows.T @ (springs.tocsr() @ rows))
+    try:
+        return cast("Any", splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A")).solve(-left)
+    except RuntimeError:
+        return None
+
+
+def _rows_of(matrix: Any, points: Array) -> Any:
+    return matrix[(3 * points[:, None] + np.arange(3)).ravel().astype(np.int64)]
+
+
+def residual(step: Step, x: Array, forces: Array) -> float:
+    """Return how far accelerations and forces are from a solution."""
+    left = x - step.free - step.matrix.T @ forces.ravel()
+    u = (step.matrix @ x + step.drift).reshape(-1, 3)
+    # Of a contact either the pressure or the velocity is 0.
+    off = np.abs(forces - projected(forces - u, step.friction)).max(initial=0.0)
+    scale = max(1.0, float(np.abs(x).max(initial=0.0)))
+    return max(float(np.abs(left).max(initial=0.0)), float(off)) / scale
+
+
+def _from_nothing(step: Step) -> Any:
+    """Give forces from cone programmes, the first with friction that dilates."""
+    slip = np.zeros(len(step.friction))
+    last = None
+    for at in range(PASSES):
+        found = _programme(step, slip)
+        if found is None:
+            return
+        x, forces = found
+        u = (step.matrix @ x + step.drift).reshape(-1, 3)
+        now = np.hypot(u[:, 1], u[:, 2])
+        change = float(np.abs(now - slip).max())
+        if at == 0 or change <= 1e-6 * max(1.0, float(np.abs(u).max())):
+            yield forces
+        if at and at % 5 == 0:
+            yield forces
+        if change <= SAME * max(1.0, float(np.abs(u).max())):
+            return
+        slip = now
+        last = forces
+    if last is not None:
+        yield last
+
+
+def _programme(step: Step, slip: Array) -> tuple[Array, Array] | None:
+    """Solve one cone programme: least change of the accelerations, opening by mu times slip."""
+    points, size = len(step.friction), step.matrix.shape[1]
+    mu = step.friction
+    round_ = np.flatnonzero(mu > 0)
+    smooth = np.flatnonzero(mu <= 0)
+    # (u_n + mu slip, mu u_t) in the cone of the second order.
+    scale = np.ones((points, 3))
+    scale[:, 1:] = mu[:, None]
+    order = np.concatenate([(3 * round_[:, None] + np.arange(3)).ravel(), 3 * smooth])
+    factor = scale.ravel()[order]
+    raised = step.drift.copy()
+    raised[0::3] += mu * slip
+    rows = -(sparse.diags(factor) @ step.matrix[order])
+    right = factor * raised[order]
+    cones: list[Any] = [clarabel.SecondOrderConeT(3)] * len(round_)
+    if len(smooth):
+        cones.append(clarabel.NonnegativeConeT(len(smooth)))
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
+    found = clarabel.DefaultSolver(
+        sparse.identity(size, format="csc"), -step.free, rows.tocsc(), right, cones, settings
+    ).solve()
+    x, z = np.array(found.x), np.array(found.z)
+    if not (np.isfinite(x).all() and np.isfinite(z).all()) or len(x) != size:
+        return None
+    forces = np.zeros(3 * points)
+    forces[order] = factor * z
+    return x, projected(forces.reshape(-1, 3), mu)

@@ -1,0 +1,430 @@
+"""Blocks in space in motion: smooth between impacts, each step's contacts solved to the end.
+
+Where nothing closes a step is of second order (Moreau and Jean, theta = 1/2): forces are those
+of its middle, contact and friction hold for the velocities at its end, and blocks go on by the
+mean of both. A step in which something closes is of first order: what is open may close, but
+not pass. What overlaps all the same is pushed apart, which changes no velocity.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.spatial.transform import Rotation
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.engines.solid.coulomb import Answer, Step, solve
+from blocksim.engines.solid.hulls import Hulls, hulls_of
+from blocksim.engines.solid.meeting import Points, frames, meet, near
+from blocksim.limit.space.contacts import Contacts
+
+RESIDUAL = 1e-7
+UNSOLVED = 1e-4
+"""Residual of a step that is not taken."""
+HALVINGS = 5
+"""How often a step that is not solved is halved."""
+SHUT, PRESSED = 1e-6, 1e-4
+"""Gap up to which a contact that moves slowly is closed, and one that pressed [size]."""
+SLOWLY = 1e-4
+"""Velocity along the normal that is slow [sqrt(size g)]."""
+PASSED = 1e-9
+"""Overlap at the end of a step by which what was open has closed [size]."""
+DEEP = 1e-6
+"""Overlap that is pushed apart at once [size]."""
+NEAR = 1e-3
+"""Beyond the way of a step, how near blocks are that are looked at [size]."""
+
+
+class Place(NamedTuple):
+    """Where blocks are: centres, (blocks + 1, 3), and frames, (blocks + 1, 3, 3).
+
+    The last row is what is fixed.
+    """
+
+    centres: Array
+    turns: Array
+
+    def moved(self, way: Array) -> Place:
+        """Return the place after ways along x, y, z and about the frames' axes, (blocks, 6)."""
+        centres, turns = self.centres.copy(), self.turns.copy()
+        centres[:-1] += way[:, :3]
+        turns[:-1] = turns[:-1] @ Rotation.from_rotvec(way[:, 3:]).as_matrix()
+        return Place(centres, turns)
+
+
+class Seen(NamedTuple):
+    """Points of contact as something is asked of them: rows of velocities, and gaps."""
+
+    rows: Any
+    gaps: Array
+
+
+class Bodies:
+    """Blocks of a problem with frames that turn with them, along their principal axes.
+
+    Lengths are in units of the size, masses of the mean block's.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    """
+
+    def __init__(self, problem: SpatialProblem) -> None:
+        self.problem, assembly = problem, problem.assembly
+        size, weights = assembly.size, assembly.weights
+        masses = weights / weights.mean()
+        gyration = np.array([block.gyration for block in assembly.blocks]) / size**2
+        moments, axes = np.linalg.eigh(gyration)
+        # A mirror image is no frame.
+        axes[np.linalg.det(axes) < 0, :, 0] *= -1.0
+        self.inertia: Array = masses[:, None] * np.hstack([np.ones_like(moments), moments])
+        self.root: Array = np.sqrt(self.inertia).ravel()
+        self.built = Place(
+            np.vstack([assembly.centres / size, np.zeros(3)]),
+            np.concatenate([axes, np.eye(3)[None]]),
+        )
+        self.hulls = hulls_of(assembly, axes)
+        reach = np.linalg.norm(self.hulls.corners, axis=2).max(axis=1)
+        self.reach: Array = np.zeros(len(masses))
+        moving = self.hulls.owner != SUPPORT
+        np.maximum.at(self.reach, self.hulls.owner[moving], reach[moving])
+        self.weights = masses
+        self._loads = self._acting()
+
+    def _acting(self) -> list[tuple[int, Array, Array]]:
+        """Return block, force [mean weights] and arm in its frame of each load at a point."""
+        problem, found = self.problem, list[tuple[int, Array, Array]]()
+        unit, size = float(problem.assembly.weights.mean()), problem.assembly.size
+        for load, factor in [(each, 1.0) for each in problem.dead] + [
+            (each, problem.load) for each in problem.live
+        ]:
+            for index in load.blocks:
+                own = problem.assembly.blocks[index]
+                force = factor * load.force * (own.weight if load.per_weight else 1.0) / unit
+                arm = np.zeros(3) if load.point is None else (load.point - own.centre) / size
+                found.append((index, force, self.built.turns[index].T @ arm))
+        return found
+
+    def pull(self, place: Place) -> Array:
+        """Return gravity and loads: forces in space, moments in frames, (blocks, 6)."""
+        found = np.zeros_like(self.inertia)
+        found[:, :3] = self.weights[:, None] * self.problem.gravity
+        for index, force, arm in self._loads:
+            found[index, :3] += force
+            found[index, 3:] += np.cross(arm, place.turns[index].T @ force)
+        return found
+
+    def turning(self, velocities: Array) -> Array:
+        """Return what keeps a turning block turning: - w x I w, (blocks, 6)."""
+        spin = velocities[:, 3:]
+        found = np.zeros_like(velocities)
+        found[:, 3:] = -np.cross(spin, self.inertia[:, 3:] * spin)
+        return found
+
+    def energy(self, place: Place, velocities: Array) -> tuple[float, float]:
+        """Return potential and kinetic energy [mean weights times the size]."""
+        centres = place.centres[:-1]
+        height = -float((self.weights[:, None] * self.problem.gravity * centres).sum())
+        for index, force, arm in self._loads:
+            height -= float(force @ (centres[index] + place.turns[index] @ arm))
+        return height, float((self.inertia * velocities**2).sum() / 2)
+
+    def poses(self, place: Place) -> Array:
+        """Return centres and rotation vectors since they were built, (blocks, 6)."""
+        turned = place.turns[:-1] @ self.built.turns[:-1].transpose(0, 2, 1)
+        return np.hstack([place.centres[:-1], Rotation.from_matrix(turned).as_rotvec()])
+
+
+class Stepping:
+    """Poses and velocities of blocks, carried on by steps.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    """
+
+    def __init__(self, problem: SpatialProblem) -> None:
+        self.bodies = Bodies(problem)
+        self._contacts = Contacts(problem)
+        self._place, self._velocities = self.bodies.built, np.zeros_like(self.bodies.inertia)
+        self._speeding = np.zeros_like(self._velocities)
+        self._friction = _Friction(problem, self.bodies.hulls)
+        self._drawn = _Drawn(problem, self.bodies)
+        self._forces, self._keys = np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
+        self._residual = self._penetration = 0.0
+
+    def _rest(self) -> Answer:
+        """Solve the contacts as they were built, from rest."""
+        bodies, contacts = self.bodies, self._contacts
+        rows = sparse.csr_matrix(contacts.matrix.T @ self._frames(bodies.built))
+        free = bodies.pull(bodies.built).ravel() / bodies.root
+        drift = np.zeros(rows.shape[0])
+        return solve(Step(rows, drift, free, contacts.friction), None)
+
+    def _frames(self, place: Place) -> Any:
+        """Return what takes scaled velocities in frames to those in space, sparse."""
+        count = len(self.bodies.inertia)
+        blocks = np.zeros((count, 6, 6))
+        blocks[:, :3, :3] = np.eye(3)
+        blocks[:, 3:, 3:] = place.turns[:-1]
+        blocks = blocks / self.bodies.root.reshape(-1, 1, 6)
+        return sparse.bsr_matrix((blocks, np.arange(count), np.arange(count + 1))).tocsr()
+
+    def _move(self, step: float) -> None:
+        """Go on for a time."""
+        left, halvings = step, 0
+        while left > 1e-9 * step and self._residual <= UNSOLVED:
+            part = min(left, step / 2**halvings)
+            before = vars(self).copy()
+            worst, self._residual = self._residual, 0.0
+            if not self._smooth(part):
+                vars(self).update(before)
+                self._residual = 0.0
+                self._closing(part)
+            if self._residual > RESIDUAL and halvings < HALVINGS:
+                vars(self).update(before)
+                halvings += 1
+                continue
+            self._residual = max(worst, self._residual)
+            left -= part
+        self._push_apart()
+
+    def _smooth(self, step: float) -> bool:
+        """Take a step in which what is open stays open; tell whether it did."""
+        velocities, speeding = self._velocities, self._speeding
+        gain = step * speeding
+        middle = self._place.moved(step / 2 * velocities + step / 8 * gain)
+        points, friction = self._points(middle, step)
+        gone = self._place.moved(step * velocities + step / 2 * gain)
+        first, last = (self._seen(points, middle, there) for there in (self._place, gone))
+        now = self._seen(points, middle, middle)
+        scaled = self.bodies.root * velocities.ravel()
+        rate = (first.rows @ scaled).reshape(-1, 3)[:, 0]
+        pressed = self._held(points)[:, 0] > 0
+        shut = ((np.abs(rate) <= SLOWLY) & (first.gaps <= SHUT)) | (
+            pressed & (first.gaps <= PRESSED)
+        )
+        at_end = scaled + self.bodies.root * gain.ravel()
+        drift = now.rows @ scaled + (last.rows - now.rows) @ at_end
+        drift[0::3] += np.maximum(first.gaps, 0.0) / step
+        self._solve(points, friction, now.rows, drift / step, shut, middle, step)
+        if self._residual > UNSOLVED:
+            return True
+        self._advance(step, 0.5)
+        after = self._seen(points, middle, self._place)
+        opened = first.gaps > PASSED
+        passes = ~shut & (after.gaps < -PASSED) & opened
+        passes |= ~shut & ~opened & (after.gaps < first.gaps - PASSED)
+        return not passes.any()
+
+    def _closing(self, step: float) -> None:
+        """Take a step of first order: what is open may close, but not pass."""
+        velocities = self._velocities
+        middle = self._place.moved(step / 2 * velocities)
+        points, friction = self._points(middle, step)
+        first = self._seen(points, middle, self._place)
+        now = self._seen(points, middle, middle)
+        drift = now.rows @ (self.bodies.root * velocities.ravel())
+        drift[0::3] += np.maximum(first.gaps, 0.0) / step
+        every = np.ones(len(points.gaps), dtype=bool)
+        self._solve(points, friction, now.rows, drift / step, every, middle, step)
+        if self._residual <= UNSOLVED:
+            self._advance(step, 1.0)
+
+    def _advance(self, step: float, share: float) -> None:
+        """Go on with velocities that gain, and with a share of that on the way."""
+        gained = step * self._speeding
+        self._place = self._place.moved(step * (self._velocities + share * gained))
+        self._velocities = self._velocities + gained
+
+    def _solve(
+        self,
+        points: Points,
+        friction: Array,
+        rows: Any,
+        drift: Array,
+        taken: NDArray[np.bool_],
+        middle: Place,
+        step: float,
+    ) -> None:
+        """Solve a step's contacts, of points that are taken; what is found is kept."""
+        bodies = self.bodies
+        turning = bodies.turning(self._velocities + step / 2 * self._speeding)
+        free = (bodies.pull(middle) + turning).ravel() / bodies.root
+        at = np.flatnonzero(taken)
+        which = (3 * at[:, None] + np.arange(3)).ravel()
+        asked = Step(rows[which], drift[which], free, friction[at])
+        held = self._held(points)
+        found = solve(asked, held[at])
+        self._forces = np.zeros((len(points.gaps), 3))
+        self._forces[at] = found.forces
+        self._keys = points.keys
+        self._residual = float(np.maximum(self._residual, found.residual))
+        self._speeding = (found.x / bodies.root).reshape(-1, 6)
+
+    def _held(self, points: Points) -> Array:
+        """Return the forces of the last step at these points, 0 at new ones."""
+        found = np.zeros((len(points.gaps), 3))
+        _, was, now = np.intersect1d(self._keys, points.keys, return_indices=True)
+        found[now] = self._forces[was]
+        return found
+
+    def _points(self, place: Place, step: float) -> tuple[Points, Array]:
+        """Find the points of contact about a place, and the friction there."""
+        hulls = self.bodies.hulls.placed(*place)
+        speed = np.linalg.norm(self._velocities[:, :3], axis=1)
+        speed += self.bodies.reach * np.linalg.norm(self._velocities[:, 3:], axis=1)
+        gravity = float(np.linalg.norm(self.bodies.problem.gravity))
+        way = np.append(step * (speed + 2 * step * gravity) + NEAR, 0.0)[hulls.owner]
+        pairs = near(hulls, way)
+        points = meet(hulls, pairs, way[pairs].sum(axis=1))
+        return points, self._friction.at(points)
+
+    def _seen(self, points: Points, found: Place, there: Place) -> Seen:
+        """Return rows and gaps of points elsewhere than where they were found.
+
+        A point moves with the block after it, its plane with the one before.
+        """
+        owner = self.bodies.hulls.owner
+        before, after = owner[points.before], owner[points.after]
+        planes = found.turns[before].transpose(0, 2, 1)
+        plane_to = there.turns[before]
+
+        def carried(places: Array, block: Array) -> Array:
+            own = np.einsum(
+                "pji,pj->pi", found.turns[block], places - found.centres[block]
+            )
+            return np.einsum("pij,pj->pi", there.turns[block], own) + there.centres[block]
+
+        axes = np.concatenate([points.normals[:, None], frames(points.normals)], axis=1)
+        axes = np.matmul(axes, (plane_to @ planes).transpose(0, 2, 1))
+        places = carried(points.places, after)
+        foot = carried(points.places - points.gaps[:, None] * points.normals, before)
+        gaps = np.einsum("pi,pi->p", places - foot, axes[:, 0])
+        gaps = gaps - self._drawn.at(points)
+        rows = list[Array]()
+        columns = list[Array]()
+        root = self.bodies.root.reshape(-1, 6)
+        values = list[Array]()
+        at = 3 * np.arange(len(gaps))[:, None] + np.arange(3)
+        for block, sign in ((before, -1.0), (after, 1.0)):
+            on = np.flatnonzero(block != SUPPORT)
+            own = block[on]
+            arms = places[on] - there.centres[own]
+            about = np.cross(arms[:, None], axes[on])
+            about = np.matmul(about, there.turns[own])
+            wrench = sign * np.concatenate([axes[on], about], axis=2) / root[own][:, None]
+            rows.append(np.broadcast_to(at[on][:, :, None], wrench.shape).ravel())
+            column = 6 * own[:, None, None] + np.arange(6)
+            columns.append(np.broadcast_to(column, wrench.shape).ravel())
+            values.append(wrench.ravel())
+        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        matrix = sparse.csr_matrix(entries, shape=(3 * len(gaps), root.size))
+        return Seen(matrix, gaps)
+
+    def _push_apart(self) -> None:
+        """Move blocks that overlap apart, as little as contact and friction allow."""
+        points, friction = self._points(self._place, 0.0)
+        seen = self._seen(points, self._place, self._place)
+        deep = -float(seen.gaps.min(initial=0.0))
+        if deep > DEEP:
+            drift = np.zeros(3 * len(seen.gaps))
+            drift[0::3] = seen.gaps / deep
+            free = np.zeros(self.bodies.root.size)
+            found = solve(Step(seen.rows, drift, free, friction), np.zeros((len(seen.gaps), 3)))
+            if found.residual <= UNSOLVED:
+                way = deep * (found.x / self.bodies.root).reshape(-1, 6)
+                self._place = self._place.moved(way)
+                points, _ = self._points(self._place, 0.0)
+                gaps = self._seen(points, self._place, self._place).gaps
+                deep = -float(gaps.min(initial=0.0))
+        self._penetration = max(self._penetration, deep)
+
+
+class _Friction:
+    """Friction between hulls: of their joint where they have one, else that of all.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    hulls : Hulls
+    """
+
+    def __init__(self, problem: SpatialProblem, hulls: Hulls) -> None:
+        self._all, self._hulls = min(problem.mu, ROUGH), hulls
+        self._own: dict[tuple[int, int], float] = {}
+        for joint, mu in zip(problem.assembly.joints, problem.friction.tolist(), strict=True):
+            if joint.friction is not None:
+                self._own[min(sides := sides_of(joint)), max(sides)] = min(mu, ROUGH)
+
+    def at(self, points: Points) -> Array:
+        """Return the friction coefficient at each point."""
+        found = np.full(len(points.gaps), self._all)
+        if self._own:
+            bodies = body_of(self._hulls)
+            pairs = np.sort(np.stack([bodies[points.before], bodies[points.after]]), axis=0)
+            found[:] = [self._own.get((a, b), self._all) for a, b in pairs.T.tolist()]
+        return found
+
+
+ROUGH = 1e3
+"""Friction without a bound is taken as this."""
+
+
+def body_of(hulls: Hulls) -> NDArray[np.int64]:
+    """Return a number for the body of each hull: of blocks, then below -1 of supports."""
+    return np.where(hulls.owner == SUPPORT, -2 - hulls.support, hulls.owner)
+
+
+def sides_of(joint: Any) -> tuple[int, int]:
+    """Return the same numbers of the two sides of a joint."""
+    fixed = -1 if joint.support is None else -2 - joint.support
+    first, second = (fixed if each == SUPPORT else each for each in (joint.before, joint.after))
+    return first, second
+
+
+class _Drawn:
+    """Gaps of joints as they are drawn, which count as none.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    bodies : Bodies
+    """
+
+    def __init__(self, problem: SpatialProblem, bodies: Bodies) -> None:
+        hulls = bodies.hulls.placed(*bodies.built)
+        self._count = len(hulls.owner)
+        joints = problem.assembly.joints
+        widest = max((abs(each.gap) for each in joints), default=0.0) / problem.assembly.size
+        reach = np.full(self._count, widest + 1e-6)
+        pairs = near(hulls, reach)
+        points = meet(hulls, pairs, reach[pairs].sum(axis=1))
+        keys = self._pairs(points)
+        self._keys, place = np.unique(keys, return_inverse=True)
+        self._gaps = np.full(len(self._keys), -np.inf)
+        np.maximum.at(self._gaps, place, points.gaps)
+        # What touches nothing as it is drawn has its gap.
+        joined = {tuple(sorted(sides_of(each))) for each in joints}
+        bodies_of = body_of(hulls)
+        sides = np.sort(
+            np.stack([bodies_of[self._keys // self._count], bodies_of[self._keys % self._count]]),
+            axis=0,
+        ).T.tolist()
+        self._gaps[[tuple(each) not in joined for each in sides]] = 0.0
+
+    def _pairs(self, points: Points) -> NDArray[np.int64]:
+        first, second = (f(points.before, points.after) for f in (np.minimum, np.maximum))
+        return first * self._count + second
+
+    def at(self, points: Points) -> Array:
+        """Return the gap as drawn between the hulls of each point."""
+        if not len(self._keys):
+            return np.zeros(len(points.gaps))
+        keys = self._pairs(points)
+        at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        return np.where(self._keys[at] == keys, self._gaps[at], 0.0)
