@@ -9,13 +9,13 @@ opens nothing.
 
 A solution is looked for by Newton's method on springs that follow it: p is the point of the
 friction cone that is nearest, across its axis, to p - r u, with stiff springs r. From nothing
-forces come from a cone programme in which slip opens by mu times itself, and from a few more in
-which that is taken off again (Acary and Brogliato 2008, 13.4): of rest and motion, where
-Coulomb's law allows both, that is rest.
+forces come from a cone programme in which slip opens by mu times itself: of rest and motion,
+where Coulomb's law allows both, that is rest. Else they are the end of a path (`path`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -25,6 +25,7 @@ from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.later import Library
+from blocksim.engines.solid.path import ROUNDED, followed
 
 # It has no types.
 clarabel = cast("Any", Library("clarabel"))
@@ -34,10 +35,8 @@ STIFF = 1e5
 ROUNDS, TRIES = 25, 60
 """Most times that springs follow, and most of Newton's steps for each."""
 HALVINGS = 6
-PASSES = 40
-"""Most cone programmes from nothing."""
-SAME = 1e-9
-"""Change of slip, over the largest velocity, after which they are the same."""
+SOLVED = 1e-9
+"""Residual of a solution."""
 EXACT = 1e-13
 """Residual at which nothing is left to do."""
 
@@ -92,19 +91,27 @@ def solve(step: Step, forces: Array | None) -> Answer:
     if not len(step.friction):
         return Answer(step.free, np.zeros((0, 3)), 0.0)
     best: Answer | None = None
-    if forces is not None:
-        best = _followed(step, forces)
-        if best.residual <= 1e-9:
-            return best
-    begun = _from_nothing(step)
-    for guess in begun:
+    for guess in _guesses(step, forces):
         found = _followed(step, guess)
         if best is None or found.residual < best.residual:
             best = found
-        if best.residual <= 1e-9:
+        if best.residual <= SOLVED:
             break
     assert best is not None  # noqa: S101
     return best
+
+
+def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
+    """Give forces to begin with, the likeliest and cheapest first."""
+    if forces is not None:
+        yield forces
+    dilating = _dilating(step)
+    if dilating is not None:
+        yield dilating
+    for rounded in ROUNDED:
+        smoothed = followed(step, rounded)
+        if smoothed is not None:
+            yield smoothed
 
 
 def _followed(step: Step, forces: Array) -> Answer:
@@ -154,9 +161,7 @@ def _balanced(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array,
     return x, q
 
 
-def _imbalance(
-    step: Step, x: Array, forces: Array, stiff: float
-) -> tuple[Array, Array, Array]:
+def _imbalance(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array, Array, Array]:
     """Return what is left over, the forces within friction, and what springs ask for."""
     u = (step.matrix @ x + step.drift).reshape(-1, 3)
     pushed = forces - stiff * u
@@ -218,32 +223,8 @@ def residual(step: Step, x: Array, forces: Array) -> float:
     return max(float(np.abs(left).max(initial=0.0)), float(off)) / scale
 
 
-def _from_nothing(step: Step) -> Any:
-    """Give forces from cone programmes, the first with friction that dilates."""
-    slip = np.zeros(len(step.friction))
-    last = None
-    for at in range(PASSES):
-        found = _programme(step, slip)
-        if found is None:
-            return
-        x, forces = found
-        u = (step.matrix @ x + step.drift).reshape(-1, 3)
-        now = np.hypot(u[:, 1], u[:, 2])
-        change = float(np.abs(now - slip).max())
-        if at == 0 or change <= 1e-6 * max(1.0, float(np.abs(u).max())):
-            yield forces
-        if at and at % 5 == 0:
-            yield forces
-        if change <= SAME * max(1.0, float(np.abs(u).max())):
-            return
-        slip = now
-        last = forces
-    if last is not None:
-        yield last
-
-
-def _programme(step: Step, slip: Array) -> tuple[Array, Array] | None:
-    """Solve one cone programme: least change of the accelerations, opening by mu times slip."""
+def _dilating(step: Step) -> Array | None:
+    """Return forces of friction that dilates: a cone programme, and rest if there is any."""
     points, size = len(step.friction), step.matrix.shape[1]
     mu = step.friction
     round_ = np.flatnonzero(mu > 0)
@@ -253,10 +234,8 @@ def _programme(step: Step, slip: Array) -> tuple[Array, Array] | None:
     scale[:, 1:] = mu[:, None]
     order = np.concatenate([(3 * round_[:, None] + np.arange(3)).ravel(), 3 * smooth])
     factor = scale.ravel()[order]
-    raised = step.drift.copy()
-    raised[0::3] += mu * slip
     rows = -(sparse.diags(factor) @ step.matrix[order])
-    right = factor * raised[order]
+    right = factor * step.drift[order]
     cones: list[Any] = [clarabel.SecondOrderConeT(3)] * len(round_)
     if len(smooth):
         cones.append(clarabel.NonnegativeConeT(len(smooth)))
@@ -267,9 +246,9 @@ def _programme(step: Step, slip: Array) -> tuple[Array, Array] | None:
     found = clarabel.DefaultSolver(
         sparse.identity(size, format="csc"), -step.free, rows.tocsc(), right, cones, settings
     ).solve()
-    x, z = np.array(found.x), np.array(found.z)
-    if not (np.isfinite(x).all() and np.isfinite(z).all()) or len(x) != size:
+    z = np.array(found.z)
+    if not np.isfinite(z).all():
         return None
     forces = np.zeros(3 * points)
     forces[order] = factor * z
-    return x, projected(forces.reshape(-1, 3), mu)
+    return projected(forces.reshape(-1, 3), mu)

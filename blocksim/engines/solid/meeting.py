@@ -163,9 +163,9 @@ def _by_edges(hulls: Hulls, pairs: Places, gaps: Array) -> tuple[Points, Array]:
         normals = normals[one, two] / long[one, two, None]
         outwards = hulls.corners[b].mean(axis=0) - hulls.corners[a].mean(axis=0)
         normals *= np.where(normals @ outwards < 0, -1.0, 1.0)[:, None]
-        apart = (normals @ hulls.corners[b].T).min(axis=1) - (
-            normals @ hulls.corners[a].T
-        ).max(axis=1)
+        apart = (normals @ hulls.corners[b].T).min(axis=1) - (normals @ hulls.corners[a].T).max(
+            axis=1
+        )
         best = int(apart.argmax())
         if apart[best] <= gaps[at]:
             continue

@@ -23,35 +23,34 @@ FIRST, LAST = 1.0, 1e-6
 """Smoothing, at first and where the path ends [mean weights]."""
 FALLS = 0.2
 """What it is multiplied by."""
+ROUNDED = 0.01, 0.1, 0.001, 1.0
+"""Smoothing of the slip over that of the product, of paths that are tried in turn. Those with
+less of it are rarely lost at folds."""
 SLOWEST = 0.95
 """The same where the path is lost with less, at most."""
 CLOSE = 0.05
 """Share of the smoothing by which a point is off the path."""
-STEPS, HALVINGS = 20, 6
+STEPS, HALVINGS = 40, 12
 """Most of Newton's steps for one smoothing, and most halvings of one."""
 
 
-def followed(step: Step, forces: Array | None = None, first: float = FIRST) -> Array | None:
-    """Return forces at the end of the path, None where it breaks off.
+def followed(step: Step, rounded: float) -> Array | None:
+    """Return forces at the end of a path, or where it breaks off; None where it never begins.
 
     Parameters
     ----------
     step : Step
-    forces : (points, 3) float, optional
-        To begin with.
-    first : float
-        Smoothing to begin with.
+    rounded : float
+        Smoothing of the slip over that of the product.
     """
     mu = step.friction
     scale = np.stack([np.ones_like(mu), mu, mu], axis=1)
     p = np.zeros_like(scale)
     p[:, 0] = 1.0
-    if forces is not None:
-        p = np.divide(forces, scale, out=np.zeros_like(scale), where=scale > 0)
     x = step.free + step.matrix.T @ (scale * p).ravel()
-    smooth, falls, reached = first, FALLS, None
+    smooth, falls, reached = FIRST, FALLS, None
     while smooth > LAST:
-        found = _settled(step, scale, x, p, smooth)
+        found = _settled(step, scale, x, p, smooth, rounded)
         if found is not None:
             reached, (x, p) = smooth, found
             smooth, falls = smooth * falls, max(FALLS, falls**2)
@@ -65,22 +64,22 @@ def followed(step: Step, forces: Array | None = None, first: float = FIRST) -> A
 
 
 def _settled(
-    step: Step, scale: Array, x: Array, p: Array, smooth: float
+    step: Step, scale: Array, x: Array, p: Array, smooth: float, rounded: float
 ) -> tuple[Array, Array] | None:
     """Return the point of the path with this smoothing, from one close by."""
     for _ in range(STEPS):
-        left = _left(step, scale, x, p, smooth)
+        left = _left(step, scale, x, p, smooth, rounded)
         size = _size(left)
         if size < CLOSE * smooth:
             return x, p
-        found = _newton(step, scale, x, p, smooth, left)
+        found = _newton(step, scale, x, p, smooth, rounded, left)
         if found is None:
             return None
         share, reached = 1.0, np.inf
         for _ in range(HALVINGS):
             tried = x + share * found[0], p + share * found[1]
-            reached = _size(_left(step, scale, *tried, smooth))
-            if reached < (1 - 0.1 * share) * size:
+            reached = _size(_left(step, scale, *tried, smooth, rounded))
+            if reached < (1 - 1e-3 * share) * size:
                 break
             share /= 2
         if not reached < size:
@@ -90,13 +89,15 @@ def _settled(
 
 
 def _size(left: tuple[Array, Array]) -> float:
-    return max(float(np.abs(each).max(initial=0.0)) for each in left)
+    return float(np.sqrt(sum(float((each**2).sum()) for each in left)))
 
 
-def _velocity(step: Step, scale: Array, x: Array, smooth: float) -> tuple[Array, Array]:
+def _velocity(
+    step: Step, scale: Array, x: Array, smooth: float, rounded: float
+) -> tuple[Array, Array]:
     """Return the velocity in the cone, and how it changes with that of the points."""
     u = (step.matrix @ x + step.drift).reshape(-1, 3)
-    slip = np.sqrt(u[:, 1] ** 2 + u[:, 2] ** 2 + smooth**2)
+    slip = np.sqrt(u[:, 1] ** 2 + u[:, 2] ** 2 + (rounded * smooth) ** 2)
     y = scale * u
     y[:, 0] += scale[:, 1] * slip
     turn = np.zeros((len(u), 3, 3))
@@ -105,9 +106,11 @@ def _velocity(step: Step, scale: Array, x: Array, smooth: float) -> tuple[Array,
     return y, turn
 
 
-def _left(step: Step, scale: Array, x: Array, p: Array, smooth: float) -> tuple[Array, Array]:
+def _left(
+    step: Step, scale: Array, x: Array, p: Array, smooth: float, rounded: float
+) -> tuple[Array, Array]:
     """Return what is left of balance, and of the product."""
-    y, _ = _velocity(step, scale, x, smooth)
+    y, _ = _velocity(step, scale, x, smooth, rounded)
     return x - step.free - step.matrix.T @ (scale * p).ravel(), p - Plus(p - y, smooth).value
 
 
@@ -161,10 +164,16 @@ class Plus:
 
 
 def _newton(
-    step: Step, scale: Array, x: Array, p: Array, smooth: float, left: tuple[Array, Array]
+    step: Step,
+    scale: Array,
+    x: Array,
+    p: Array,
+    smooth: float,
+    rounded: float,
+    left: tuple[Array, Array],
 ) -> tuple[Array, Array] | None:
     """Return Newton's step of accelerations and forces."""
-    y, turn = _velocity(step, scale, x, smooth)
+    y, turn = _velocity(step, scale, x, smooth, rounded)
     plus = Plus(p - y, smooth)
     spring = np.matmul(plus.springs(), turn)
     given = np.einsum("pij,pj->pi", plus.inverse(), left[1])

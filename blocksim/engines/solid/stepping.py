@@ -295,9 +295,7 @@ class Stepping:
         plane_to = there.turns[before]
 
         def carried(places: Array, block: Array) -> Array:
-            own = np.einsum(
-                "pji,pj->pi", found.turns[block], places - found.centres[block]
-            )
+            own = np.einsum("pji,pj->pi", found.turns[block], places - found.centres[block])
             return np.einsum("pij,pj->pi", there.turns[block], own) + there.centres[block]
 
         axes = np.concatenate([points.normals[:, None], frames(points.normals)], axis=1)
@@ -412,7 +410,9 @@ class _Drawn:
         joined = {tuple(sorted(sides_of(each))) for each in joints}
         bodies_of = body_of(hulls)
         sides = np.sort(
-            np.stack([bodies_of[self._keys // self._count], bodies_of[self._keys % self._count]]),
+            np.stack(
+                [bodies_of[self._keys // self._count], bodies_of[self._keys % self._count]]
+            ),
             axis=0,
         ).T.tolist()
         self._gaps[[tuple(each) not in joined for each in sides]] = 0.0
