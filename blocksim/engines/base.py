@@ -16,6 +16,8 @@ from typing import Protocol
 
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.later import Library as Library
 
 FRICTION_CAP = 1e3
@@ -238,6 +240,8 @@ class Engine(Method):
         Chooses settings that suit an assembly.
     build : callable
         Puts the blocks of a problem into the engine, all contacts closed, at rest.
+    rule_in_space, build_in_space : callable or None
+        The same of blocks in space; None where it moves none there.
     most_friction : float
         Friction above which the engine takes this instead.
     shakes : bool
@@ -273,6 +277,8 @@ class Engine(Method):
     version_of: Callable[[], str]
     rule: Callable[[Assembly], Settings]
     build: Callable[[Problem, Settings], World]
+    rule_in_space: Callable[[SpatialAssembly], Settings] | None = None
+    build_in_space: Callable[[SpatialProblem, Settings], World] | None = None
     most_friction: float = FRICTION_CAP
     shakes: bool = False
     finds_rest: bool = False

@@ -15,8 +15,10 @@ import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.version import __version__
-from blocksim.engines.base import Engine, Quality, Settings
+from blocksim.engines.base import Engine, Quality, Settings, World
 from blocksim.engines.energy import Balance, energy
 from blocksim.engines.stepping import LEAST, RESIDUAL, Stepping
 
@@ -27,6 +29,8 @@ STILL = 1e-11
 """Accelerations of an arch that stands are 1e-13 and less, 1e-9 below its limit 3e-10."""
 REST = 1e-9
 """Let go 1e-8 below its limit an arch moves 1e-7 and more in the time watched."""
+STILL_IN_SPACE, REST_IN_SPACE = 1e-10, 1e-7
+"""The same in space, where faces that are turned anyhow round off by more."""
 EXACT = 1e-18
 """Yield of contacts left in the onset test [g]."""
 PENETRATION = 1e-3
@@ -44,6 +48,26 @@ def rule(assembly: Assembly) -> Settings:  # noqa: ARG001 - a rule is given one
         residual=RESIDUAL,
         penetration=PENETRATION,
     )
+
+
+def rule_in_space(assembly: SpatialAssembly) -> Settings:  # noqa: ARG001 - a rule is given one
+    """Return the same settings for every assembly in space."""
+    return Settings(
+        step=STEP,
+        sweeps=1,
+        hold_sweeps=1,
+        still=STILL_IN_SPACE,
+        rest=REST_IN_SPACE,
+        residual=RESIDUAL,
+        penetration=PENETRATION,
+    )
+
+
+def blocks_in_space(problem: SpatialProblem, settings: Settings) -> World:
+    """Return blocks in space, whose code is loaded where it is asked for."""
+    from blocksim.engines.solid.direct import SolidBlocks
+
+    return SolidBlocks(problem, settings)
 
 
 class Blocks(Stepping):
@@ -147,6 +171,8 @@ ENGINE = Engine(
     version_of=lambda: __version__,
     rule=rule,
     build=Blocks,
+    rule_in_space=rule_in_space,
+    build_in_space=blocks_in_space,
     adjustable=("step", "still", "rest"),
     finest=1e-8,
     most_friction=math.inf,

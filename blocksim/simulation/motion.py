@@ -149,7 +149,7 @@ def _released(
     overlap = 0.0
     while times[-1] < end - step / 2 and overlap <= OVERLAP:
         # Before anything moves a verdict needs no frames, and some engines longer steps.
-        frames = SPARSE if until is None and _is_early(times, moved) else 1
+        frames = SPARSE if until is None and is_early(times, moved) else 1
         world.advance(frames * stride)
         taken += frames * stride
         times.append(taken * step)
@@ -159,14 +159,14 @@ def _released(
         told = moved[-1] > FAR and world.quality().penetration is not None
         if moved[-1] > simulation.settings.noise and moved[-2] < EARLY and not told:
             overlap = max(overlap, overlap_share(assembly, poses[-1]))
-        if until is None and _verdict(times, moved, rest) is not Verdict.UNDECIDED:
+        if until is None and verdict_of(times, moved, rest) is not Verdict.UNDECIDED:
             break
         fallen = until is not None and moved[-1] > MOVED
         if fallen and ((rests and not last) or lie_still(assembly, poses)):
             break
         progress(min(1.0, times[-1] / end), "moving run")
-    verdict = _verdict(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
-    reason = _reason(verdict, times, moved, overlap, simulation.length)
+    verdict = verdict_of(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
+    reason = words_of(verdict, times, moved, overlap, simulation.length)
     quality = world.quality()
     if not trusted(world, simulation.settings):
         verdict = Verdict.UNDECIDED
@@ -197,7 +197,7 @@ def distrust(quality: Quality, settings: Settings, length: str) -> str:
     return f"blocks overlap by {penetration:.1e} {length}"
 
 
-def _is_early(times: list[float], moved: list[float]) -> bool:
+def is_early(times: list[float], moved: list[float]) -> bool:
     """Tell whether blocks that go on as they did stay within `EARLY` for `SPARSE` frames."""
     if len(moved) == 1 or moved[-1] < UNMOVED:
         return len(moved) > 1
@@ -209,7 +209,8 @@ def _moved(assembly: Assembly, poses: list[Array]) -> float:
     return float(displacement(poses[-1] - poses[0], assembly))
 
 
-def _verdict(times: list[float], moved: list[float], rest: float) -> Verdict:
+def verdict_of(times: list[float], moved: list[float], rest: float) -> Verdict:
+    """Return what the largest displacements at these times show."""
     if moved[-1] > MOVED:
         return Verdict.COLLAPSES
     if times[-1] >= SOONEST and moved[-1] < rest * min(1.0, times[-1] / QUIET) ** 2:
@@ -217,9 +218,10 @@ def _verdict(times: list[float], moved: list[float], rest: float) -> Verdict:
     return Verdict.UNDECIDED
 
 
-def _reason(
+def words_of(
     verdict: Verdict, times: list[float], moved: list[float], overlap: float, length: str
 ) -> str:
+    """Say what displacements at these times show."""
     way = f"{moved[-1]:.1e} {length} in {times[-1]:.1f} sqrt({length}/g)"
     if verdict is Verdict.COLLAPSES:
         return f"released, it moved {way}"

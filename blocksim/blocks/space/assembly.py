@@ -150,6 +150,14 @@ class SpatialAssembly:
         return frozen([block.weight for block in self.blocks], (-1,))
 
     @cached_property
+    def reach(self) -> Array:
+        """How far corners are from the centre of their block [m], (blocks,)."""
+        corners = [np.concatenate([h.corners for h in block.hulls]) for block in self.blocks]
+        ways = zip(corners, self.blocks, strict=True)
+        found = [np.linalg.norm(own - block.centre, axis=1).max() for own, block in ways]
+        return frozen(found, (-1,))
+
+    @cached_property
     def centres(self) -> Array:
         """Centres of mass [m], (blocks, 3)."""
         return frozen([block.centre for block in self.blocks], (-1, 3))

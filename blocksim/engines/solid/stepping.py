@@ -35,6 +35,8 @@ PASSED = 1e-9
 """Overlap at the end of a step by which what was open has closed [size]."""
 DEEP = 1e-6
 """Overlap that is pushed apart at once [size]."""
+AT_REST, NEAR_REST = 1e-11, 1e-5
+"""Accelerations of rest, and those below which it may be [g]."""
 NEAR = 1e-3
 """Beyond the way of a step, how near blocks are that are looked at [size]."""
 
@@ -163,7 +165,16 @@ class Stepping:
         rows = sparse.csr_matrix(contacts.matrix.T @ self._frames(bodies.built))
         free = bodies.pull(bodies.built).ravel() / bodies.root
         drift = np.zeros(rows.shape[0])
-        return solve(Step(rows, drift, free, contacts.friction), None)
+        step = Step(rows, drift, free, np.minimum(contacts.friction, ROUGH))
+        found = solve(step, None)
+        if not AT_REST < float(np.abs(found.x).max(initial=0.0)) < NEAR_REST:
+            return found
+        # So near to the limit forces are begun with that lie well within friction.
+        known = contacts.most(contacts.pull(bodies.problem.load))
+        if not known.value > 0:
+            return found
+        rests = solve(step, known.forces.reshape(-1, 3))
+        return rests if rests.residual <= found.residual else found
 
     def _frames(self, place: Place) -> Any:
         """Return what takes scaled velocities in frames to those in space, sparse."""

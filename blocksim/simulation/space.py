@@ -1,0 +1,334 @@
+"""A problem in space in an engine: onset test, moving run, and what they show together.
+
+The criteria are those of the plane (`onset`, `motion`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.space.parting import (
+    displacement_in_space,
+    overlap_in_space,
+    slip_in_space,
+)
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.errors import InputError
+from blocksim.common.progress import Progress, silent
+from blocksim.common.words import counted
+from blocksim.engines import ENGINES, get_engine
+from blocksim.engines.base import FRICTION_CAP, Engine, Quality, Settings, World, trusted
+from blocksim.limit.space import can_rest
+from blocksim.simulation.motion import (
+    AT_REST,
+    FRAME,
+    LONGEST,
+    MOVED,
+    QUIET,
+    SPARSE,
+    UNSEEN,
+    distrust,
+    is_early,
+    verdict_of,
+    words_of,
+)
+from blocksim.simulation.onset import FIRST_SWEEPS, GROWTH, PROBE, STICKS, UNFOUND, WORK
+from blocksim.simulation.simulated import BY_RULE, Overrides, setting_of
+from blocksim.simulation.verdict import Evidence, Verdict
+
+LENGTH = "L"
+"""What the unit of length is called."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpatialRecording:
+    """The motion of blocks in space in one engine.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    engine, engine_version : str
+    settings : Settings
+    times : (frames,) float
+        In units of sqrt(size/g), from the release.
+    poses : (frames, blocks, 6) float
+        Centres of mass x, y, z in units of the size, and rotation vectors since the release.
+    quality : Quality
+    """
+
+    problem: SpatialProblem
+    engine: str
+    engine_version: str
+    settings: Settings
+    times: Array
+    poses: Array
+    quality: Quality
+
+    def __repr__(self) -> str:
+        return (
+            f"SpatialRecording({len(self.times)} frames, {self.times[-1]:.4g} sqrt(size/g), "
+            f"by {self.engine}, of {self.problem!r})"
+        )
+
+    @property
+    def state_hash(self) -> str:
+        """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
+        little = np.ascontiguousarray(self.poses, dtype="<f8")
+        return hashlib.sha256(little.reshape(-1).data).hexdigest()[:16]
+
+    @property
+    def displacement(self) -> Array:
+        """Largest displacement of any corner since the release [size], (frames,)."""
+        return displacement_in_space(self.poses - self.poses[0], self.problem.assembly)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpatialObservation:
+    """What an engine showed of one problem in space.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        Undecided unless onset test and moving run agree, or only the first was asked for.
+    evidence : tuple of Evidence
+    rates : (blocks, 6) float or None
+        Velocities in proportion to those with which a collapse starts; None otherwise.
+    recording : SpatialRecording or None
+        None where the blocks were not let go.
+    """
+
+    verdict: Verdict
+    evidence: tuple[Evidence, ...]
+    rates: Array | None
+    recording: SpatialRecording | None
+
+
+def engine_in_space(name: str | Engine) -> Engine:
+    """Return an engine that moves blocks in space.
+
+    Raises
+    ------
+    InputError
+        If it does not.
+    """
+    found = get_engine(name)
+    if found.build_in_space is None:
+        able = [each for each in ENGINES if ENGINES[each].build_in_space is not None]
+        allowed = f"one of auto, limit, {', '.join(able)}: {found.name} moves none in space"
+        raise InputError("method", found.name, allowed)
+    return found
+
+
+def observe_in_space(
+    problem: SpatialProblem,
+    engine: Engine,
+    *,
+    moving: bool = True,
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> SpatialObservation:
+    """Put a problem into an engine: onset test, then, if asked for, the moving run.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    engine : Engine
+        One that moves blocks in space; see `engine_in_space`.
+    moving : bool
+        Let the blocks go after the onset test, unless that is undecided.
+    settings : mapping of str to float
+        Given instead of what the engine's rule says.
+    progress : Progress, optional
+    """
+    chosen = _settings(problem, engine, settings)
+    world = _built(problem, engine, chosen)
+    verdict, rates, words = _onset(problem, world, engine, chosen, progress)
+    evidence = (Evidence("onset test", words),)
+    recording = None
+    if moving and verdict is not Verdict.UNDECIDED:
+        until = QUIET if verdict is Verdict.STANDS else LONGEST
+        recording, seen, said = _released(
+            problem, world, engine, chosen, until=until, whole=False, progress=progress
+        )
+        evidence += (Evidence("moving run", said),)
+        verdict = verdict if seen is verdict else Verdict.UNDECIDED
+    collapses = verdict is Verdict.COLLAPSES
+    return SpatialObservation(
+        verdict=verdict,
+        evidence=evidence,
+        rates=rates if collapses else None,
+        recording=recording,
+    )
+
+
+def simulate_in_space(
+    problem: SpatialProblem,
+    engine: Engine,
+    *,
+    until: float = LONGEST,
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> SpatialRecording:
+    """Let blocks in space go and record them until a time, or until all lie still.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    engine : Engine
+    until : float
+        [sqrt(size/g)]
+    settings : mapping of str to float
+    progress : Progress, optional
+    """
+    chosen = _settings(problem, engine, settings)
+    world = _built(problem, engine, chosen)
+    world.hold(chosen.hold_sweeps)
+    return _released(
+        problem, world, engine, chosen, until=until, whole=True, progress=progress
+    )[0]
+
+
+def _settings(problem: SpatialProblem, engine: Engine, given: Overrides) -> Settings:
+    assert engine.rule_in_space is not None  # noqa: S101 - asked of engines in space only
+    own = {name: setting_of(name, value) for name, value in given.items()}
+    return replace(engine.rule_in_space(problem.assembly), **own)
+
+
+def _built(problem: SpatialProblem, engine: Engine, settings: Settings) -> World:
+    assert engine.build_in_space is not None  # noqa: S101 - asked of engines in space only
+    return engine.build_in_space(problem, settings)
+
+
+def _onset(
+    problem: SpatialProblem,
+    world: World,
+    engine: Engine,
+    settings: Settings,
+    progress: Progress,
+) -> tuple[Verdict, Array, str]:
+    """Return the verdict of the onset test, accelerations, and words."""
+    assembly, built = problem.assembly, world.poses()
+    allowed, total = settings.hold_sweeps, 0
+    sweeps = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
+    while True:
+        rates = world.hold(sweeps)
+        total += sweeps
+        largest = float(displacement_in_space(rates, assembly))
+        verdict = Verdict.UNDECIDED
+        if trusted(world, settings):
+            mechanism = built + rates * (PROBE / largest if largest > 0 else 0.0)
+            if largest < settings.still:
+                verdict = Verdict.STANDS
+            elif overlap_in_space(assembly, mechanism) < settings.closing and (
+                world.quality().residual is not None or _driven(problem, rates)
+            ):
+                verdict = Verdict.COLLAPSES
+        size = f"{largest:.1e} g, found in {counted(total, 'sweep')}"
+        if verdict is Verdict.COLLAPSES and _may_hold(problem, engine, built, mechanism):
+            return Verdict.UNDECIDED, rates, f"friction allows both: it rests, or it starts with {size}"
+        if verdict is not Verdict.UNDECIDED or total >= allowed:
+            return verdict, rates, _onset_words(verdict, size, largest)
+        progress(total / allowed, "onset test")
+        sweeps = min(int(total * (GROWTH - 1)), allowed - total)
+
+
+def _onset_words(verdict: Verdict, size: str, largest: float) -> str:
+    match verdict:
+        case Verdict.STANDS:
+            return f"contact forces balance the weight to {size}"
+        case Verdict.COLLAPSES:
+            return f"no contact forces hold it: a mechanism starts with {size}"
+        case _:
+            return (
+                f"contact forces have not converged: {size}" if math.isfinite(largest) else UNFOUND
+            )
+
+
+def _may_hold(
+    problem: SpatialProblem, engine: Engine, built: Array, mechanism: Array
+) -> bool:
+    """Tell whether blocks that start to slide may rest by friction all the same."""
+    if slip_in_space(problem.assembly, mechanism) <= STICKS:
+        return False
+    bounded = float(problem.friction.max(initial=0.0)) <= FRICTION_CAP
+    if engine.finds_rest and bounded:
+        return False
+    return can_rest(problem).exists is not False
+
+
+def _driven(problem: SpatialProblem, rates: Array) -> bool:
+    """Tell whether the loads do the work of the motion, from rest over one step."""
+    assembly = problem.assembly
+    unit, size = float(assembly.weights.mean()), assembly.size
+    pull = (problem.fixed_pull + problem.load * problem.live_pull) / unit
+    pull[:, 3:] /= size
+    masses = assembly.weights / unit
+    spin = [
+        float(turn @ block.gyration @ turn) / size**2
+        for turn, block in zip(rates[:, 3:], assembly.blocks, strict=True)
+    ]
+    moving = float(masses @ ((rates[:, :3] ** 2).sum(axis=1) + np.array(spin)))
+    return float((pull * rates).sum()) > WORK * moving
+
+
+def _released(
+    problem: SpatialProblem,
+    world: World,
+    engine: Engine,
+    settings: Settings,
+    *,
+    until: float,
+    whole: bool,
+    progress: Progress,
+) -> tuple[SpatialRecording, Verdict, str]:
+    """Let blocks go; until they are seen to stand or fall, or as long as something moves."""
+    assembly, step = problem.assembly, settings.step
+    stride, taken = max(1, round(FRAME / step)), 0
+    times, poses, moved = [0.0], [world.poses()], [0.0]
+    while times[-1] < until - step / 2:
+        frames = SPARSE if not whole and is_early(times, moved) else 1
+        world.advance(frames * stride)
+        taken += frames * stride
+        times.append(taken * step)
+        poses.append(world.poses())
+        moved.append(float(displacement_in_space(poses[-1] - poses[0], assembly)))
+        if not whole and verdict_of(times, moved, settings.rest) is not Verdict.UNDECIDED:
+            break
+        if whole and moved[-1] > MOVED and _lie_still(poses, assembly_moved(problem)):
+            break
+        progress(min(1.0, times[-1] / until), "moving run")
+    quality = world.quality()
+    verdict = verdict_of(times, moved, settings.rest)
+    words = words_of(verdict, times, moved, 0.0, LENGTH)
+    if not trusted(world, settings):
+        verdict = Verdict.UNDECIDED
+        words = "released, " + distrust(quality, settings, LENGTH)
+    recording = SpatialRecording(
+        problem=problem,
+        engine=engine.name,
+        engine_version=engine.version,
+        settings=settings,
+        times=np.array(times),
+        poses=np.array(poses),
+        quality=quality,
+    )
+    return recording, verdict, words
+
+
+def assembly_moved(problem: SpatialProblem) -> Callable[[Array], Array]:
+    """Return what measures displacements of a problem's blocks."""
+    return lambda moved: displacement_in_space(moved, problem.assembly)
+
+
+def _lie_still(poses: list[Array], way: Callable[[Array], Array]) -> bool:
+    """Tell whether blocks have hardly moved for a while."""
+    if len(poses) <= AT_REST:
+        return False
+    last = np.array(poses[-1 - AT_REST :])
+    return float(way(last - last[-1]).max()) < UNSEEN
