@@ -35,8 +35,10 @@ STIFF = 1e5
 ROUNDS, TRIES = 25, 60
 """Most times that springs follow, and most of Newton's steps for each."""
 HALVINGS = 6
-SOLVED = 1e-9
-"""Residual of a solution."""
+SOLVED, ENOUGH = 1e-9, 3e-8
+"""Residual of a solution from nothing, and of one in motion."""
+NEAR = 1e-2
+"""Smoothing with which a path begins at the forces of the last step."""
 EXACT = 1e-13
 """Residual at which nothing is left to do."""
 
@@ -95,7 +97,7 @@ def solve(step: Step, forces: Array | None) -> Answer:
         found = _followed(step, guess)
         if best is None or found.residual < best.residual:
             best = found
-        if best.residual <= SOLVED:
+        if best.residual <= (SOLVED if forces is None else ENOUGH):
             break
     assert best is not None  # noqa: S101
     return best
@@ -104,7 +106,8 @@ def solve(step: Step, forces: Array | None) -> Answer:
 def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
     """Give forces to begin with, the likeliest and cheapest first."""
     if forces is not None:
-        yield forces
+        near = followed(step, ROUNDED[0], forces, NEAR)
+        yield forces if near is None else near
     dilating = _dilating(step)
     if dilating is not None:
         yield dilating

@@ -17,6 +17,8 @@ from blocksim.engines.solid.hulls import Hulls, Places
 
 RIM = 1e-9
 """Within which a corner is over a face [size]."""
+NARROW = 1e-6
+"""Width of what two faces share that is none [size]."""
 DEEP = 1e-2
 """Share of the thinner hull by which faces overlap where edges are looked at."""
 FLAT = 1e-9
@@ -252,9 +254,14 @@ def _on_faces(hulls: Hulls, pairs: Places, axis: _Axis) -> Points:
             ),
         ),
     )
+    # Faces that share no more than a rim press on nothing.
+    between_flat = other[:, None] + share[..., None] * _sides(other, n_theirs)[:, None]
+    flats = [other, flat, between_flat.reshape(len(pairs), -1, 2)]
+    shared = np.concatenate([inside, turned, kinds[2][1]], axis=1)
+    wide = _wide(np.concatenate(flats, axis=1), shared, flat, n_ours)[:, None]
     count, found = len(hulls.owner), list[Points]()
     for kind, (places, which, gaps) in enumerate(kinds):
-        pair, at = np.nonzero(which)
+        pair, at = np.nonzero(which & wide)
         key = (pairs[pair, 0] * count + pairs[pair, 1]) * KINDS + kind
         key = (key * hulls.normals.shape[1] + axis.face[pair]) * side**2 + at
         found.append(
@@ -287,6 +294,17 @@ def _inside(points: Array, polygon: Array, many: Places, count: Places) -> Array
     real = np.arange(polygon.shape[1]) < many[:, None]
     within = (left >= -RIM) | ~real[:, None]
     return within.all(axis=2) & (np.arange(points.shape[1]) < count[:, None])
+
+
+def _wide(points: Array, which: Array, polygon: Array, many: Places) -> Array:
+    """Tell whether of points some lie off every side of their polygon, (p,)."""
+    ways = _sides(polygon, many)
+    long = np.maximum(np.linalg.norm(ways, axis=2), 1e-300)
+    apart = points[:, :, None] - polygon[:, None]
+    left = ways[:, None, :, 0] * apart[..., 1] - ways[:, None, :, 1] * apart[..., 0]
+    most = np.where(which[..., None], left / long[:, None], -np.inf).max(axis=1)
+    real = np.arange(polygon.shape[1]) < many[:, None]
+    return ((most > NARROW) | ~real).all(axis=1)
 
 
 def _reversed(polygon: Array, many: Places) -> Array:

@@ -34,7 +34,9 @@ STEPS, HALVINGS = 40, 12
 """Most of Newton's steps for one smoothing, and most halvings of one."""
 
 
-def followed(step: Step, rounded: float) -> Array | None:
+def followed(
+    step: Step, rounded: float, forces: Array | None = None, first: float = FIRST
+) -> Array | None:
     """Return forces at the end of a path, or where it breaks off; None where it never begins.
 
     Parameters
@@ -42,13 +44,19 @@ def followed(step: Step, rounded: float) -> Array | None:
     step : Step
     rounded : float
         Smoothing of the slip over that of the product.
+    forces : (points, 3) float, optional
+        To begin with.
+    first : float
+        Smoothing to begin with.
     """
     mu = step.friction
     scale = np.stack([np.ones_like(mu), mu, mu], axis=1)
     p = np.zeros_like(scale)
     p[:, 0] = 1.0
+    if forces is not None:
+        p = np.divide(forces, scale, out=np.zeros_like(scale), where=scale > 0)
     x = step.free + step.matrix.T @ (scale * p).ravel()
-    smooth, falls, reached = FIRST, FALLS, None
+    smooth, falls, reached = first, FALLS, None
     while smooth > LAST:
         found = _settled(step, scale, x, p, smooth, rounded)
         if found is not None:
