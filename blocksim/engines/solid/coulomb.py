@@ -34,6 +34,8 @@ STIFF = 1e5
 """Springs over the mean mass."""
 ROUNDS, TRIES = 25, 60
 """Most times that springs follow, and most of Newton's steps for each."""
+AT_ONCE = 6
+"""The same where forces of the last step may do."""
 HALVINGS = 6
 SOLVED, ENOUGH = 1e-9, 3e-8
 """Residual of a solution from nothing, and of one in motion."""
@@ -93,6 +95,10 @@ def solve(step: Step, forces: Array | None) -> Answer:
     if not len(step.friction):
         return Answer(step.free, np.zeros((0, 3)), 0.0)
     best: Answer | None = None
+    if forces is not None:
+        best = _followed(step, forces, AT_ONCE)
+        if best.residual <= ENOUGH:
+            return best
     for guess in _guesses(step, forces):
         found = _followed(step, guess)
         if best is None or found.residual < best.residual:
@@ -117,36 +123,41 @@ def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
             yield smoothed
 
 
-def _followed(step: Step, forces: Array) -> Answer:
+def _followed(step: Step, forces: Array, most: int = TRIES) -> Answer:
     """Let springs follow forces until these are the solution, or come no nearer."""
     p = forces
     x = step.free + step.matrix.T @ p.ravel()
     best = Answer(x, p, residual(step, x, p))
     stiff, worse = STIFF, 0
     for _ in range(ROUNDS):
-        x, p = _balanced(step, x, p, stiff)
+        x, p, left = _balanced(step, x, p, stiff, most)
         if not np.isfinite(p).all():
             return best
         found = Answer(x, p, residual(step, x, p))
         worse = worse + 1 if found.residual > 0.3 * best.residual else 0
         if found.residual < best.residual:
             best = found
-        if best.residual <= EXACT or worse > 2:
+        if best.residual <= EXACT or worse > 2 or (most < TRIES and left):
             break
     return best
 
 
-def _balanced(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array, Array]:
-    """Find accelerations that balance springs which begin with forces, by Newton's method."""
+def _balanced(
+    step: Step, x: Array, forces: Array, stiff: float, most: int
+) -> tuple[Array, Array, bool]:
+    """Find accelerations that balance springs which begin with forces, by Newton's method.
+
+    And the forces, and whether it had to be left before it got there.
+    """
     scale = 1.0 + float(np.abs(step.free).max(initial=0.0))
     left, q, pushed = _imbalance(step, x, forces, stiff)
     size = float(np.abs(left).max())
-    for _ in range(TRIES):
+    for _ in range(most):
         if size <= 1e-15 * scale * (1 + float(np.abs(q).max())):
-            break
+            return x, q, False
         change = _newton(step, pushed, left, stiff)
         if change is None:
-            break
+            return x, q, True
         share, best = 1.0, None
         for _ in range(HALVINGS):
             tried = x + share * change
@@ -159,9 +170,9 @@ def _balanced(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array,
             share /= 2
         assert best is not None  # noqa: S101
         if best[0] >= 0.999 * size and size < 1e-11 * scale:
-            break
+            return x, q, False
         size, x, (left, q, pushed) = best
-    return x, q
+    return x, q, True
 
 
 def _imbalance(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array, Array, Array]:

@@ -19,7 +19,7 @@ from blocksim.blocks.assembly import Array
 if TYPE_CHECKING:
     from blocksim.engines.solid.coulomb import Step
 
-FIRST, LAST = 1.0, 1e-6
+FIRST, LAST = 1.0, 1e-8
 """Smoothing, at first and where the path ends [mean weights]."""
 FALLS = 0.2
 """What it is multiplied by."""

@@ -22,9 +22,8 @@ from blocksim.engines.solid.hulls import Hulls, hulls_of
 from blocksim.engines.solid.meeting import Points, frames, meet, near
 from blocksim.limit.space.contacts import Contacts
 
-RESIDUAL = 1e-7
-UNSOLVED = 1e-4
-"""Residual of a step that is not taken."""
+COARSE, UNSOLVED = 1e-5, 1e-4
+"""Residual of a step that is halved, and of one that is not taken."""
 HALVINGS = 5
 """How often a step that is not solved is halved."""
 SHUT, PRESSED = 1e-6, 1e-4
@@ -196,7 +195,7 @@ class Stepping:
                 vars(self).update(before)
                 self._residual = 0.0
                 self._closing(part)
-            if self._residual > RESIDUAL and halvings < HALVINGS:
+            if self._residual > COARSE and halvings < HALVINGS:
                 vars(self).update(before)
                 halvings += 1
                 continue
