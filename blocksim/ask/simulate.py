@@ -2,24 +2,41 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Unpack, overload
 
 from blocksim.ask.methods import choose
 from blocksim.ask.options import Asked, Options, problem_of, taken
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines import get_engine
 
 if TYPE_CHECKING:
+    from blocksim.ask.space import SpatialRecording
     from blocksim.simulation.recording import Recording
 
 
+@overload
 def simulate(
     asked: Asked, *, duration: float | None = None, **options: Unpack[Options]
-) -> Recording:
+) -> Recording: ...
+
+
+@overload
+def simulate(
+    asked: SpatialProblem, *, duration: float | None = None, **options: Unpack[Options]
+) -> SpatialRecording: ...
+
+
+def simulate(
+    asked: Asked | SpatialProblem,
+    *,
+    duration: float | None = None,
+    **options: Unpack[Options],
+) -> Recording | SpatialRecording:
     """Let blocks go in an engine, after the onset test, and record them.
 
     Parameters
     ----------
-    asked : Problem or Maker
+    asked : Problem, SpatialProblem or Maker
     duration : float, optional
         Time to record [sqrt(size/g)]; by default until the verdict is certain, or, where
         the ground shakes, until the blocks lie still.
@@ -28,7 +45,7 @@ def simulate(
 
     Returns
     -------
-    Recording
+    Recording or SpatialRecording
 
     Raises
     ------
@@ -38,6 +55,10 @@ def simulate(
         If the engine's library is not installed.
     """
     # What moves blocks is loaded where it is asked for.
+    if isinstance(asked, SpatialProblem):
+        from blocksim.ask.space import film_in_space
+
+        return film_in_space(asked, duration, taken(options, "reduce", "tol", "confirm"))
     from blocksim.simulation.observation import hold
     from blocksim.simulation.shaken import shake
 

@@ -1,4 +1,4 @@
-"""The questions of problems in space, by limit analysis: does it stand, and up to where."""
+"""The questions of problems in space: does it stand, and up to where, and what falls."""
 
 from __future__ import annotations
 
@@ -20,10 +20,24 @@ from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.fields import Field
-from blocksim.limit.space import SpatialEquilibrium, can_rest, joint_states, largest_load
+from blocksim.engines.base import Engine
+from blocksim.limit.space import (
+    SpatialEquilibrium,
+    can_rest,
+    joint_states,
+    largest_load,
+    unit_rates,
+)
+from blocksim.simulation.simulated import require_setting
+from blocksim.simulation.space import (
+    SpatialRecording,
+    engine_in_space,
+    observe_in_space,
+    simulate_in_space,
+)
 from blocksim.simulation.verdict import Evidence, Verdict, reason_of
 
-METHODS = ("auto", "limit")
+STATIC = ("auto", "limit")
 FAMILIES_IN_SPACE = {"load": "", "mu": "", "tilt": "deg"}
 """What may be bracketed over, with its unit."""
 SCANNED = 13
@@ -46,13 +60,16 @@ class SpatialCheck:
     Parameters
     ----------
     method : str
-        `limit`.
     verdict : Verdict
         *Stands* means that it can rest.
     evidence : tuple of Evidence
     problem : SpatialProblem
-    static : SpatialEquilibrium
-        Forces, or the mechanism, and the gap to which they were checked.
+    static : SpatialEquilibrium or None
+        Forces, or the mechanism, and the gap to which they were checked; None by an engine.
+    mechanism : (blocks, 6) float or None
+        Rates with which a collapse starts: x, y, z [size], and rotations about the axes.
+    recording : SpatialRecording or None
+        Of the moving run, by an engine.
     joints : tuple of JointState
         What each joint does as a collapse starts; closed where the blocks stand.
     load_factor : float or None
@@ -66,7 +83,9 @@ class SpatialCheck:
     verdict: Verdict
     evidence: tuple[Evidence, ...]
     problem: SpatialProblem
-    static: SpatialEquilibrium
+    static: SpatialEquilibrium | None
+    mechanism: Array | None
+    recording: SpatialRecording | None = None
     joints: tuple[JointState, ...]
     load_factor: float | None = None
     wall_s: float
@@ -77,14 +96,9 @@ class SpatialCheck:
         return reason_of(self.evidence)
 
     @property
-    def mechanism(self) -> Array | None:
-        """Rates with which a collapse starts, (blocks, 6): x, y, z [size], and rotations."""
-        return self.static.mechanism
-
-    @property
     def forces(self) -> Array | None:
         """Forces of equilibrium at the joints, along normals and across, (joints, 3) [N]."""
-        return self.static.forces
+        return None if self.static is None else self.static.forces
 
     def __repr__(self) -> str:
         return f"SpatialCheck({self.verdict}, by {self.method}, of {self.problem!r})"
@@ -135,8 +149,10 @@ class SpatialBracket:
 
 def check_in_space(problem: SpatialProblem, given: Taken) -> SpatialCheck:
     """Tell whether blocks in space stand; see `blocksim.check`."""
+    if given.method not in STATIC:
+        return _seen(problem, given)
     started = time.perf_counter()
-    _require_method(given)
+    _require_static(given)
     static = can_rest(problem)
     verdict = {True: Verdict.STANDS, False: Verdict.COLLAPSES, None: Verdict.UNDECIDED}
     factor = largest_load(problem).factor if problem.live else None
@@ -151,10 +167,53 @@ def check_in_space(problem: SpatialProblem, given: Taken) -> SpatialCheck:
         ),
         problem=problem,
         static=static,
+        mechanism=rates,
         joints=states if rates is None else joint_states(problem, rates),
         load_factor=factor,
         wall_s=time.perf_counter() - started,
     )
+
+
+def _seen(problem: SpatialProblem, given: Taken) -> SpatialCheck:
+    """Tell whether blocks stand by what an engine shows."""
+    started, engine = time.perf_counter(), _engine(given)
+    seen = observe_in_space(problem, engine, settings=given.settings, progress=given.progress)
+    states = (JointState.CLOSED,) * len(problem.assembly.joints)
+    rates = None if seen.rates is None else unit_rates(problem, seen.rates)
+    return SpatialCheck(
+        method=engine.name,
+        verdict=seen.verdict,
+        evidence=(*seen.evidence, *(Evidence("note", note) for note in problem.notes)),
+        problem=problem,
+        static=None,
+        mechanism=rates,
+        recording=seen.recording,
+        joints=states if rates is None else joint_states(problem, rates),
+        load_factor=largest_load(problem).factor if problem.live else None,
+        wall_s=time.perf_counter() - started,
+    )
+
+
+def film_in_space(
+    problem: SpatialProblem, duration: float | None, given: Taken
+) -> SpatialRecording:
+    """Let blocks in space go, and record them; see `blocksim.simulate`."""
+    engine = _engine(given)
+    until = {} if duration is None else {"until": duration}
+    return simulate_in_space(
+        problem, engine, settings=given.settings, progress=given.progress, **until
+    )
+
+
+def _engine(given: Taken) -> Engine:
+    """Return the engine asked for, which moves blocks in space."""
+    engine = engine_in_space("direct" if given.method == "auto" else given.method)
+    require(given.reduce is None, "reduce", given.reduce, "left out in space")
+    for name, value in given.settings.items():
+        known = f"one of {', '.join(engine.adjustable)} for {engine.name}"
+        require(name in engine.adjustable, "settings", name, known)
+        require_setting(name, value)
+    return engine
 
 
 def static_words(static: SpatialEquilibrium) -> str:
@@ -190,7 +249,7 @@ def bracket_in_space(
 ) -> SpatialBracket:
     """Find the value at which blocks in space change; see `blocksim.bracket`."""
     started = time.perf_counter()
-    _require_method(given)
+    _require_static(given)
     own: Mapping[str, Field] = {} if problem.maker is None else problem.maker.bracketed
     allowed = f"one of {', '.join([*FAMILIES_IN_SPACE, *own])}"
     over = "thickness" if over is None and "thickness" in own else over
@@ -235,10 +294,10 @@ def bracket_in_space(
     )
 
 
-def _require_method(given: Taken) -> None:
+def _require_static(given: Taken) -> None:
     """Refuse what is of engines."""
-    allowed = "limit: engines do not move blocks in space yet"
-    require(given.method in METHODS, "method", str(given.method), allowed)
+    allowed = "limit: engines bracket nothing in space yet; check asks them"
+    require(given.method in STATIC, "method", str(given.method), allowed)
     require(not given.settings, "settings", dict(given.settings), "left out: limit has none")
     require(given.reduce is None, "reduce", given.reduce, "left out by limit")
 

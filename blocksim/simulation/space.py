@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.parting import (
     displacement_in_space,
     overlap_in_space,
@@ -42,6 +42,8 @@ from blocksim.simulation.onset import FIRST_SWEEPS, GROWTH, PROBE, STICKS, UNFOU
 from blocksim.simulation.simulated import BY_RULE, Overrides, setting_of
 from blocksim.simulation.verdict import Evidence, Verdict
 
+SURE = 1e-4
+"""Residual over the accelerations at which blocks surely move."""
 LENGTH = "L"
 """What the unit of length is called."""
 
@@ -221,17 +223,19 @@ def _onset(
         total += sweeps
         largest = float(displacement_in_space(rates, assembly))
         verdict = Verdict.UNDECIDED
-        if trusted(world, settings):
+        residual = world.quality().residual
+        if residual is None or residual <= max(SURE * largest, settings.still):
             mechanism = built + rates * (PROBE / largest if largest > 0 else 0.0)
             if largest < settings.still:
                 verdict = Verdict.STANDS
             elif overlap_in_space(assembly, mechanism) < settings.closing and (
-                world.quality().residual is not None or _driven(problem, rates)
+                residual is not None or _driven(problem, rates)
             ):
                 verdict = Verdict.COLLAPSES
         size = f"{largest:.1e} g, found in {counted(total, 'sweep')}"
-        if verdict is Verdict.COLLAPSES and _may_hold(problem, engine, built, mechanism):
-            return Verdict.UNDECIDED, rates, f"friction allows both: it rests, or it starts with {size}"
+        if verdict is Verdict.COLLAPSES and _may_hold(problem, engine, mechanism):
+            words = f"friction allows both: it rests, or it starts with {size}"
+            return Verdict.UNDECIDED, rates, words
         if verdict is not Verdict.UNDECIDED or total >= allowed:
             return verdict, rates, _onset_words(verdict, size, largest)
         progress(total / allowed, "onset test")
@@ -246,13 +250,13 @@ def _onset_words(verdict: Verdict, size: str, largest: float) -> str:
             return f"no contact forces hold it: a mechanism starts with {size}"
         case _:
             return (
-                f"contact forces have not converged: {size}" if math.isfinite(largest) else UNFOUND
+                f"contact forces have not converged: {size}"
+                if math.isfinite(largest)
+                else UNFOUND
             )
 
 
-def _may_hold(
-    problem: SpatialProblem, engine: Engine, built: Array, mechanism: Array
-) -> bool:
+def _may_hold(problem: SpatialProblem, engine: Engine, mechanism: Array) -> bool:
     """Tell whether blocks that start to slide may rest by friction all the same."""
     if slip_in_space(problem.assembly, mechanism) <= STICKS:
         return False
@@ -300,7 +304,7 @@ def _released(
         moved.append(float(displacement_in_space(poses[-1] - poses[0], assembly)))
         if not whole and verdict_of(times, moved, settings.rest) is not Verdict.UNDECIDED:
             break
-        if whole and moved[-1] > MOVED and _lie_still(poses, assembly_moved(problem)):
+        if whole and moved[-1] > MOVED and _lie_still(poses, assembly):
             break
         progress(min(1.0, times[-1] / until), "moving run")
     quality = world.quality()
@@ -321,14 +325,9 @@ def _released(
     return recording, verdict, words
 
 
-def assembly_moved(problem: SpatialProblem) -> Callable[[Array], Array]:
-    """Return what measures displacements of a problem's blocks."""
-    return lambda moved: displacement_in_space(moved, problem.assembly)
-
-
-def _lie_still(poses: list[Array], way: Callable[[Array], Array]) -> bool:
+def _lie_still(poses: list[Array], assembly: SpatialAssembly) -> bool:
     """Tell whether blocks have hardly moved for a while."""
     if len(poses) <= AT_REST:
         return False
     last = np.array(poses[-1 - AT_REST :])
-    return float(way(last - last[-1]).max()) < UNSEEN
+    return float(displacement_in_space(last - last[-1], assembly).max()) < UNSEEN

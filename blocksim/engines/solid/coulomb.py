@@ -16,7 +16,7 @@ where Coulomb's law allows both, that is rest. Else they are the end of a path (
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -39,8 +39,12 @@ AT_ONCE = 6
 HALVINGS = 6
 SOLVED, ENOUGH = 1e-9, 3e-8
 """Residual of a solution from nothing, and of one in motion."""
+LESS = 0.9997
+"""Share of friction that is taken where that much did not tell."""
 NEAR = 1e-2
 """Smoothing with which a path begins at the forces of the last step."""
+AT_REST = 1e-9
+"""Velocity over the step of blocks at rest, which a path might set in motion."""
 EXACT = 1e-13
 """Residual at which nothing is left to do."""
 
@@ -111,12 +115,17 @@ def solve(step: Step, forces: Array | None) -> Answer:
 
 def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
     """Give forces to begin with, the likeliest and cheapest first."""
-    if forces is not None:
+    moves = float(np.abs(step.drift).max()) > AT_REST
+    if forces is not None and moves:
         near = followed(step, ROUNDED[0], forces, NEAR)
         yield forces if near is None else near
     dilating = _dilating(step)
     if dilating is not None:
         yield dilating
+        # Of rest near its limit the forces lie on the cones; with less friction within.
+        less = _dilating(replace(step, friction=LESS * step.friction))
+        if less is not None:
+            yield less
     for rounded in ROUNDED:
         smoothed = followed(step, rounded)
         if smoothed is not None:

@@ -149,7 +149,7 @@ def _by_faces(hulls: Hulls, pairs: Places) -> _Axis:
 
 
 def _by_edges(hulls: Hulls, pairs: Places, gaps: Array) -> tuple[Points, Array]:
-    """Return points where an edge of each meets, of the pairs where that is nearer to parting."""
+    """Return points where an edge of each meets, where that is nearer to parting."""
     found, better = list[Points](), np.zeros(len(pairs), dtype=bool)
     for at, (a, b) in enumerate(pairs.tolist()):
         ours, theirs = hulls.corners[a][hulls.edges[a]], hulls.corners[b][hulls.edges[b]]

@@ -16,11 +16,11 @@ from scipy import sparse
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.space.points import JointPoints
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines.solid.coulomb import Answer, Step, solve
 from blocksim.engines.solid.hulls import Hulls, hulls_of
 from blocksim.engines.solid.meeting import Points, frames, meet, near
-from blocksim.limit.space.contacts import Contacts
 
 COARSE, UNSOLVED = 1e-5, 1e-4
 """Residual of a step that is halved, and of one that is not taken."""
@@ -34,8 +34,8 @@ PASSED = 1e-9
 """Overlap at the end of a step by which what was open has closed [size]."""
 DEEP = 1e-6
 """Overlap that is pushed apart at once [size]."""
-AT_REST, NEAR_REST = 1e-11, 1e-5
-"""Accelerations of rest, and those below which it may be [g]."""
+SAME = 1e-6
+"""Distance of points that are the same [size]."""
 NEAR = 1e-3
 """Beyond the way of a step, how near blocks are that are looked at [size]."""
 
@@ -150,7 +150,7 @@ class Stepping:
 
     def __init__(self, problem: SpatialProblem) -> None:
         self.bodies = Bodies(problem)
-        self._contacts = Contacts(problem)
+        self._contacts = JointPoints(problem)
         self._place, self._velocities = self.bodies.built, np.zeros_like(self.bodies.inertia)
         self._speeding = np.zeros_like(self._velocities)
         self._friction = _Friction(problem, self.bodies.hulls)
@@ -166,14 +166,33 @@ class Stepping:
         drift = np.zeros(rows.shape[0])
         step = Step(rows, drift, free, np.minimum(contacts.friction, ROUGH))
         found = solve(step, None)
-        if not AT_REST < float(np.abs(found.x).max(initial=0.0)) < NEAR_REST:
-            return found
-        # So near to the limit forces are begun with that lie well within friction.
-        known = contacts.most(contacts.pull(bodies.problem.load))
-        if not known.value > 0:
-            return found
-        rests = solve(step, known.forces.reshape(-1, 3))
-        return rests if rests.residual <= found.residual else found
+        self._begin(found.forces)
+        return found
+
+    def _begin(self, forces: Array) -> None:
+        """Begin a motion with the forces at the points of joints, (points, 3)."""
+        contacts, assembly = self._contacts, self.bodies.problem.assembly
+        points, _ = self._points(self._place, 0.0)
+        axes = np.concatenate([points.normals[:, None], frames(points.normals)], axis=1)
+        places = np.concatenate([each.points for each in assembly.joints]) / assembly.size
+        pushes = np.einsum("pi,pij->pj", forces, contacts.axes[contacts.joint])
+        after = np.array([sides_of(each)[1] for each in assembly.joints])[contacts.joint]
+        body = body_of(self.bodies.hulls)
+        self._keys, self._forces = points.keys, np.zeros((len(points.keys), 3))
+        for at, (place, sides) in enumerate(
+            zip(
+                points.places,
+                zip(body[points.before], body[points.after], strict=True),
+                strict=True,
+            )
+        ):
+            near = np.flatnonzero(np.linalg.norm(places - place, axis=1) < SAME)
+            for each in near:
+                # Points of other joints may lie at the same place.
+                joint = assembly.joints[contacts.joint[each]]
+                if set(sides_of(joint)) == set(sides):
+                    sign = 1.0 if after[each] == sides[1] else -1.0
+                    self._forces[at] = sign * axes[at] @ pushes[each]
 
     def _frames(self, place: Place) -> Any:
         """Return what takes scaled velocities in frames to those in space, sparse."""

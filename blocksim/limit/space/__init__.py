@@ -4,3 +4,4 @@ from blocksim.limit.space.statics import SpatialEquilibrium as SpatialEquilibriu
 from blocksim.limit.space.statics import can_rest as can_rest
 from blocksim.limit.space.statics import joint_states as joint_states
 from blocksim.limit.space.statics import largest_load as largest_load
+from blocksim.limit.space.statics import unit_rates as unit_rates

@@ -121,7 +121,7 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
         margin=found.value,
         forces=sums,
         point_forces=forces if exists else None,
-        mechanism=_unit(contacts, rates) if exists is False else None,
+        mechanism=unit_rates(problem, rates) if exists is False else None,
         gap=gap,
     )
 
@@ -149,7 +149,7 @@ def largest_load(problem: SpatialProblem) -> LargestLoad:
     bound = -float(found.rates @ pull) / work if work > 0 else math.inf
     gap = abs(bound - found.value) / max(abs(found.value), 1e-300)
     return LargestLoad(
-        factor=found.value / unit, gap=gap, mechanism=_unit(contacts, found.rates)
+        factor=found.value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
     )
 
 
@@ -195,9 +195,9 @@ def _ruled_out(contacts: Contacts, pull: Array, rates: Array) -> float:
     return error * float(blocks.sum()) / gained
 
 
-def _unit(contacts: Contacts, rates: Array) -> Array:
+def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
     """Scale rates so that the largest way of a corner is 1 [size], (blocks, 6)."""
-    assembly, each = contacts.problem.assembly, rates.reshape(-1, 6)
+    assembly, each = problem.assembly, rates.reshape(-1, 6)
     largest = 0.0
     for block, rate in zip(assembly.blocks, each, strict=True):
         arms = np.concatenate([hull.corners for hull in block.hulls]) - block.centre
