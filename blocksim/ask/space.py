@@ -207,7 +207,9 @@ def film_in_space(
 
 def _engine(given: Taken) -> Engine:
     """Return the engine asked for, which moves blocks in space."""
-    engine = engine_in_space("direct" if given.method == "auto" else given.method)
+    method = given.method
+    named = method if isinstance(method, str | Engine) else method.name
+    engine = engine_in_space("direct" if named == "auto" else named)
     require(given.reduce is None, "reduce", given.reduce, "left out in space")
     for name, value in given.settings.items():
         known = f"one of {', '.join(engine.adjustable)} for {engine.name}"

@@ -222,7 +222,7 @@ def _onset(
         rates = world.hold(sweeps)
         total += sweeps
         largest = float(displacement_in_space(rates, assembly))
-        verdict = Verdict.UNDECIDED
+        verdict, mechanism = Verdict.UNDECIDED, built
         residual = world.quality().residual
         if residual is None or residual <= max(SURE * largest, settings.still):
             mechanism = built + rates * (PROBE / largest if largest > 0 else 0.0)

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
@@ -167,9 +168,10 @@ def _balanced(
         change = _newton(step, pushed, left, stiff)
         if change is None:
             return x, q, True
-        share, best = 1.0, None
+        share: float = 1.0
+        best: tuple[float, Array, tuple[Array, Array, Array]] | None = None
         for _ in range(HALVINGS):
-            tried = x + share * change
+            tried: Array = x + share * change
             there = _imbalance(step, tried, forces, stiff)
             reached = float(np.abs(there[0]).max())
             if best is None or reached < best[0]:
@@ -232,8 +234,8 @@ def _newton(step: Step, pushed: Array, left: Array, stiff: float) -> Array | Non
         return None
 
 
-def _rows_of(matrix: Any, points: Array) -> Any:
-    return matrix[(3 * points[:, None] + np.arange(3)).ravel().astype(np.int64)]
+def _rows_of(matrix: Any, points: NDArray[np.int64]) -> Any:
+    return matrix[(3 * points[:, None] + np.arange(3)).ravel()]
 
 
 def residual(step: Step, x: Array, forces: Array) -> float:

@@ -83,7 +83,7 @@ def _settled(
         found = _newton(step, scale, x, p, smooth, rounded, left)
         if found is None:
             return None
-        share, reached = 1.0, np.inf
+        share, reached, tried = 1.0, np.inf, (x, p)
         for _ in range(HALVINGS):
             tried = x + share * found[0], p + share * found[1]
             reached = _size(_left(step, scale, *tried, smooth, rounded))
@@ -135,18 +135,19 @@ class Plus:
         long = np.hypot(z[:, 1], z[:, 2])
         self._way = way = z[:, 1:] / np.maximum(long, 1e-300)[:, None]
         ends = np.stack([z[:, 0] + long, z[:, 0] - long], axis=1)
-        self._root = root = np.sqrt(ends**2 + 4 * smooth**2)
+        root = np.sqrt(ends**2 + 4 * smooth**2)
         # Without cancelling where an end is far from 0; the difference of both is the end.
         large = (np.abs(ends) + root) / 2
         small = smooth**2 / large
-        f, h = np.where(ends > 0, (large, small), (small, large))
+        f: Array = np.where(ends > 0, large, small)
+        h: Array = np.where(ends > 0, small, large)
         self.value = np.empty_like(z)
         self.value[:, 0] = f.sum(axis=1) / 2
         self.value[:, 1:] = (f[:, 0] - f[:, 1])[:, None] / 2 * way
         near = long < 1e-9 * root.max(axis=1)
-        twice = np.maximum(2 * long, 1e-300)
-        across = np.where(near, f[:, 0] / root[:, 0], (f[:, 0] - f[:, 1]) / twice)
-        left = np.where(near, h[:, 0] / root[:, 0], (h[:, 1] - h[:, 0]) / twice)
+        twice: Array = np.maximum(2 * long, 1e-300)
+        across: Array = np.where(near, f[:, 0] / root[:, 0], (f[:, 0] - f[:, 1]) / twice)
+        left: Array = np.where(near, h[:, 0] / root[:, 0], (h[:, 1] - h[:, 0]) / twice)
         self._changes = np.column_stack([f / root, across])
         self._rest = np.column_stack([h / root, left])
 

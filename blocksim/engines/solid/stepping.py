@@ -179,19 +179,14 @@ class Stepping:
         after = np.array([sides_of(each)[1] for each in assembly.joints])[contacts.joint]
         body = body_of(self.bodies.hulls)
         self._keys, self._forces = points.keys, np.zeros((len(points.keys), 3))
-        for at, (place, sides) in enumerate(
-            zip(
-                points.places,
-                zip(body[points.before], body[points.after], strict=True),
-                strict=True,
-            )
-        ):
-            near = np.flatnonzero(np.linalg.norm(places - place, axis=1) < SAME)
-            for each in near:
+        sides = np.stack([body[points.before], body[points.after]], axis=1)
+        for at in range(len(points.keys)):
+            near = np.linalg.norm(places - points.places[at], axis=1) < SAME
+            for each in np.flatnonzero(near).tolist():
                 # Points of other joints may lie at the same place.
-                joint = assembly.joints[contacts.joint[each]]
-                if set(sides_of(joint)) == set(sides):
-                    sign = 1.0 if after[each] == sides[1] else -1.0
+                joint = assembly.joints[int(contacts.joint[each])]
+                if set(sides_of(joint)) == set(sides[at].tolist()):
+                    sign = 1.0 if after[each] == sides[at, 1] else -1.0
                     self._forces[at] = sign * axes[at] @ pushes[each]
 
     def _frames(self, place: Place) -> Any:
@@ -323,7 +318,7 @@ class Stepping:
         planes = found.turns[before].transpose(0, 2, 1)
         plane_to = there.turns[before]
 
-        def carried(places: Array, block: Array) -> Array:
+        def carried(places: Array, block: NDArray[np.int64]) -> Array:
             own = np.einsum("pji,pj->pi", found.turns[block], places - found.centres[block])
             return np.einsum("pij,pj->pi", there.turns[block], own) + there.centres[block]
 
@@ -333,8 +328,8 @@ class Stepping:
         foot = carried(points.places - points.gaps[:, None] * points.normals, before)
         gaps = np.einsum("pi,pi->p", places - foot, axes[:, 0])
         gaps = gaps - self._drawn.at(points)
-        rows = list[Array]()
-        columns = list[Array]()
+        rows = list[NDArray[np.int64]]()
+        columns = list[NDArray[np.int64]]()
         root = self.bodies.root.reshape(-1, 6)
         values = list[Array]()
         at = 3 * np.arange(len(gaps))[:, None] + np.arange(3)
@@ -349,8 +344,8 @@ class Stepping:
             column = 6 * own[:, None, None] + np.arange(6)
             columns.append(np.broadcast_to(column, wrench.shape).ravel())
             values.append(wrench.ravel())
-        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-        matrix = sparse.csr_matrix(entries, shape=(3 * len(gaps), root.size))
+        entries: Any = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        matrix: Any = sparse.csr_matrix(entries, shape=(3 * len(gaps), root.size))
         return Seen(matrix, gaps)
 
     def _push_apart(self) -> None:

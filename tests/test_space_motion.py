@@ -1,0 +1,194 @@
+"""Blocks in space that move, held to known cases, closed forms, conservation and the plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from space_cases import GROUND, NAMES, box, case, problem_of
+
+import blocksim
+from blocksim import InputError, Solid, SpatialProblem, Verdict
+from blocksim.blocks.space.extruded import extruded
+from blocksim.blocks.space.files import problem_in_space
+from blocksim.engines.solid.stepping import Stepping
+from blocksim.kinds.dome import Dome
+from blocksim.simulation.space import engine_in_space, observe_in_space
+
+DIRECT = engine_in_space("direct")
+
+
+def asked(name: str, beside: float) -> list[tuple[SpatialProblem, Verdict]]:
+    """A case with its verdict, or at its load factor less and more by a share."""
+    known = case(name)
+    problem, value = problem_in_space(known["scene"]), known["expected"]["value"]
+    if known["question"] == "stands":
+        return [(problem, Verdict.STANDS if value else Verdict.COLLAPSES)]
+    return [
+        (problem.with_load(value * (1 - beside)), Verdict.STANDS),
+        (problem.with_load(value * (1 + beside)), Verdict.COLLAPSES),
+    ]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_direct_tells_a_case_a_thousandth_to_both_sides(name: str) -> None:
+    """Each of the 55 cases, by the onset test."""
+    for problem, verdict in asked(name, 0.001):
+        assert observe_in_space(problem, DIRECT, moving=False).verdict is verdict
+
+
+@pytest.mark.parametrize(
+    "name", ["block_topples_20", "tower_113", "tower_103", "harmonic_4_out"]
+)
+def test_what_is_let_go_does_what_the_onset_test_said(name: str) -> None:
+    """The moving run agrees, by the public verb."""
+    for problem, verdict in asked(name, 0.01):
+        answer = blocksim.check(problem, method="direct")
+        assert answer.verdict is verdict
+        assert [each.test for each in answer.evidence][:2] == ["onset test", "moving run"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_blocks_meet_where_their_joints_are(name: str) -> None:
+    """Two ways to find points of contact: of blocks as built, and of blocks that move."""
+    stepping = Stepping(problem_in_space(case(name)["scene"]))
+    points, _ = stepping._points(stepping._place, 0.0)
+    closed = int((points.gaps < 1e-6).sum())
+    joints = stepping.bodies.problem.assembly.joints
+    assert closed == sum(len(joint.points) for joint in joints)
+
+
+def incline(angle: float, mu: float) -> SpatialProblem:
+    """A flat block on level ground, under gravity that leans towards 30 deg from x."""
+    solids = [Solid(parts=(GROUND,), fixed=True), Solid(parts=(box((0, 0, 0), (2, 1, 0.2)),))]
+    return replace(problem_of(solids, mu), azimuth=math.radians(30)).tilted(angle)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.2, 0.5])
+def test_a_block_slides_down_as_coulomb_says(mu: float) -> None:
+    """Its acceleration is g (sin a - mu cos a), straight down the slope."""
+    angle = math.radians(35)
+    recording = blocksim.simulate(incline(angle, mu), method="direct", duration=1.0)
+    size = recording.problem.assembly.size
+    way = (recording.poses[-1] - recording.poses[0])[0] * size
+    time = recording.times[-1] * math.sqrt(size)
+    rate = math.sin(angle) - mu * math.cos(angle)
+    assert np.hypot(*way[:2]) == pytest.approx(rate * time**2 / 2, rel=1e-7)
+    assert math.atan2(way[1], way[0]) == pytest.approx(math.radians(30), abs=1e-7)
+    assert np.abs(way[2:]).max() < 1e-7
+
+
+def rocked(step: float) -> float:
+    """How far from its equation a block is that turns about an edge, at its last moment."""
+    tall, wide = 2.0, 0.5
+    solids = [Solid(parts=(GROUND,), fixed=True)]
+    solids.append(Solid(parts=(box((0, 0, 0), (wide, 1, tall)),)))
+    problem = problem_of(solids, 3.0).tilted(1.05 * math.atan2(wide, tall))
+    recording = blocksim.simulate(
+        problem, method="direct", duration=1.5, settings={"step": step}
+    )
+    arm, lean = math.hypot(wide, tall) / 2, math.atan2(wide, tall)
+
+    def rate(_: float, state: np.ndarray) -> list[float]:
+        # Housner 1963: moment of inertia 4/3 R^2, turning about the corner.
+        return [state[1], 0.75 / arm * math.sin(0.05 * lean + state[0])]
+
+    times = recording.times * math.sqrt(problem.assembly.size)
+    known = solve_ivp(rate, (0, times[-1]), [0.0, 0.0], rtol=1e-12, atol=1e-14).y[0, -1]
+    return abs(float(np.linalg.norm(recording.poses[-1, 0, 3:])) - float(known))
+
+
+def test_a_block_that_turns_follows_its_equation_to_second_order() -> None:
+    """Halving the step leaves a quarter of the error, which is small as it is."""
+    coarse, fine = rocked(0.05), rocked(0.025)
+    assert fine < 2e-5
+    assert 3.0 < coarse / fine < 5.5
+
+
+PORTAL = {
+    "friction": 0.7,
+    "blocks": [
+        {"id": "ground", "vertices": [[-3, -1], [4, -1], [4, 0], [-3, 0]], "fixed": True},
+        {"id": "left", "vertices": [[0, 0], [0.3, 0], [0.3, 2], [0, 2]]},
+        {"id": "right", "vertices": [[1.2, 0], [1.5, 0], [1.5, 2], [1.2, 2]]},
+        {"id": "lintel", "vertices": [[0, 2], [1.5, 2], [1.5, 2.3], [0, 2.3]]},
+    ],
+}
+
+
+def portals_apart(step: float) -> float:
+    """How far a portal that falls is from itself as prisms, before anything meets anew [m]."""
+    plane = blocksim.structure_of(PORTAL).tilted(math.radians(12))
+    solid = extruded(plane)
+    ratio = math.sqrt(solid.assembly.size / plane.assembly.size)
+    flat, space = (
+        blocksim.simulate(
+            each, method="direct", duration=0.5 * by, settings={"step": step * by}
+        )
+        for each, by in ((plane, ratio), (solid, 1.0))
+    )
+    there = (flat.poses[-1] - flat.poses[0])[:, :2] * plane.assembly.size
+    here = (space.poses[-1] - space.poses[0])[:, [0, 2]] * solid.assembly.size
+    assert flat.times[-1] == pytest.approx(space.times[-1] * ratio)
+    assert np.abs(there).max() > 0.01
+    return float(np.abs(there - here).max())
+
+
+def test_blocks_fall_in_space_as_in_the_plane() -> None:
+    """A portal that tilts, by two programmes of two geometries."""
+    assert portals_apart(0.0125) < 1e-6
+
+
+def tumbling(step: float) -> tuple[float, float]:
+    """How far spin and energy drift of a box that turns freely about its middle axis."""
+    solids = [Solid(parts=(GROUND,), fixed=True)]
+    solids.append(Solid(parts=(box((0, 0, 0), (0.3, 0.8, 0.2)),)))
+    stepping = Stepping(problem_of(solids, 0.5))
+    bodies = stepping.bodies
+    stepping._place = stepping._place.moved(np.array([[0.0, 0, 50, 0, 0, 0]]))
+    stepping._velocities = np.array([[0.0, 0, 0, 0.02, 2.0, 0.01]])
+
+    def spin() -> np.ndarray:
+        return stepping._place.turns[0] @ (bodies.inertia[0, 3:] * stepping._velocities[0, 3:])
+
+    before = spin(), sum(bodies.energy(stepping._place, stepping._velocities))
+    for _ in range(round(4 / step)):
+        stepping._move(step)
+    after = spin(), sum(bodies.energy(stepping._place, stepping._velocities))
+    return float(np.linalg.norm(after[0] - before[0])), abs(after[1] - before[1])
+
+
+def test_what_turns_freely_keeps_its_spin_to_second_order() -> None:
+    """Euler's equations: angular momentum in space stays what it is."""
+    (coarse, _), (fine, energy) = tumbling(0.02), tumbling(0.01)
+    assert 3.0 < coarse / fine < 5.0
+    assert energy < 1e-2
+
+
+@pytest.mark.long
+def test_a_dome_that_is_too_thin_falls_to_the_ground() -> None:
+    """No block is thrown, none passes another, and no energy is gained."""
+    dome = Dome(lunes=8, courses=4, thickness=0.08, friction=0.7)
+    recording = blocksim.simulate(dome.problem(), method="direct", duration=6.0)
+    quality, problem = recording.quality, recording.problem
+    assert quality.gain is not None and quality.gain < 1e-3
+    assert quality.residual is not None and quality.residual < 1e-4
+    heights = recording.poses[:, :, 2] * problem.assembly.size
+    assert (heights.max(axis=1) <= heights[0].max() + 1e-6).all()
+    assert heights[-1].max() < 0.5 * heights[0].max()
+    reach = np.abs(recording.poses[-1, :, :2]).max() * problem.assembly.size
+    assert reach < 3.0
+
+
+def test_what_an_engine_cannot_do_in_space_is_one_line() -> None:
+    """Engines of the plane, settings it has not, brackets."""
+    problem = incline(0.1, 0.5)
+    with pytest.raises(InputError, match="moves none in space"):
+        blocksim.check(problem, method="pymunk")
+    with pytest.raises(InputError, match="sweeps"):
+        blocksim.check(problem, method="direct", settings={"sweeps": 3})
+    with pytest.raises(InputError, match="engines bracket nothing in space"):
+        blocksim.bracket(problem, over="mu", method="direct")
