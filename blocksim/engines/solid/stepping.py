@@ -13,14 +13,21 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.space.points import JointPoints
 from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.engines.solid.between import (
+    ROUGH,
+    DrawnApart,
+    FrictionBetween,
+    body_of,
+    sides_of,
+)
+from blocksim.engines.solid.bodies import Bodies, Place
 from blocksim.engines.solid.coulomb import Answer, Step, solve
-from blocksim.engines.solid.hulls import Hulls, hulls_of
-from blocksim.engines.solid.meeting import Points, frames, meet, near
+from blocksim.engines.solid.facing import frames
+from blocksim.engines.solid.meeting import Points, meet, near
 
 COARSE, UNSOLVED = 1e-5, 1e-4
 """Residual of a step that is halved, and of one that is not taken."""
@@ -40,104 +47,11 @@ NEAR = 1e-3
 """Beyond the way of a step, how near blocks are that are looked at [size]."""
 
 
-class Place(NamedTuple):
-    """Where blocks are: centres, (blocks + 1, 3), and frames, (blocks + 1, 3, 3).
-
-    The last row is what is fixed.
-    """
-
-    centres: Array
-    turns: Array
-
-    def moved(self, way: Array) -> Place:
-        """Return the place after ways along x, y, z and about the frames' axes, (blocks, 6)."""
-        centres, turns = self.centres.copy(), self.turns.copy()
-        centres[:-1] += way[:, :3]
-        turns[:-1] = turns[:-1] @ Rotation.from_rotvec(way[:, 3:]).as_matrix()
-        return Place(centres, turns)
-
-
 class Seen(NamedTuple):
     """Points of contact as something is asked of them: rows of velocities, and gaps."""
 
     rows: Any
     gaps: Array
-
-
-class Bodies:
-    """Blocks of a problem with frames that turn with them, along their principal axes.
-
-    Lengths are in units of the size, masses of the mean block's.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    """
-
-    def __init__(self, problem: SpatialProblem) -> None:
-        self.problem, assembly = problem, problem.assembly
-        size, weights = assembly.size, assembly.weights
-        masses = weights / weights.mean()
-        gyration = np.array([block.gyration for block in assembly.blocks]) / size**2
-        moments, axes = np.linalg.eigh(gyration)
-        # A mirror image is no frame.
-        axes[np.linalg.det(axes) < 0, :, 0] *= -1.0
-        self.inertia: Array = masses[:, None] * np.hstack([np.ones_like(moments), moments])
-        self.root: Array = np.sqrt(self.inertia).ravel()
-        self.built = Place(
-            np.vstack([assembly.centres / size, np.zeros(3)]),
-            np.concatenate([axes, np.eye(3)[None]]),
-        )
-        self.hulls = hulls_of(assembly, axes)
-        reach = np.linalg.norm(self.hulls.corners, axis=2).max(axis=1)
-        self.reach: Array = np.zeros(len(masses))
-        moving = self.hulls.owner != SUPPORT
-        np.maximum.at(self.reach, self.hulls.owner[moving], reach[moving])
-        self.weights = masses
-        self._loads = self._acting()
-
-    def _acting(self) -> list[tuple[int, Array, Array]]:
-        """Return block, force [mean weights] and arm in its frame of each load at a point."""
-        problem, found = self.problem, list[tuple[int, Array, Array]]()
-        unit, size = float(problem.assembly.weights.mean()), problem.assembly.size
-        for load, factor in [(each, 1.0) for each in problem.dead] + [
-            (each, problem.load) for each in problem.live
-        ]:
-            for index in load.blocks:
-                own = problem.assembly.blocks[index]
-                force = factor * load.force * (own.weight if load.per_weight else 1.0) / unit
-                arm = np.zeros(3) if load.point is None else (load.point - own.centre) / size
-                found.append((index, force, self.built.turns[index].T @ arm))
-        return found
-
-    def pull(self, place: Place) -> Array:
-        """Return gravity and loads: forces in space, moments in frames, (blocks, 6)."""
-        found = np.zeros_like(self.inertia)
-        found[:, :3] = self.weights[:, None] * self.problem.gravity
-        for index, force, arm in self._loads:
-            found[index, :3] += force
-            found[index, 3:] += np.cross(arm, place.turns[index].T @ force)
-        return found
-
-    def turning(self, velocities: Array) -> Array:
-        """Return what keeps a turning block turning: - w x I w, (blocks, 6)."""
-        spin = velocities[:, 3:]
-        found = np.zeros_like(velocities)
-        found[:, 3:] = -np.cross(spin, self.inertia[:, 3:] * spin)
-        return found
-
-    def energy(self, place: Place, velocities: Array) -> tuple[float, float]:
-        """Return potential and kinetic energy [mean weights times the size]."""
-        centres = place.centres[:-1]
-        height = -float((self.weights[:, None] * self.problem.gravity * centres).sum())
-        for index, force, arm in self._loads:
-            height -= float(force @ (centres[index] + place.turns[index] @ arm))
-        return height, float((self.inertia * velocities**2).sum() / 2)
-
-    def poses(self, place: Place) -> Array:
-        """Return centres and rotation vectors since they were built, (blocks, 6)."""
-        turned = place.turns[:-1] @ self.built.turns[:-1].transpose(0, 2, 1)
-        return np.hstack([place.centres[:-1], Rotation.from_matrix(turned).as_rotvec()])
 
 
 class Stepping:
@@ -153,8 +67,8 @@ class Stepping:
         self._contacts = JointPoints(problem)
         self._place, self._velocities = self.bodies.built, np.zeros_like(self.bodies.inertia)
         self._speeding = np.zeros_like(self._velocities)
-        self._friction = _Friction(problem, self.bodies.hulls)
-        self._drawn = _Drawn(problem, self.bodies)
+        self._friction = FrictionBetween(problem, self.bodies.hulls)
+        self._drawn = DrawnApart(problem, self.bodies)
         self._forces, self._keys = np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
         self._residual = self._penetration = 0.0
 
@@ -365,90 +279,3 @@ class Stepping:
                 gaps = self._seen(points, self._place, self._place).gaps
                 deep = -float(gaps.min(initial=0.0))
         self._penetration = max(self._penetration, deep)
-
-
-class _Friction:
-    """Friction between hulls: of their joint where they have one, else that of all.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    hulls : Hulls
-    """
-
-    def __init__(self, problem: SpatialProblem, hulls: Hulls) -> None:
-        self._all, self._hulls = min(problem.mu, ROUGH), hulls
-        self._own: dict[tuple[int, int], float] = {}
-        for joint, mu in zip(problem.assembly.joints, problem.friction.tolist(), strict=True):
-            if joint.friction is not None:
-                self._own[min(sides := sides_of(joint)), max(sides)] = min(mu, ROUGH)
-
-    def at(self, points: Points) -> Array:
-        """Return the friction coefficient at each point."""
-        found = np.full(len(points.gaps), self._all)
-        if self._own:
-            bodies = body_of(self._hulls)
-            pairs = np.sort(np.stack([bodies[points.before], bodies[points.after]]), axis=0)
-            found[:] = [self._own.get((a, b), self._all) for a, b in pairs.T.tolist()]
-        return found
-
-
-ROUGH = 1e3
-"""Friction without a bound is taken as this."""
-
-
-def body_of(hulls: Hulls) -> NDArray[np.int64]:
-    """Return a number for the body of each hull: of blocks, then below -1 of supports."""
-    return np.where(hulls.owner == SUPPORT, -2 - hulls.support, hulls.owner)
-
-
-def sides_of(joint: Any) -> tuple[int, int]:
-    """Return the same numbers of the two sides of a joint."""
-    fixed = -1 if joint.support is None else -2 - joint.support
-    first, second = (fixed if each == SUPPORT else each for each in (joint.before, joint.after))
-    return first, second
-
-
-class _Drawn:
-    """Gaps of joints as they are drawn, which count as none.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    bodies : Bodies
-    """
-
-    def __init__(self, problem: SpatialProblem, bodies: Bodies) -> None:
-        hulls = bodies.hulls.placed(*bodies.built)
-        self._count = len(hulls.owner)
-        joints = problem.assembly.joints
-        widest = max((abs(each.gap) for each in joints), default=0.0) / problem.assembly.size
-        reach = np.full(self._count, widest + 1e-6)
-        pairs = near(hulls, reach)
-        points = meet(hulls, pairs, reach[pairs].sum(axis=1))
-        keys = self._pairs(points)
-        self._keys, place = np.unique(keys, return_inverse=True)
-        self._gaps = np.full(len(self._keys), -np.inf)
-        np.maximum.at(self._gaps, place, points.gaps)
-        # What touches nothing as it is drawn has its gap.
-        joined = {tuple(sorted(sides_of(each))) for each in joints}
-        bodies_of = body_of(hulls)
-        sides = np.sort(
-            np.stack(
-                [bodies_of[self._keys // self._count], bodies_of[self._keys % self._count]]
-            ),
-            axis=0,
-        ).T.tolist()
-        self._gaps[[tuple(each) not in joined for each in sides]] = 0.0
-
-    def _pairs(self, points: Points) -> NDArray[np.int64]:
-        first, second = (f(points.before, points.after) for f in (np.minimum, np.maximum))
-        return first * self._count + second
-
-    def at(self, points: Points) -> Array:
-        """Return the gap as drawn between the hulls of each point."""
-        if not len(self._keys):
-            return np.zeros(len(points.gaps))
-        keys = self._pairs(points)
-        at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
-        return np.where(self._keys[at] == keys, self._gaps[at], 0.0)

@@ -1,0 +1,105 @@
+"""Blocks in space as they move: frames that turn with them, inertia, loads and energy."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.engines.solid.hulls import hulls_of
+
+
+class Place(NamedTuple):
+    """Where blocks are: centres, (blocks + 1, 3), and frames, (blocks + 1, 3, 3).
+
+    The last row is what is fixed.
+    """
+
+    centres: Array
+    turns: Array
+
+    def moved(self, way: Array) -> Place:
+        """Return the place after ways along x, y, z and about the frames' axes, (blocks, 6)."""
+        centres, turns = self.centres.copy(), self.turns.copy()
+        centres[:-1] += way[:, :3]
+        turns[:-1] = turns[:-1] @ Rotation.from_rotvec(way[:, 3:]).as_matrix()
+        return Place(centres, turns)
+
+
+class Bodies:
+    """Blocks of a problem with frames that turn with them, along their principal axes.
+
+    Lengths are in units of the size, masses of the mean block's.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+    """
+
+    def __init__(self, problem: SpatialProblem) -> None:
+        self.problem, assembly = problem, problem.assembly
+        size, weights = assembly.size, assembly.weights
+        masses = weights / weights.mean()
+        gyration = np.array([block.gyration for block in assembly.blocks]) / size**2
+        moments, axes = np.linalg.eigh(gyration)
+        # A mirror image is no frame.
+        axes[np.linalg.det(axes) < 0, :, 0] *= -1.0
+        self.inertia: Array = masses[:, None] * np.hstack([np.ones_like(moments), moments])
+        self.root: Array = np.sqrt(self.inertia).ravel()
+        self.built = Place(
+            np.vstack([assembly.centres / size, np.zeros(3)]),
+            np.concatenate([axes, np.eye(3)[None]]),
+        )
+        self.hulls = hulls_of(assembly, axes)
+        reach = np.linalg.norm(self.hulls.corners, axis=2).max(axis=1)
+        self.reach: Array = np.zeros(len(masses))
+        moving = self.hulls.owner != SUPPORT
+        np.maximum.at(self.reach, self.hulls.owner[moving], reach[moving])
+        self.weights = masses
+        self._loads = self._acting()
+
+    def _acting(self) -> list[tuple[int, Array, Array]]:
+        """Return block, force [mean weights] and arm in its frame of each load at a point."""
+        problem, found = self.problem, list[tuple[int, Array, Array]]()
+        unit, size = float(problem.assembly.weights.mean()), problem.assembly.size
+        for load, factor in [(each, 1.0) for each in problem.dead] + [
+            (each, problem.load) for each in problem.live
+        ]:
+            for index in load.blocks:
+                own = problem.assembly.blocks[index]
+                force = factor * load.force * (own.weight if load.per_weight else 1.0) / unit
+                arm = np.zeros(3) if load.point is None else (load.point - own.centre) / size
+                found.append((index, force, self.built.turns[index].T @ arm))
+        return found
+
+    def pull(self, place: Place) -> Array:
+        """Return gravity and loads: forces in space, moments in frames, (blocks, 6)."""
+        found = np.zeros_like(self.inertia)
+        found[:, :3] = self.weights[:, None] * self.problem.gravity
+        for index, force, arm in self._loads:
+            found[index, :3] += force
+            found[index, 3:] += np.cross(arm, place.turns[index].T @ force)
+        return found
+
+    def turning(self, velocities: Array) -> Array:
+        """Return what keeps a turning block turning: - w x I w, (blocks, 6)."""
+        spin = velocities[:, 3:]
+        found = np.zeros_like(velocities)
+        found[:, 3:] = -np.cross(spin, self.inertia[:, 3:] * spin)
+        return found
+
+    def energy(self, place: Place, velocities: Array) -> tuple[float, float]:
+        """Return potential and kinetic energy [mean weights times the size]."""
+        centres = place.centres[:-1]
+        height = -float((self.weights[:, None] * self.problem.gravity * centres).sum())
+        for index, force, arm in self._loads:
+            height -= float(force @ (centres[index] + place.turns[index] @ arm))
+        return height, float((self.inertia * velocities**2).sum() / 2)
+
+    def poses(self, place: Place) -> Array:
+        """Return centres and rotation vectors since they were built, (blocks, 6)."""
+        turned = place.turns[:-1] @ self.built.turns[:-1].transpose(0, 2, 1)
+        return np.hstack([place.centres[:-1], Rotation.from_matrix(turned).as_rotvec()])
