@@ -312,7 +312,7 @@ def test_commands_answer_in_space_with_the_keys_of_the_plane() -> None:
 
 @pytest.mark.parametrize(
     "option",
-    ["--must-rest", "--method direct", "--shake constant", "--alpha 90", "--set step=1",
+    ["--must-rest", "--method pymunk", "--shake constant", "--alpha 90", "--set step=1",
      "--lean 3", "--fill 1", "--reduce", "--proof p.json"],
 )  # fmt: skip
 def test_an_option_that_means_nothing_in_space_is_refused(option: str) -> None:
