@@ -3,48 +3,26 @@
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Callable
-from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.blocks.space.polyhedron import Polyhedron
 from blocksim.view.drawing import literal, state_of_any, words_of
-from blocksim.view.order import painting_order
-from blocksim.view.style import FONT, GROUND, INK, PAPER, QUIET, STONE, VERDICTS
+from blocksim.view.solidscene import Camera, blocks_of, moving_box, supports_of
+from blocksim.view.style import FONT, INK, PAPER, QUIET, VERDICTS
 
 if TYPE_CHECKING:
     from blocksim.ask.space import SpatialCheck
 
-ASIDE, ABOVE = math.radians(-60.0), math.radians(22.0)
-"""Where the eye is: azimuth from x towards y, and height."""
-DISTANCE = 5.0
-"""Of the eye from the middle, in half-diagonals of what moves."""
-LIGHT = np.array([-0.35, -0.55, 0.76])
-AMBIENT = 0.55
-"""Brightness of a face in shade; one that faces the light has 1."""
 WAY = 0.15
 """How far the mechanism is drawn: its largest way in units of the size."""
-BED = 0.25
-"""How far supports are drawn beyond what moves, in units of the size."""
-
-
-class _Piece(NamedTuple):
-    """A convex part as it is drawn: its faces with normals and colours."""
-
-    corners: Array
-    faces: list[tuple[Array, Array, str]]
 
 
 def solid_figure(answer: SpatialCheck) -> Figure:
@@ -58,63 +36,15 @@ def solid_figure(answer: SpatialCheck) -> Figure:
     -------
     Figure
     """
-    low, high = _box(answer)
-    pieces = _pieces(answer, low, high)
-    middle = (low + high) / 2
-    away = np.array(
-        [math.cos(ASIDE) * math.cos(ABOVE), math.sin(ASIDE) * math.cos(ABOVE), math.sin(ABOVE)]
-    )
-    eye = middle + DISTANCE * float(np.linalg.norm(high - low)) / 2 * away
-    right = np.array([-math.sin(ASIDE), math.cos(ASIDE), 0.0])
-    axes = np.stack([right, np.cross(away, right)])
-
-    def seen(points: Array) -> Array:
-        deep = (eye - points) @ away
-        return (points - eye) @ axes.T / deep[:, None]
-
-    polygons: list[Array] = []
-    fills: list[Array] = []
-    for index in _order(pieces, eye, seen):
-        for corners, normal, tone in pieces[index].faces:
-            if normal @ (eye - corners[0]) > 0:
-                shade = AMBIENT + (1 - AMBIENT) * max(0.0, float(normal @ LIGHT))
-                polygons.append(seen(corners))
-                fills.append(np.array(to_rgb(tone)) * shade)
+    assembly, rates = answer.problem.assembly, answer.mechanism
+    low, high = moving_box(assembly)
+    if rates is None:
+        rates = np.zeros((len(assembly.blocks), 6))
+    turns = Rotation.from_rotvec(WAY * rates[:, 3:]).as_matrix()
+    pieces = supports_of(assembly, low, high)
+    pieces += blocks_of(assembly, turns, WAY * assembly.size * rates[:, :3], _marks(answer))
     with mpl.rc_context(FONT):
-        return _figure(answer, polygons, fills)
-
-
-def _pieces(answer: SpatialCheck, low: Array, high: Array) -> list[_Piece]:
-    """Return the convex parts of supports and blocks, where they are drawn."""
-    assembly = answer.problem.assembly
-    bed = BED * assembly.size
-    found = [
-        _cut(hull, low - bed, high + bed) for each in assembly.supports for hull in each.hulls
-    ]
-    found = [each for each in found if len(each.faces)]
-    rates, marks = answer.mechanism, _marks(answer)
-    for at, block in enumerate(assembly.blocks):
-        turn, shift = np.eye(3), np.zeros(3)
-        if rates is not None:
-            turn = Rotation.from_rotvec(WAY * rates[at, 3:]).as_matrix()
-            shift = WAY * assembly.size * rates[at, :3]
-
-        put = partial(_put, turn=turn, shift=shift, about=block.centre)
-        for hull in block.hulls:
-            faces = [(put(each.corners), turn @ each.normal, STONE) for each in hull.faces]
-            # What joints do is painted on the faces they are on.
-            faces += [
-                (put(points), turn @ normal, tone)
-                for points, normal, tone in marks.get(at, [])
-                if _lies_on(points, normal, hull)
-            ]
-            found.append(_Piece(put(hull.corners), faces))
-    return found
-
-
-def _put(points: Array, turn: Array, shift: Array, about: Array) -> Array:
-    """Turn points about a point, and shift them."""
-    return (points - about) @ turn.T + about + shift
+        return _figure(answer, *Camera(low, high).painted(pieces))
 
 
 def _marks(answer: SpatialCheck) -> dict[int, list[tuple[Array, Array, str]]]:
@@ -127,51 +57,6 @@ def _marks(answer: SpatialCheck) -> dict[int, list[tuple[Array, Array, str]]]:
         for side, sign in ((joint.before, 1.0), (joint.after, -1.0)):
             told.setdefault(side, []).append((joint.points, sign * joint.normal, tone))
     return told
-
-
-def _lies_on(points: Array, normal: Array, hull: Polyhedron) -> bool:
-    """Tell whether a joint lies on a face of a part."""
-    near = 1e-3 * hull.thickness
-    return any(
-        face.normal @ normal > 0.999 and np.abs(points @ face.normal - face.offset).max() < near
-        for face in hull.faces
-    )
-
-
-def _cut(hull: Polyhedron, low: Array, high: Array) -> _Piece:
-    """Return the box around a support, cut off beyond what is shown; or itself if within."""
-    if not ((hull.box[0] >= low).all() and (hull.box[1] <= high).all()):
-        lower, upper = np.maximum(hull.box[0], low), np.minimum(hull.box[1], high)
-        if not (upper - lower > 1e-9).all():
-            return _Piece(np.zeros((0, 3)), [])
-        hull = Polyhedron(list(itertools.product(*zip(lower, upper, strict=True))))
-    return _Piece(hull.corners, [(f.corners, f.normal, GROUND) for f in hull.faces])
-
-
-def _box(answer: SpatialCheck) -> Array:
-    """Return least and largest places of what moves, (2, 3)."""
-    boxes = np.array([h.box for each in answer.problem.assembly.blocks for h in each.hulls])
-    return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
-
-
-def _order(pieces: list[_Piece], eye: Array, seen: Callable[[Array], Array]) -> list[int]:
-    """Order pieces from back to front."""
-    count = max(len(each.corners) for each in pieces)
-    planes = max(len(each.faces) for each in pieces)
-    corners = np.stack([_filled(each.corners, count) for each in pieces])
-    normals = np.zeros((len(pieces), planes, 3))
-    offsets = np.zeros((len(pieces), planes))
-    for at, each in enumerate(pieces):
-        for k, (points, normal, _) in enumerate(each.faces):
-            normals[at, k], offsets[at, k] = normal, points[0] @ normal
-    flat = [seen(each.corners) for each in pieces]
-    boxes = np.stack([np.stack([f.min(axis=0), f.max(axis=0)]) for f in flat])
-    return painting_order(corners, normals, offsets, eye, boxes)
-
-
-def _filled(corners: Array, count: int) -> Array:
-    """Repeat the last corner until there are so many."""
-    return np.concatenate([corners, np.repeat(corners[-1:], count - len(corners), axis=0)])
 
 
 def _figure(answer: SpatialCheck, polygons: list[Array], fills: list[Array]) -> Figure:

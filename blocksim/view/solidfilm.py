@@ -1,0 +1,170 @@
+"""A recording in space as frames of a film: blocks in perspective, a clock, and words."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from blocksim.arch.circular import GRAVITY
+from blocksim.blocks.assembly import Array
+from blocksim.simulation.space import SpatialRecording
+from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
+from blocksim.view.filmwords import digits_of, fitting, slowness
+from blocksim.view.solidscene import Camera, blocks_of, moving_box, supports_of
+from blocksim.view.style import INK, QUIET
+
+BEFORE, AFTER = 0.8, 1.2
+"""How long the first and the last frame stand [s]."""
+TALL = 720
+"""Height for which sizes below are given [pixels]."""
+HEAD, FOOT, MARGIN = 74.0, 44.0, 30.0
+STILL = 1e-3
+"""Way in the last frames, over the size, that nobody sees."""
+
+
+class SolidFilm:
+    """Frames drawn from a recording alone: equal recordings give equal frames.
+
+    The camera keeps in frame all places that blocks come to.
+
+    Parameters
+    ----------
+    recording : SpatialRecording
+    slow : float, optional
+        How many times slower than it happened; by default such that the motion takes
+        about six seconds.
+    height : int
+        Of a frame [pixels]; it is 16:9.
+    rate : int
+        Frames in a second.
+    """
+
+    def __init__(
+        self,
+        recording: SpatialRecording,
+        *,
+        slow: float | None = None,
+        height: int = TALL,
+        rate: int = 30,
+    ) -> None:
+        self.height, self.width = 2 * (height // 2), 2 * round(height * 8 / 9)
+        self.rate, self._recording = rate, recording
+        assembly = recording.problem.assembly
+        self._unit = math.sqrt(assembly.size / GRAVITY)
+        self.seconds = float(recording.times[-1]) * self._unit
+        self.slow = slowness(self.seconds) if slow is None else slow
+        self.count = 1 + round(rate * (BEFORE + self.seconds * self.slow + AFTER))
+        # Turns between frames of the recording are even.
+        self._turns = [Rotation.from_rotvec(each[:, 3:]) for each in recording.poses]
+        low, high = self._reached()
+        self._supports = supports_of(assembly, low, high)
+        self._camera = Camera(low, high)
+        self._size = self.height / TALL
+        self._frame_all(low, high)
+        self._canvas = Canvas(self.width, self.height)
+        self._canvas.keep((), self._words())
+        self._last: tuple[float, NDArray[np.uint8]] | None = None
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether blocks hardly move as it ends."""
+        moved = self._recording.displacement
+        return bool(np.ptp(moved[-5:]) < STILL) if len(moved) > 5 else False
+
+    def frame(self, number: int) -> NDArray[np.uint8]:
+        """Draw a frame, shape (height, width, 4): RGBA, not to be changed."""
+        seconds = min(max((number / self.rate - BEFORE) / self.slow, 0.0), self.seconds)
+        if self._last is None or self._last[0] != seconds:
+            self._draw(seconds)
+            self._last = seconds, self._canvas.pixels()
+        return self._last[1]
+
+    def corners(self, seconds: float) -> Array:
+        """Return where all corners that move are in the picture at a time, (k, 2) [pixels]."""
+        assembly = self._recording.problem.assembly
+        pieces = blocks_of(assembly, *self._at(seconds))
+        return self._placed(np.concatenate([each.corners for each in pieces]))
+
+    def _at(self, seconds: float) -> tuple[Array, Array]:
+        """Return turns of the blocks at a time, and shifts of their centres [m]."""
+        times, poses = self._recording.times, self._recording.poses
+        at = float(np.clip(seconds / self._unit, times[0], times[-1]))
+        k = min(int(np.searchsorted(times, at, side="right")) - 1, len(times) - 2)
+        share = (at - times[k]) / (times[k + 1] - times[k])
+        one, two = self._turns[k], self._turns[k + 1]
+        between = Rotation.from_rotvec(share * (two * one.inv()).as_rotvec()) * one
+        shift = poses[k, :, :3] + share * (poses[k + 1, :, :3] - poses[k, :, :3])
+        shift = (shift - poses[0, :, :3]) * self._recording.problem.assembly.size
+        return between.as_matrix(), shift
+
+    def _reached(self) -> Array:
+        """Return least and largest places that corners come to, (2, 3) [m]."""
+        assembly = self._recording.problem.assembly
+        found = [moving_box(assembly)]
+        for seconds in self._recording.times * self._unit:
+            pieces = blocks_of(assembly, *self._at(float(seconds)))
+            corners = np.concatenate([each.corners for each in pieces])
+            found.append(np.stack([corners.min(axis=0), corners.max(axis=0)]))
+        every = np.array(found)
+        return np.stack([every[:, 0].min(axis=0), every[:, 1].max(axis=0)])
+
+    def _frame_all(self, low: Array, high: Array) -> None:
+        """Choose scale and middle so that the box of all places is in frame."""
+        ends = np.array(
+            [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1])
+             for z in (low[2], high[2])]
+        )  # fmt: skip
+        seen = self._camera.seen(ends)
+        wide, tall = np.ptp(seen, axis=0)
+        room = np.array(
+            [self.width - 2 * MARGIN * self._size, self.height - (HEAD + FOOT) * self._size]
+        )
+        self._scale = float(min(room / np.array([wide, tall])))
+        self._middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+
+    def _placed(self, points: Array) -> Array:
+        """Return places in pixels of points in space."""
+        return self._in_pixels(self._camera.seen(points))
+
+    def _in_pixels(self, seen: Array) -> Array:
+        middle = np.array([self.width, self.height + (FOOT - HEAD) * self._size]) / 2
+        return (seen - self._middle) * self._scale + middle
+
+    def _words(self) -> list[Label]:
+        """Say what it is, and how slow."""
+        recording, s = self._recording, self._size
+        problem = recording.problem
+        title = problem.title or "blocks in space"
+        said = f"{title}, {len(problem.assembly.blocks)} blocks, mu {problem.mu:g}"
+        top = self.height - 34 * s
+        foot = f"{recording.engine} {recording.engine_version}"
+        if self.slow > 1.05:
+            foot += f", {self.slow:.3g} times slower than it happens"
+        return [
+            Label(
+                24 * s, top, fitting(said, 17 * s, self.width - 48 * s), 17 * s, INK, bold=True
+            ),
+            Label(24 * s, 18 * s, foot, 13 * s, QUIET),
+        ]
+
+    def _draw(self, seconds: float) -> None:
+        s = self._size
+        pieces = [
+            *self._supports,
+            *blocks_of(self._recording.problem.assembly, *self._at(seconds)),
+        ]
+        polygons, fills = self._camera.painted(pieces)
+        edge = colour(INK)
+        shapes = [
+            Shape(self._in_pixels(each), (*map(float, fill), 1.0), edge, 0.7 * s)  # type: ignore[arg-type]
+            for each, fill in zip(polygons, fills, strict=True)
+        ]
+        clock = f"t = {seconds:.{digits_of(self.seconds)}f} s"
+        if seconds >= self.seconds:
+            clock += ", at rest" if self.at_rest else ", still moving"
+        panel = Panel(0, 0, self.width, self.height)
+        words = [Label(self.width - 24 * s, 18 * s, clock, 15 * s, INK, across="right")]
+        self._canvas.draw([(panel, shapes)], words)
