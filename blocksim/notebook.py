@@ -31,6 +31,7 @@ from blocksim.report.answerwords import bracket_lines, check_lines
 from blocksim.report.problems import arch_size_lines, described, size_lines, size_record
 from blocksim.report.recordings import recording_lines, recording_record
 from blocksim.simulation.recording import Recording
+from blocksim.simulation.space import SpatialRecording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -113,8 +114,13 @@ def figure_of(shown: object) -> Figure:
 
 def film_of(shown: object, path: AnyPath, **options: Any) -> None:
     """Write a recording as a film; options are those of `blocksim.view.video.render`."""
-    from blocksim.view.video import render
+    from blocksim.view.video import render, write_film
 
+    if isinstance(shown, SpatialRecording):
+        from blocksim.view.solidfilm import SolidFilm
+
+        write_film(SolidFilm(shown, **options), path)
+        return
     render([cast(Recording, shown)], path, **options)
 
 

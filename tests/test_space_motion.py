@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
+from running import inside
 from scipy.integrate import solve_ivp
 from space_cases import GROUND, NAMES, box, case, problem_of
 
@@ -17,6 +20,7 @@ from blocksim.blocks.space.files import problem_in_space
 from blocksim.engines.solid.stepping import Stepping
 from blocksim.kinds.dome import Dome
 from blocksim.simulation.space import engine_in_space, observe_in_space
+from blocksim.view.solidfilm import SolidFilm
 
 DIRECT = engine_in_space("direct")
 
@@ -183,6 +187,48 @@ def test_a_dome_that_is_too_thin_falls_to_the_ground() -> None:
     assert heights[-1].max() < 0.5 * heights[0].max()
     reach = np.abs(recording.poses[-1, :, :2]).max() * problem.assembly.size
     assert reach < 3.0
+
+
+def falling_tower() -> SpatialProblem:
+    """A case that topples at once."""
+    return problem_in_space(case("tower_113")["scene"])
+
+
+def test_a_film_keeps_all_blocks_in_frame_and_says_whether_they_move() -> None:
+    """Corners in pixels, at ten moments."""
+    recording = blocksim.simulate(falling_tower(), method="direct", duration=1.0)
+    film = SolidFilm(recording, height=180)
+    for share in np.linspace(0, 1, 10):
+        x, y = film.corners(float(share) * film.seconds).T
+        assert 0 < x.min() < x.max() < film.width
+        assert 0 < y.min() < y.max() < film.height
+    first, last = film.frame(0), film.frame(film.count - 1)
+    assert first.shape == (180, 320, 4)
+    assert (first != last).any()
+    assert not film.at_rest
+
+
+def test_a_film_of_what_stands_is_at_rest() -> None:
+    """Every frame is as the first, but for the clock."""
+    problem = problem_in_space(case("tower_103")["scene"])
+    recording = blocksim.simulate(problem, method="direct", duration=0.5)
+    film = SolidFilm(recording, height=180)
+    assert film.at_rest
+    assert (film.frame(0)[:150] == film.frame(film.count - 1)[:150]).all()
+
+
+@pytest.mark.long
+def test_the_command_render_films_blocks_in_space(tmp_path: Path) -> None:
+    """A file of frames that are not empty, and what is said of it."""
+    out = tmp_path / "block.gif"
+    done = inside(
+        "render", "tower", "--mu", "0.6", "--with", "offset=0.52", "--with", "blocks=2",
+        "--method", "direct", "--height", "180", "--slow", "1", "--out", str(out),
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "of motion" in done.stdout
+    with Image.open(out) as picture:
+        assert picture.n_frames > 10
 
 
 def test_what_an_engine_cannot_do_in_space_is_one_line() -> None:

@@ -9,6 +9,7 @@ from blocksim.ask.methods import choose
 from blocksim.ask.simulate import simulate as let_go
 from blocksim.ask.spread import Spreading
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.drawing import write_still
 from blocksim.cli.filming import (
@@ -39,7 +40,8 @@ from blocksim.cli.options import (
 )
 from blocksim.cli.output import picture_kind, progress, say
 from blocksim.cli.question import question
-from blocksim.cli.subject import problem_asked
+from blocksim.cli.space import film_in_space
+from blocksim.cli.subject import anything_asked, is_structure, problem_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
 from blocksim.engines import NAMES
@@ -153,6 +155,11 @@ def render(
         require(kind != "dxf", "--out", str(out), "another kind: a .dxf is of no motion")
         shown = RenderOptions(view=view, slow=slow, time=time, height=height or HEIGHT)
         require(time is None or kind not in FILMS, "--time", time, "left out of a film")
+        if kind in FILMS and scene is not None and is_structure(scene):
+            asked = anything_asked(scene, given, loading)
+            if isinstance(asked, SpatialProblem):
+                film_in_space(out, asked, method, shown, beside)
+                return
         film(out, recordings(scene, given, loading, method, beside), shown)
     else:
         for name, value in (("slow", slow), ("time", time)):

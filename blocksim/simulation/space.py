@@ -20,7 +20,9 @@ from blocksim.blocks.space.parting import (
 )
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import InputError
+from blocksim.common.files import AnyPath
 from blocksim.common.progress import Progress, silent
+from blocksim.common.shown import renderer
 from blocksim.common.words import counted
 from blocksim.engines import ENGINES, get_engine
 from blocksim.engines.base import FRICTION_CAP, Engine, Quality, Settings, World, trusted
@@ -83,6 +85,25 @@ class SpatialRecording:
         """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
         little = np.ascontiguousarray(self.poses, dtype="<f8")
         return hashlib.sha256(little.reshape(-1).data).hexdigest()[:16]
+
+    def film(self, path: AnyPath, *, slow: float | None = None, height: int = 720) -> None:
+        """Write it as a film in perspective.
+
+        Parameters
+        ----------
+        path : Path
+            Ending in .mp4 or .gif.
+        slow : float, optional
+            How many times slower than it happened.
+        height : int
+            In pixels; frames are 16:9.
+
+        Raises
+        ------
+        InputError, MachineError
+            If the film is too long or too large, or the file cannot be written.
+        """
+        renderer().film_of(self, path, slow=slow, height=height)
 
     @property
     def displacement(self) -> Array:

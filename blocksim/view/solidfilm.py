@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.space.parting import displacement_in_space
 from blocksim.simulation.space import SpatialRecording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
 from blocksim.view.filmwords import digits_of, fitting, slowness
@@ -21,8 +22,8 @@ BEFORE, AFTER = 0.8, 1.2
 TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT, MARGIN = 74.0, 44.0, 30.0
-STILL = 1e-3
-"""Way in the last frames, over the size, that nobody sees."""
+LAST, STILL = 5, 1e-3
+"""Frames at the end, and the way in them, over the size, that nobody sees."""
 
 
 class SolidFilm:
@@ -71,8 +72,10 @@ class SolidFilm:
     @property
     def at_rest(self) -> bool:
         """Whether blocks hardly move as it ends."""
-        moved = self._recording.displacement
-        return bool(np.ptp(moved[-5:]) < STILL) if len(moved) > 5 else False
+        recording = self._recording
+        last = recording.poses[-LAST:]
+        way = displacement_in_space(last - last[-1], recording.problem.assembly)
+        return len(last) == LAST and float(way.max()) < STILL
 
     def frame(self, number: int) -> NDArray[np.uint8]:
         """Draw a frame, shape (height, width, 4): RGBA, not to be changed."""

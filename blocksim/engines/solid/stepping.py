@@ -43,6 +43,8 @@ DEEP = 1e-6
 """Overlap that is pushed apart at once [size]."""
 SAME = 1e-6
 """Distance of points that are the same [size]."""
+MOST = 5e-4
+"""Overlap after impacts beyond which the step is halved [size]."""
 NEAR = 1e-3
 """Beyond the way of a step, how near blocks are that are looked at [size]."""
 
@@ -119,11 +121,13 @@ class Stepping:
             part = min(left, step / 2**halvings)
             before = vars(self).copy()
             worst, self._residual = self._residual, 0.0
+            deep = 0.0
             if not self._smooth(part):
                 vars(self).update(before)
                 self._residual = 0.0
                 self._closing(part)
-            if self._residual > COARSE and halvings < HALVINGS:
+                deep = self._overlap()
+            if (self._residual > COARSE or deep > MOST) and halvings < HALVINGS:
                 vars(self).update(before)
                 halvings += 1
                 continue
@@ -262,6 +266,12 @@ class Stepping:
         matrix: Any = sparse.csr_matrix(entries, shape=(3 * len(gaps), root.size))
         return Seen(matrix, gaps)
 
+    def _overlap(self) -> float:
+        """Return how deep blocks are within each other."""
+        points, _ = self._points(self._place, 0.0)
+        gaps = self._seen(points, self._place, self._place).gaps
+        return -float(gaps.min(initial=0.0))
+
     def _push_apart(self) -> None:
         """Move blocks that overlap apart, as little as contact and friction allow."""
         points, friction = self._points(self._place, 0.0)
@@ -275,7 +285,5 @@ class Stepping:
             if found.residual <= UNSOLVED:
                 way = deep * (found.x / self.bodies.root).reshape(-1, 6)
                 self._place = self._place.moved(way)
-                points, _ = self._points(self._place, 0.0)
-                gaps = self._seen(points, self._place, self._place).gaps
-                deep = -float(gaps.min(initial=0.0))
+                deep = self._overlap()
         self._penetration = max(self._penetration, deep)
