@@ -40,7 +40,7 @@ from blocksim.cli.options import (
 )
 from blocksim.cli.output import picture_kind, progress, say
 from blocksim.cli.question import question
-from blocksim.cli.space import film_in_space
+from blocksim.cli.spacefilm import film_in_space
 from blocksim.cli.subject import anything_asked, is_structure, problem_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place

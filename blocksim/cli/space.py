@@ -13,9 +13,7 @@ import click
 from blocksim.ask.bracket import bracket
 from blocksim.ask.check import check
 from blocksim.ask.options import Options
-from blocksim.ask.simulate import simulate
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.cli.filming import FALL, RenderOptions
 from blocksim.cli.options import (
     EXIT_CODES,
     Given,
@@ -23,7 +21,7 @@ from blocksim.cli.options import (
     named_options,
     option_of,
 )
-from blocksim.cli.output import answer_with, progress, save_picture, say
+from blocksim.cli.output import answer_with, save_picture
 from blocksim.common.checks import require
 from blocksim.report.space import (
     bracket_in_space_lines,
@@ -75,29 +73,6 @@ def draw_in_space(
     with named_options():
         answer = check(problem, method=method or "auto")
     save_picture(solid_figure(answer), out, kind, height)
-
-
-def film_in_space(
-    out: Path,
-    problem: SpatialProblem,
-    method: str | None,
-    options: RenderOptions,
-    beside: Path | None,
-) -> None:
-    """Answer the command render: a film in perspective."""
-    allowed = "left out: blocks in space are filmed alone"
-    require(beside is None, "--beside", str(beside), allowed)
-    # Drawing takes a second to import, which other commands need not wait for.
-    from blocksim.view.solidfilm import SolidFilm
-    from blocksim.view.video import write_film
-
-    with named_options(), progress() as report:
-        recording = simulate(problem, method=method or "auto", duration=FALL, progress=report)
-        film = SolidFilm(recording, slow=options.slow, height=options.height)
-        write_film(film, out, report)
-    pace = f"{film.slow:.3g} times slower" if film.slow > 1 else "in real time"
-    ends = "all at rest" if film.at_rest else "blocks still move as it ends"
-    say(f"wrote {out}: a film of {film.seconds:.3g} s of motion, {pace}; {ends}")
 
 
 def check_in_space(

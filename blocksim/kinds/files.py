@@ -37,7 +37,9 @@ if TYPE_CHECKING:
 LARGEST_FILES = {".json": 20_000_000, ".toml": 1_000_000}
 """Bytes; a larger file is not read: TOML takes a second for each of these."""
 WRITTEN = {".json": "JSON", ".toml": "TOML"}
-IN_PLANE = "x and y: in space there are check, bracket, films and stills by render, and load_in_space"
+IN_PLANE = (
+    "x and y: in space there are check, bracket, films and stills by render, and load_in_space"
+)
 """What is accepted where blocks have to lie in the plane."""
 DRAWN = {".dxf": read_dxf, ".svg": read_svg}
 """Endings of drawings, and who reads them."""
