@@ -175,18 +175,18 @@ def test_what_turns_freely_keeps_its_spin_to_second_order() -> None:
 @pytest.mark.long
 def test_a_dome_that_is_too_thin_falls_to_the_ground() -> None:
     """No block is thrown, none passes another, and no energy is gained."""
-    dome = Dome(lunes=8, courses=4, thickness=0.08, friction=0.7)
-    recording = blocksim.simulate(dome.problem(), method="direct", duration=6.0)
+    dome = Dome(lunes=8, courses=4, thickness=0.03, friction=0.7)
+    recording = blocksim.simulate(dome.problem(), method="direct", duration=3.0)
     quality, problem = recording.quality, recording.problem
     assert quality.gain is not None
     assert quality.gain < 1e-3
-    assert quality.residual is not None
-    assert quality.residual < 1e-4
+    assert quality.penetration is not None
+    assert quality.penetration < 1e-3
     heights = recording.poses[:, :, 2] * problem.assembly.size
     assert (heights.max(axis=1) <= heights[0].max() + 1e-6).all()
     assert heights[-1].max() < 0.5 * heights[0].max()
-    reach = np.abs(recording.poses[-1, :, :2]).max() * problem.assembly.size
-    assert reach < 3.0
+    # The springing has a radius of 1: nothing is flung away from it.
+    assert np.abs(recording.poses[-1, :, :2]).max() * problem.assembly.size < 1.5
 
 
 def falling_tower() -> SpatialProblem:

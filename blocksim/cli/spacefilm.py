@@ -11,6 +11,9 @@ from blocksim.cli.options import named_options
 from blocksim.cli.output import progress, say
 from blocksim.common.checks import require
 
+ROUGH = 1e-4
+"""Residual of contacts that is told."""
+
 
 def film_in_space(
     out: Path,
@@ -32,4 +35,7 @@ def film_in_space(
         write_film(film, out, report)
     pace = f"{film.slow:.3g} times slower" if film.slow > 1 else "in real time"
     ends = "all at rest" if film.at_rest else "blocks still move as it ends"
+    left = recording.quality.residual or 0.0
+    if left > ROUGH:
+        ends += f"; Coulomb's law was kept to {left:.1g} of the forces only, where it was worst"
     say(f"wrote {out}: a film of {film.seconds:.3g} s of motion, {pace}; {ends}")

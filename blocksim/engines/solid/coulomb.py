@@ -38,6 +38,8 @@ ROUNDS, TRIES = 25, 60
 AT_ONCE = 6
 """The same where forces of the last step may do."""
 HALVINGS = 6
+UNSOLVED = 1e-4
+"""Residual of what is no solution."""
 SOLVED, ENOUGH = 1e-9, 3e-8
 """Residual of a solution from nothing, and of one in motion."""
 LESS = 0.9997
@@ -111,7 +113,19 @@ def solve(step: Step, forces: Array | None) -> Answer:
         if best.residual <= (SOLVED if forces is None else ENOUGH):
             break
     assert best is not None  # noqa: S101
-    return best
+    return best if best.residual <= UNSOLVED else _as_last_resort(step, best)
+
+
+def _as_last_resort(step: Step, best: Answer) -> Answer:
+    """Return the solution of friction that dilates: in balance, and gaining no energy.
+
+    Its residual says how far it is from Coulomb's law.
+    """
+    forces = _dilating(step)
+    if forces is None:
+        return best
+    x = step.free + step.matrix.T @ forces.ravel()
+    return Answer(x, forces, max(best.residual, residual(step, x, forces)))
 
 
 def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:

@@ -8,6 +8,7 @@ not pass. What overlaps all the same is pushed apart, which changes no velocity.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,12 +26,12 @@ from blocksim.engines.solid.between import (
     sides_of,
 )
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solid.coulomb import Answer, Step, solve
+from blocksim.engines.solid.coulomb import UNSOLVED, Answer, Step, solve
 from blocksim.engines.solid.facing import frames
 from blocksim.engines.solid.meeting import Points, meet, near
 
-COARSE, UNSOLVED = 1e-5, 1e-4
-"""Residual of a step that is halved, and of one that is not taken."""
+COARSE = 1e-5
+"""Residual of a step that is halved."""
 HALVINGS = 5
 """How often a step that is not solved is halved."""
 SHUT, PRESSED = 1e-6, 1e-4
@@ -117,7 +118,7 @@ class Stepping:
     def _move(self, step: float) -> None:
         """Go on for a time."""
         left, halvings = step, 0
-        while left > 1e-9 * step and self._residual <= UNSOLVED:
+        while left > 1e-9 * step and math.isfinite(self._residual):
             part = min(left, step / 2**halvings)
             before = vars(self).copy()
             worst, self._residual = self._residual, 0.0
@@ -154,8 +155,8 @@ class Stepping:
         drift = now.rows @ scaled + (last.rows - now.rows) @ at_end
         drift[0::3] += np.maximum(first.gaps, 0.0) / step
         self._solve(points, friction, now.rows, drift / step, shut, middle, step)
-        if self._residual > UNSOLVED:
-            return True
+        if self._residual > COARSE:
+            return False
         self._advance(step, 0.5)
         after = self._seen(points, middle, self._place)
         opened = first.gaps > PASSED
@@ -174,7 +175,7 @@ class Stepping:
         drift[0::3] += np.maximum(first.gaps, 0.0) / step
         every = np.ones(len(points.gaps), dtype=bool)
         self._solve(points, friction, now.rows, drift / step, every, middle, step)
-        if self._residual <= UNSOLVED:
+        if math.isfinite(self._residual):
             self._advance(step, 1.0)
 
     def _advance(self, step: float, share: float) -> None:
