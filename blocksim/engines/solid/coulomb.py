@@ -25,11 +25,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import Array
-from blocksim.common.later import Library
+from blocksim.common.conic import Cone, solved_cones
 from blocksim.engines.solid.path import ROUNDED, followed
-
-# It has no types.
-clarabel = cast("Any", Library("clarabel"))
 
 STIFF = 1e5
 """Springs over the mean mass."""
@@ -42,6 +39,8 @@ UNSOLVED = 1e-4
 """Residual of what is no solution."""
 SOLVED, ENOUGH = 1e-9, 3e-8
 """Residual of a solution from nothing, and of one in motion."""
+FINEST = 1e-10
+"""Gap and residuals at which a cone programme may end."""
 LESS = 0.9997
 """Share of friction that is taken where that much did not tell."""
 NEAR = 1e-2
@@ -275,16 +274,11 @@ def _dilating(step: Step) -> Array | None:
     factor = scale.ravel()[order]
     rows = -(sparse.diags(factor) @ step.matrix[order])
     right = factor * step.drift[order]
-    cones: list[Any] = [clarabel.SecondOrderConeT(3)] * len(round_)
+    cones: list[Cone] = [("second-order", 3)] * len(round_)
     if len(smooth):
-        cones.append(clarabel.NonnegativeConeT(len(smooth)))
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
-    found = clarabel.DefaultSolver(
-        sparse.identity(size, format="csc"), -step.free, rows.tocsc(), right, cones, settings
-    ).solve()
+        cones.append(("nonnegative", len(smooth)))
+    inertia = sparse.identity(size, format="csc")
+    found = solved_cones(inertia, -step.free, rows.tocsc(), right, cones, finest=FINEST)
     z = np.array(found.z)
     if not np.isfinite(z).all():
         return None

@@ -1,19 +1,16 @@
-"""Second-order cone programmes by Clarabel; the only place that knows it."""
+"""Forces within friction by cone programmes: the largest value of an unknown."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
 from blocksim.blocks.assembly import Array
+from blocksim.common.conic import Cone, solved_cones
 from blocksim.common.errors import Unsolved
-from blocksim.common.later import Library
-
-# It has no types.
-clarabel = cast("Any", Library("clarabel"))
 
 FINEST = 1e-11
 """Gap and residuals at which Clarabel may end; it ends where it gets no farther."""
@@ -68,11 +65,11 @@ def most(matrix: Any, pull: Array, friction: Array, live: Array | None = None) -
     equal = sparse.hstack([matrix, sparse.csc_matrix(column[:, None])], format="csc")
     law, kinds = _law(friction, 1.0 if presses else 0.0)
     blocks, right = [equal, -law], [-pull, np.zeros(law.shape[0])]
-    cones: list[Any] = [clarabel.ZeroConeT(rows), *kinds]
+    cones: list[Cone] = [("zero", rows), *kinds]
     if presses:
         blocks.append(sparse.csc_matrix(([1.0], ([0], [3 * points])), (1, 3 * points + 1)))
         right.append(np.ones(1))
-        cones.append(clarabel.NonnegativeConeT(1))
+        cones.append(("nonnegative", 1))
     cost = np.zeros(3 * points + 1)
     cost[-1] = -1.0
     programme = cost, sparse.vstack(blocks, format="csc"), np.concatenate(right), cones
@@ -95,13 +92,8 @@ def most(matrix: Any, pull: Array, friction: Array, live: Array | None = None) -
 def _solved(programme: tuple[Any, ...], *, scaled: bool) -> Any:
     """Solve a programme, scaled by the solver or not."""
     cost, matrix, right, cones = programme
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    settings.equilibrate_enable = scaled
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = FINEST
     empty = sparse.csc_matrix((len(cost), len(cost)))
-    return clarabel.DefaultSolver(empty, cost, matrix, right, cones, settings).solve()
+    return solved_cones(empty, cost, matrix, right, cones, finest=FINEST, scaled=scaled)
 
 
 def _left_over(found: Any) -> tuple[bool, float]:
@@ -111,7 +103,7 @@ def _left_over(found: Any) -> tuple[bool, float]:
     return str(found.status) not in CERTAIN, left if np.isfinite(left) else np.inf
 
 
-def _law(friction: Array, press: float) -> tuple[Any, list[Any]]:
+def _law(friction: Array, press: float) -> tuple[Any, list[Cone]]:
     """Return what friction asks of the forces, and the cones in which that lies."""
     points = len(friction)
     rough, smooth = np.isinf(friction), friction == 0
@@ -124,7 +116,7 @@ def _law(friction: Array, press: float) -> tuple[Any, list[Any]]:
     rows = [first, first, first + 1, first + 2]
     columns = [3 * round_, np.full(len(round_), last), 3 * round_ + 1, 3 * round_ + 2]
     values = [ones, -press * ones, scale, scale]
-    kinds: list[Any] = [clarabel.SecondOrderConeT(3)] * len(round_)
+    kinds: list[Cone] = [("second-order", 3)] * len(round_)
     flat = np.flatnonzero(rough | smooth)
     start = 3 * len(round_)
     if len(flat):
@@ -132,7 +124,7 @@ def _law(friction: Array, press: float) -> tuple[Any, list[Any]]:
         rows += [each, each]
         columns += [3 * flat, np.full(len(flat), last)]
         values += [np.ones(len(flat)), np.full(len(flat), -press)]
-        kinds.append(clarabel.NonnegativeConeT(len(flat)))
+        kinds.append(("nonnegative", len(flat)))
         start += len(flat)
     slippery = np.flatnonzero(smooth)
     if len(slippery):
@@ -140,7 +132,7 @@ def _law(friction: Array, press: float) -> tuple[Any, list[Any]]:
         rows.append(start + np.arange(len(across)))
         columns.append(across)
         values.append(np.ones(len(across)))
-        kinds.append(clarabel.ZeroConeT(len(across)))
+        kinds.append(("zero", len(across)))
         start += len(across)
     entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
     return sparse.csc_matrix(entries, shape=(start, 3 * points + 1)), kinds

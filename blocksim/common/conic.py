@@ -1,0 +1,59 @@
+"""Cone programmes by Clarabel; the only place that knows it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal, cast
+
+from blocksim.common.later import Library
+
+# It has no types.
+clarabel = cast("Any", Library("clarabel"))
+
+Cone = tuple[Literal["zero", "nonnegative", "second-order"], int]
+"""A kind of cone, and how many rows of a programme lie in it."""
+KINDS = {
+    "zero": "ZeroConeT",
+    "nonnegative": "NonnegativeConeT",
+    "second-order": "SecondOrderConeT",
+}
+
+
+def solved_cones(
+    quadratic: Any,
+    cost: Any,
+    matrix: Any,
+    right: Any,
+    cones: Sequence[Cone],
+    *,
+    finest: float,
+    scaled: bool = True,
+) -> Any:
+    """Minimise ``x Q x / 2 + c x`` with ``b - A x`` in cones.
+
+    Parameters
+    ----------
+    quadratic : (n, n) sparse
+    cost : (n,) float
+    matrix : (rows, n) sparse
+    right : (rows,) float
+    cones : sequence of Cone
+        In the order of the rows.
+    finest : float
+        Gap and residuals at which it may end.
+    scaled : bool
+        Whether the solver scales the programme first.
+
+    Returns
+    -------
+    object
+        Clarabel's: `x`, the prices `z` of the rows, `status`, values and residuals.
+    """
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    settings.equilibrate_enable = scaled
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = finest
+    made = {kind: getattr(clarabel, name) for kind, name in KINDS.items()}
+    kinds = [made[kind](rows) for kind, rows in cones]
+    return clarabel.DefaultSolver(quadratic, cost, matrix, right, kinds, settings).solve()
