@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -146,16 +147,21 @@ class SpatialProblem:
         return frozen(self._sum(self.live), (-1, 6))
 
     def _sum(self, loads: tuple[SpatialLoad, ...]) -> Array:
-        assembly = self.assembly
-        found = np.zeros((len(assembly.blocks), 6))
+        found = np.zeros((len(self.assembly.blocks), 6))
+        for index, force, arm in self.forces_of(loads):
+            found[index] += np.concatenate([force, np.cross(arm, force)])
+        return found
+
+    def forces_of(self, loads: tuple[SpatialLoad, ...]) -> Iterator[tuple[int, Array, Array]]:
+        """Give the block of each force of loads, the force [N], and its arm [m].
+
+        The arm is from the centre of mass to where it acts.
+        """
         for load in loads:
             for index in load.blocks:
-                own = assembly.blocks[index]
-                force = load.force * (own.weight if load.per_weight else 1.0)
-                found[index, :3] += force
-                if load.point is not None:
-                    found[index, 3:] += np.cross(load.point - own.centre, force)
-        return found
+                own = self.assembly.blocks[index]
+                arm = np.zeros(3) if load.point is None else load.point - own.centre
+                yield index, load.force * (own.weight if load.per_weight else 1.0), arm
 
 
 def turned(azimuth: float, tilt: float) -> Array:

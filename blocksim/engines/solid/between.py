@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.space.assembly import FaceJoint
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines.solid.bodies import Bodies
 from blocksim.engines.solid.hulls import Hulls
@@ -27,7 +26,7 @@ class FrictionBetween:
     """
 
     def __init__(self, problem: SpatialProblem, hulls: Hulls) -> None:
-        self._all, self._hulls = min(problem.mu, ROUGH), hulls
+        self._all, self._bodies = min(problem.mu, ROUGH), body_of(hulls)
         self._own: dict[tuple[int, int], float] = {}
         for joint, mu in zip(problem.assembly.joints, problem.friction.tolist(), strict=True):
             if joint.friction is not None:
@@ -37,7 +36,7 @@ class FrictionBetween:
         """Return the friction coefficient at each point."""
         found = np.full(len(points.gaps), self._all)
         if self._own:
-            bodies = body_of(self._hulls)
+            bodies = self._bodies
             pairs = np.sort(np.stack([bodies[points.before], bodies[points.after]]), axis=0)
             found[:] = [self._own.get((a, b), self._all) for a, b in pairs.T.tolist()]
         return found
@@ -48,7 +47,7 @@ def body_of(hulls: Hulls) -> NDArray[np.int64]:
     return np.where(hulls.owner == SUPPORT, -2 - hulls.support, hulls.owner)
 
 
-def sides_of(joint: Any) -> tuple[int, int]:
+def sides_of(joint: FaceJoint) -> tuple[int, int]:
     """Return the same numbers of the two sides of a joint."""
     fixed = -1 if joint.support is None else -2 - joint.support
     first, second = (fixed if each == SUPPORT else each for each in (joint.before, joint.after))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines.solid.hulls import hulls_of
 
@@ -54,10 +54,7 @@ class Bodies:
             np.concatenate([axes, np.eye(3)[None]]),
         )
         self.hulls = hulls_of(assembly, axes)
-        reach = np.linalg.norm(self.hulls.corners, axis=2).max(axis=1)
-        self.reach: Array = np.zeros(len(masses))
-        moving = self.hulls.owner != SUPPORT
-        np.maximum.at(self.reach, self.hulls.owner[moving], reach[moving])
+        self.reach: Array = assembly.reach / size
         self.weights = masses
         self._loads = self._acting()
 
@@ -65,14 +62,10 @@ class Bodies:
         """Return block, force [mean weights] and arm in its frame of each load at a point."""
         problem, found = self.problem, list[tuple[int, Array, Array]]()
         unit, size = float(problem.assembly.weights.mean()), problem.assembly.size
-        for load, factor in [(each, 1.0) for each in problem.dead] + [
-            (each, problem.load) for each in problem.live
-        ]:
-            for index in load.blocks:
-                own = problem.assembly.blocks[index]
-                force = factor * load.force * (own.weight if load.per_weight else 1.0) / unit
-                arm = np.zeros(3) if load.point is None else (load.point - own.centre) / size
-                found.append((index, force, self.built.turns[index].T @ arm))
+        for loads, factor in ((problem.dead, 1.0), (problem.live, problem.load)):
+            for index, force, arm in problem.forces_of(loads):
+                frame = self.built.turns[index].T
+                found.append((index, factor * force / unit, frame @ (arm / size)))
         return found
 
     def pull(self, place: Place) -> Array:

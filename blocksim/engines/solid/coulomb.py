@@ -16,17 +16,22 @@ where Coulomb's law allows both, that is rest. Else they are the end of a path (
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Any, cast
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import Array
 from blocksim.common.conic import Cone, solved_cones
 from blocksim.engines.solid.path import ROUNDED, followed
+from blocksim.engines.solid.step import (
+    Answer,
+    Step,
+    on_diagonal,
+    projected,
+    rows_of,
+    solved,
+)
 
 STIFF = 1e5
 """Springs over the mean mass."""
@@ -49,45 +54,6 @@ AT_REST = 1e-9
 """Velocity over the step of blocks at rest, which a path might set in motion."""
 EXACT = 1e-13
 """Residual at which nothing is left to do."""
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """What a step asks.
-
-    Parameters
-    ----------
-    matrix : (3 points, 6 blocks) sparse
-        Velocities at the points, along the normal and two ways across, of scaled ones.
-    drift : (3 points,) float
-        Velocities without acceleration, over the step.
-    free : (6 blocks,) float
-        Accelerations without contact, scaled.
-    friction : (points,) float
-    """
-
-    matrix: Any
-    drift: Array
-    free: Array
-    friction: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Answer:
-    """Accelerations and forces.
-
-    Parameters
-    ----------
-    x : (6 blocks,) float
-    forces : (points, 3) float
-    residual : float
-        Worst of imbalance, penetration and friction off its law, over the largest
-        acceleration where that is above 1.
-    """
-
-    x: Array
-    forces: Array
-    residual: float
 
 
 def solve(step: Step, forces: Array | None) -> Answer:
@@ -123,8 +89,8 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
     forces = _dilating(step)
     if forces is None:
         return best
-    x = step.free + step.matrix.T @ forces.ravel()
-    return Answer(x, forces, max(best.residual, residual(step, x, forces)))
+    x = step.pushed_by(forces)
+    return Answer(x, forces, max(best.residual, step.residual(x, forces)))
 
 
 def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
@@ -149,14 +115,14 @@ def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
 def _followed(step: Step, forces: Array, most: int = TRIES) -> Answer:
     """Let springs follow forces until these are the solution, or come no nearer."""
     p = forces
-    x = step.free + step.matrix.T @ p.ravel()
-    best = Answer(x, p, residual(step, x, p))
+    x = step.pushed_by(p)
+    best = Answer(x, p, step.residual(x, p))
     stiff, worse = STIFF, 0
     for _ in range(ROUNDS):
         x, p, left = _balanced(step, x, p, stiff, most)
         if not np.isfinite(p).all():
             return best
-        found = Answer(x, p, residual(step, x, p))
+        found = Answer(x, p, step.residual(x, p))
         worse = worse + 1 if found.residual > 0.3 * best.residual else 0
         if found.residual < best.residual:
             best = found
@@ -201,22 +167,9 @@ def _balanced(
 
 def _imbalance(step: Step, x: Array, forces: Array, stiff: float) -> tuple[Array, Array, Array]:
     """Return what is left over, the forces within friction, and what springs ask for."""
-    u = (step.matrix @ x + step.drift).reshape(-1, 3)
-    pushed = forces - stiff * u
+    pushed = forces - stiff * step.velocities(x)
     q = projected(pushed, step.friction)
     return x - step.free - step.matrix.T @ q.ravel(), q, pushed
-
-
-def projected(pushed: Array, friction: Array) -> Array:
-    """Return the pressure that is left of forces, and friction cut to what it bears."""
-    found = pushed.copy()
-    found[:, 0] = np.maximum(found[:, 0], 0.0)
-    across = np.hypot(found[:, 1], found[:, 2])
-    most = friction * found[:, 0]
-    slides = across > most
-    found[slides, 1:] *= (most[slides] / across[slides])[:, None]
-    found[found[:, 0] <= 0, 1:] = 0.0
-    return found
 
 
 def _newton(step: Step, pushed: Array, left: Array, stiff: float) -> Array | None:
@@ -235,30 +188,9 @@ def _newton(step: Step, pushed: Array, left: Array, stiff: float) -> Array | Non
             turn = np.eye(2) - way[:, :, None] * way[:, None]
             blocks[slides, 1:, 1:] = share[:, None, None] * turn
             blocks[slides, 1:, 0] = mu[slides, None] * way
-        rows = _rows_of(step.matrix, closed)
-        springs: Any = sparse.bsr_matrix(
-            (blocks, np.arange(len(closed)), np.arange(len(closed) + 1)),
-            shape=(3 * len(closed), 3 * len(closed)),
-        )
-        system = system + stiff * (rows.T @ (springs.tocsr() @ rows))
-    try:
-        return cast("Any", splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A")).solve(-left)
-    except RuntimeError:
-        return None
-
-
-def _rows_of(matrix: Any, points: NDArray[np.int64]) -> Any:
-    return matrix[(3 * points[:, None] + np.arange(3)).ravel()]
-
-
-def residual(step: Step, x: Array, forces: Array) -> float:
-    """Return how far accelerations and forces are from a solution."""
-    left = x - step.free - step.matrix.T @ forces.ravel()
-    u = (step.matrix @ x + step.drift).reshape(-1, 3)
-    # Of a contact either the pressure or the velocity is 0.
-    off = np.abs(forces - projected(forces - u, step.friction)).max(initial=0.0)
-    scale = max(1.0, float(np.abs(x).max(initial=0.0)))
-    return max(float(np.abs(left).max(initial=0.0)), float(off)) / scale
+        rows = step.matrix[rows_of(closed)]
+        system = system + stiff * (rows.T @ (on_diagonal(blocks) @ rows))
+    return solved(system, -left)
 
 
 def _dilating(step: Step) -> Array | None:
@@ -270,7 +202,7 @@ def _dilating(step: Step) -> Array | None:
     # (u_n + mu slip, mu u_t) in the cone of the second order.
     scale = np.ones((points, 3))
     scale[:, 1:] = mu[:, None]
-    order = np.concatenate([(3 * round_[:, None] + np.arange(3)).ravel(), 3 * smooth])
+    order = np.concatenate([rows_of(round_), 3 * smooth])
     factor = scale.ravel()[order]
     rows = -(sparse.diags(factor) @ step.matrix[order])
     right = factor * step.drift[order]

@@ -57,18 +57,17 @@ class Facing:
         self.theirs: Array = hulls.corners[there[:, None], hulls.around[there, opposite]]
         self.count: Places = hulls.many[here, face]
         self.others: Places = hulls.many[there, opposite]
-        across = frames(self.normals).transpose(0, 2, 1)
+        self._across: Array = frames(self.normals).transpose(0, 2, 1)
         # Seen along the normal.
-        self.flat: Array = np.matmul(self.ours, across)
-        self.other: Array = np.matmul(self.theirs, across)
+        self.flat: Array = np.matmul(self.ours, self._across)
+        self.other: Array = np.matmul(self.theirs, self._across)
 
     def shared(self) -> list[tuple[Array, Flags, Array]]:
         """Return corners of theirs, of ours, and crossings, which count, and their heights."""
         theirs = self.corners_of_theirs()
         kinds = [theirs, self.corners_of_ours(theirs[1]), self.crossings()]
         # Faces that share no more than a rim press on nothing.
-        across = frames(self.normals).transpose(0, 2, 1)
-        flats = np.concatenate([np.matmul(each[0], across) for each in kinds], axis=1)
+        flats = np.concatenate([np.matmul(each[0], self._across) for each in kinds], axis=1)
         counts = np.concatenate([each[1] for each in kinds], axis=1)
         wide = _wide(flats, counts, self.flat, self.count)[:, None]
         return [(places, which & wide, heights) for places, which, heights in kinds]
@@ -118,25 +117,26 @@ def _sides(polygon: Array, many: Places) -> Array:
     return after - polygon
 
 
-def _inside(points: Array, polygon: Array, many: Places, count: Places) -> Flags:
-    """Tell which points are within polygons that go around counter-clockwise, (p, k)."""
+def _off_sides(points: Array, polygon: Array, many: Places) -> Array:
+    """Return how far points lie to the left of each side of polygons, (p, points, k)."""
     ways = _sides(polygon, many)
     long = np.maximum(np.linalg.norm(ways, axis=2), 1e-300)
     apart = points[:, :, None] - polygon[:, None]
     left = ways[:, None, :, 0] * apart[..., 1] - ways[:, None, :, 1] * apart[..., 0]
-    left = left / long[:, None]
+    return left / long[:, None]
+
+
+def _inside(points: Array, polygon: Array, many: Places, count: Places) -> Flags:
+    """Tell which points are within polygons that go around counter-clockwise, (p, k)."""
     real = _real(many, polygon.shape[1])
-    within: Flags = (left >= -RIM) | ~real[:, None]
+    within: Flags = (_off_sides(points, polygon, many) >= -RIM) | ~real[:, None]
     return within.all(axis=2) & _real(count, points.shape[1])
 
 
 def _wide(points: Array, which: Flags, polygon: Array, many: Places) -> Flags:
     """Tell whether of points some lie off every side of their polygon, (p,)."""
-    ways = _sides(polygon, many)
-    long = np.maximum(np.linalg.norm(ways, axis=2), 1e-300)
-    apart = points[:, :, None] - polygon[:, None]
-    left = ways[:, None, :, 0] * apart[..., 1] - ways[:, None, :, 1] * apart[..., 0]
-    most = np.where(which[..., None], left / long[:, None], -np.inf).max(axis=1)
+    off = _off_sides(points, polygon, many)
+    most = np.where(which[..., None], off, -np.inf).max(axis=1)
     real = _real(many, polygon.shape[1])
     return ((most > NARROW) | ~real).all(axis=1)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,17 +69,7 @@ class Hulls:
         corners = np.einsum("hij,hvj->hvi", turn, self.corners) + centre[:, None]
         normals = np.einsum("hij,hfj->hfi", turn, self.normals)
         offsets = self.offsets + np.einsum("hfi,hi->hf", normals, centre)
-        return Hulls(
-            self.owner,
-            self.support,
-            corners,
-            normals,
-            offsets,
-            self.around,
-            self.many,
-            self.edges,
-            self.thickness,
-        )
+        return replace(self, corners=corners, normals=normals, offsets=offsets)
 
 
 def hulls_of(assembly: SpatialAssembly, axes: Array) -> Hulls:

@@ -8,16 +8,11 @@ and Tseng 2003): Newton's method, from any beginning.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
-
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from blocksim.blocks.assembly import Array
-
-if TYPE_CHECKING:
-    from blocksim.engines.solid.coulomb import Step
+from blocksim.engines.solid.step import Step, on_diagonal, solved
 
 FIRST, LAST = 1.0, 1e-8
 """Smoothing, at first and where the path ends [mean weights]."""
@@ -55,7 +50,7 @@ def followed(
     p[:, 0] = 1.0
     if forces is not None:
         p = np.divide(forces, scale, out=np.zeros_like(scale), where=scale > 0)
-    x = step.free + step.matrix.T @ (scale * p).ravel()
+    x = step.pushed_by(scale * p)
     smooth, falls, reached = first, FALLS, None
     while smooth > LAST:
         found = _settled(step, scale, x, p, smooth, rounded)
@@ -104,7 +99,7 @@ def _velocity(
     step: Step, scale: Array, x: Array, smooth: float, rounded: float
 ) -> tuple[Array, Array]:
     """Return the velocity in the cone, and how it changes with that of the points."""
-    u = (step.matrix @ x + step.drift).reshape(-1, 3)
+    u = step.velocities(x)
     slip = np.sqrt(u[:, 1] ** 2 + u[:, 2] ** 2 + (rounded * smooth) ** 2)
     y = scale * u
     y[:, 0] += scale[:, 1] * slip
@@ -186,18 +181,11 @@ def _newton(
     plus = Plus(p - y, smooth)
     spring = np.matmul(plus.springs(), turn)
     given = np.einsum("pij,pj->pi", plus.inverse(), left[1])
-    count = len(scale)
-    middle: Any = sparse.bsr_matrix(
-        (scale[:, :, None] * spring, np.arange(count), np.arange(count + 1))
-    )
-    matrix = step.matrix
-    system = sparse.identity(len(x)) + matrix.T @ (middle.tocsr() @ matrix)
-    right = -left[0] - matrix.T @ (scale * given).ravel()
-    try:
-        factors = cast("Any", splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A"))
-    except RuntimeError:
+    matrix, middle = step.matrix, on_diagonal(scale[:, :, None] * spring)
+    system = sparse.identity(len(x)) + matrix.T @ (middle @ matrix)
+    dx = solved(system, -left[0] - matrix.T @ (scale * given).ravel())
+    if dx is None:
         return None
-    dx: Array = factors.solve(right)
     dp = -given - np.einsum("pij,pj->pi", spring, (matrix @ dx).reshape(-1, 3))
     if not (np.isfinite(dx).all() and np.isfinite(dp).all()):
         return None

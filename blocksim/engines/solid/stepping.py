@@ -26,9 +26,10 @@ from blocksim.engines.solid.between import (
     sides_of,
 )
 from blocksim.engines.solid.bodies import Bodies, Place
-from blocksim.engines.solid.coulomb import UNSOLVED, Answer, Step, solve
+from blocksim.engines.solid.coulomb import UNSOLVED, solve
 from blocksim.engines.solid.facing import frames
 from blocksim.engines.solid.meeting import Points, meet, near
+from blocksim.engines.solid.step import Answer, Step, on_diagonal, rows_of
 
 COARSE = 1e-5
 """Residual of a step that is halved."""
@@ -112,8 +113,7 @@ class Stepping:
         blocks = np.zeros((count, 6, 6))
         blocks[:, :3, :3] = np.eye(3)
         blocks[:, 3:, 3:] = place.turns[:-1]
-        blocks = blocks / self.bodies.root.reshape(-1, 1, 6)
-        return sparse.bsr_matrix((blocks, np.arange(count), np.arange(count + 1))).tocsr()
+        return on_diagonal(blocks / self.bodies.root.reshape(-1, 1, 6))
 
     def _move(self, step: float) -> None:
         """Go on for a time."""
@@ -158,10 +158,10 @@ class Stepping:
         if self._residual > COARSE:
             return False
         self._advance(step, 0.5)
-        after = self._seen(points, middle, self._place)
+        after = self._gaps(points, middle, self._place)
         opened = first.gaps > PASSED
-        passes = ~shut & (after.gaps < -PASSED) & opened
-        passes |= ~shut & ~opened & (after.gaps < first.gaps - PASSED)
+        passes = ~shut & (after < -PASSED) & opened
+        passes |= ~shut & ~opened & (after < first.gaps - PASSED)
         return not passes.any()
 
     def _closing(self, step: float) -> None:
@@ -169,10 +169,10 @@ class Stepping:
         velocities = self._velocities
         middle = self._place.moved(step / 2 * velocities)
         points, friction = self._points(middle, step)
-        first = self._seen(points, middle, self._place)
+        gaps = self._gaps(points, middle, self._place)
         now = self._seen(points, middle, middle)
         drift = now.rows @ (self.bodies.root * velocities.ravel())
-        drift[0::3] += np.maximum(first.gaps, 0.0) / step
+        drift[0::3] += np.maximum(gaps, 0.0) / step
         every = np.ones(len(points.gaps), dtype=bool)
         self._solve(points, friction, now.rows, drift / step, every, middle, step)
         if math.isfinite(self._residual):
@@ -199,7 +199,7 @@ class Stepping:
         turning = bodies.turning(self._velocities + step / 2 * self._speeding)
         free = (bodies.pull(middle) + turning).ravel() / bodies.root
         at = np.flatnonzero(taken)
-        which = (3 * at[:, None] + np.arange(3)).ravel()
+        which = rows_of(at)
         asked = Step(rows[which], drift[which], free, friction[at])
         held = self._held(points)
         found = solve(asked, held[at])
@@ -227,26 +227,37 @@ class Stepping:
         points = meet(hulls, pairs, way[pairs].sum(axis=1))
         return points, self._friction.at(points)
 
-    def _seen(self, points: Points, found: Place, there: Place) -> Seen:
-        """Return rows and gaps of points elsewhere than where they were found.
+    def _gaps(self, points: Points, found: Place, there: Place) -> Array:
+        """Return gaps of points elsewhere than where they were found."""
+        axes, places = self._carried(points, found, there)
+        return self._gaps_of(points, found, there, axes[:, 0], places)
+
+    def _gaps_of(
+        self, points: Points, found: Place, there: Place, normals: Array, places: Array
+    ) -> Array:
+        """Return how far places are from the planes of points that have moved."""
+        feet = points.places - points.gaps[:, None] * points.normals
+        feet = carried(feet, self.bodies.hulls.owner[points.before], found, there)
+        return np.einsum("pi,pi->p", places - feet, normals) - self._drawn.at(points)
+
+    def _carried(self, points: Points, found: Place, there: Place) -> tuple[Array, Array]:
+        """Return axes of points, and their places, elsewhere than where they were found.
 
         A point moves with the block after it, its plane with the one before.
         """
         owner = self.bodies.hulls.owner
         before, after = owner[points.before], owner[points.after]
-        planes = found.turns[before].transpose(0, 2, 1)
-        plane_to = there.turns[before]
-
-        def carried(places: Array, block: NDArray[np.int64]) -> Array:
-            own = np.einsum("pji,pj->pi", found.turns[block], places - found.centres[block])
-            return np.einsum("pij,pj->pi", there.turns[block], own) + there.centres[block]
-
+        turned = there.turns[before] @ found.turns[before].transpose(0, 2, 1)
         axes = np.concatenate([points.normals[:, None], frames(points.normals)], axis=1)
-        axes = np.matmul(axes, (plane_to @ planes).transpose(0, 2, 1))
-        places = carried(points.places, after)
-        foot = carried(points.places - points.gaps[:, None] * points.normals, before)
-        gaps = np.einsum("pi,pi->p", places - foot, axes[:, 0])
-        gaps = gaps - self._drawn.at(points)
+        axes = np.matmul(axes, turned.transpose(0, 2, 1))
+        return axes, carried(points.places, after, found, there)
+
+    def _seen(self, points: Points, found: Place, there: Place) -> Seen:
+        """Return rows and gaps of points elsewhere than where they were found."""
+        owner = self.bodies.hulls.owner
+        before, after = owner[points.before], owner[points.after]
+        axes, places = self._carried(points, found, there)
+        gaps = self._gaps_of(points, found, there, axes[:, 0], places)
         rows = list[NDArray[np.int64]]()
         columns = list[NDArray[np.int64]]()
         root = self.bodies.root.reshape(-1, 6)
@@ -270,8 +281,7 @@ class Stepping:
     def _overlap(self) -> float:
         """Return how deep blocks are within each other."""
         points, _ = self._points(self._place, 0.0)
-        gaps = self._seen(points, self._place, self._place).gaps
-        return -float(gaps.min(initial=0.0))
+        return -float(self._gaps(points, self._place, self._place).min(initial=0.0))
 
     def _push_apart(self) -> None:
         """Move blocks that overlap apart, as little as contact and friction allow."""
@@ -288,3 +298,9 @@ class Stepping:
                 self._place = self._place.moved(way)
                 deep = self._overlap()
         self._penetration = max(self._penetration, deep)
+
+
+def carried(places: Array, block: NDArray[np.int64], found: Place, there: Place) -> Array:
+    """Return where places have gone that move with blocks, from one place to another."""
+    own = np.einsum("pji,pj->pi", found.turns[block], places - found.centres[block])
+    return np.einsum("pij,pj->pi", there.turns[block], own) + there.centres[block]
