@@ -109,13 +109,18 @@ def choose(
         raise InputError("reduce", reduce, allowed)
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
+    require_settings(rung, settings)
+    return rung
+
+
+def require_settings(method: Method, settings: Overrides) -> None:
+    """Raise `InputError` unless a method knows all settings, each within its range."""
+    known = ", ".join(method.adjustable)
+    allowed = f"one of {known} for {method.name}" if known else f"left out for {method.name}"
     for name, value in settings.items():
-        known = ", ".join(rung.adjustable)
-        allowed = f"one of {known} for {rung.name}" if known else f"left out for {rung.name}"
-        if name not in rung.adjustable:
+        if name not in method.adjustable:
             raise InputError("settings", name, allowed)
         require_setting(name, value)
-    return rung
 
 
 def _named(method: str | Method) -> Method:

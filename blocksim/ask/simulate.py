@@ -56,9 +56,9 @@ def simulate(
     """
     # What moves blocks is loaded where it is asked for.
     if isinstance(asked, SpatialProblem):
-        from blocksim.ask.space import film_in_space
+        from blocksim.ask.space import recorded_in_space
 
-        return film_in_space(asked, duration, taken(options, "reduce", "tol", "confirm"))
+        return recorded_in_space(asked, duration, taken(options, "reduce", "tol", "confirm"))
     from blocksim.simulation.observation import hold
     from blocksim.simulation.shaken import shake
 

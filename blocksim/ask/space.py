@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 
 from blocksim.ask.families import HIGHEST_FACTOR, LARGEST_FRICTION
+from blocksim.ask.methods import require_settings
 from blocksim.ask.options import Taken
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
@@ -28,7 +29,7 @@ from blocksim.limit.space import (
     largest_load,
     unit_rates,
 )
-from blocksim.simulation.simulated import require_setting
+from blocksim.simulation.motion import LONGEST
 from blocksim.simulation.space import (
     SpatialRecording,
     engine_in_space,
@@ -155,22 +156,9 @@ def check_in_space(problem: SpatialProblem, given: Taken) -> SpatialCheck:
     _require_static(given)
     static = can_rest(problem)
     verdict = {True: Verdict.STANDS, False: Verdict.COLLAPSES, None: Verdict.UNDECIDED}
-    factor = largest_load(problem).factor if problem.live else None
-    rates = static.mechanism
-    states = (JointState.CLOSED,) * len(problem.assembly.joints)
-    return SpatialCheck(
-        method="limit",
-        verdict=verdict[static.exists],
-        evidence=(
-            Evidence("limit analysis", static_words(static)),
-            *(Evidence("note", note) for note in problem.notes),
-        ),
-        problem=problem,
-        static=static,
-        mechanism=rates,
-        joints=states if rates is None else joint_states(problem, rates),
-        load_factor=factor,
-        wall_s=time.perf_counter() - started,
+    evidence = Evidence("limit analysis", static_words(static))
+    return _answer(
+        problem, "limit", verdict[static.exists], (evidence,), static.mechanism, started, static
     )
 
 
@@ -178,30 +166,42 @@ def _seen(problem: SpatialProblem, given: Taken) -> SpatialCheck:
     """Tell whether blocks stand by what an engine shows."""
     started, engine = time.perf_counter(), _engine(given)
     seen = observe_in_space(problem, engine, settings=given.settings, progress=given.progress)
-    states = (JointState.CLOSED,) * len(problem.assembly.joints)
     rates = None if seen.rates is None else unit_rates(problem, seen.rates)
+    found = _answer(problem, engine.name, seen.verdict, seen.evidence, rates, started)
+    return replace(found, recording=seen.recording)
+
+
+def _answer(
+    problem: SpatialProblem,
+    method: str,
+    verdict: Verdict,
+    evidence: tuple[Evidence, ...],
+    rates: Array | None,
+    started: float,
+    static: SpatialEquilibrium | None = None,
+) -> SpatialCheck:
+    """Return an answer with what every method's has."""
+    states = (JointState.CLOSED,) * len(problem.assembly.joints)
     return SpatialCheck(
-        method=engine.name,
-        verdict=seen.verdict,
-        evidence=(*seen.evidence, *(Evidence("note", note) for note in problem.notes)),
+        method=method,
+        verdict=verdict,
+        evidence=(*evidence, *(Evidence("note", note) for note in problem.notes)),
         problem=problem,
-        static=None,
+        static=static,
         mechanism=rates,
-        recording=seen.recording,
         joints=states if rates is None else joint_states(problem, rates),
         load_factor=largest_load(problem).factor if problem.live else None,
         wall_s=time.perf_counter() - started,
     )
 
 
-def film_in_space(
+def recorded_in_space(
     problem: SpatialProblem, duration: float | None, given: Taken
 ) -> SpatialRecording:
     """Let blocks in space go, and record them; see `blocksim.simulate`."""
-    engine = _engine(given)
-    until = {} if duration is None else {"until": duration}
+    until = LONGEST if duration is None else duration
     return simulate_in_space(
-        problem, engine, settings=given.settings, progress=given.progress, **until
+        problem, _engine(given), until=until, settings=given.settings, progress=given.progress
     )
 
 
@@ -211,10 +211,7 @@ def _engine(given: Taken) -> Engine:
     named = method if isinstance(method, str | Engine) else method.name
     engine = engine_in_space("direct" if named == "auto" else named)
     require(given.reduce is None, "reduce", given.reduce, "left out in space")
-    for name, value in given.settings.items():
-        known = f"one of {', '.join(engine.adjustable)} for {engine.name}"
-        require(name in engine.adjustable, "settings", name, known)
-        require_setting(name, value)
+    require_settings(engine, given.settings)
     return engine
 
 

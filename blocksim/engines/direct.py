@@ -10,6 +10,7 @@ they do in a step is that of its middle, as for contacts.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -40,30 +41,25 @@ PENETRATION = 1e-3
 """Of a collapse until its verdict is certain; falling blocks may do worse on impact."""
 
 
+USUAL = Settings(
+    step=STEP,
+    sweeps=1,
+    hold_sweeps=1,
+    still=STILL,
+    rest=REST,
+    residual=RESIDUAL,
+    penetration=PENETRATION,
+)
+
+
 def rule(assembly: Assembly) -> Settings:  # noqa: ARG001 - a rule is given one
     """Return the same settings for every assembly."""
-    return Settings(
-        step=STEP,
-        sweeps=1,
-        hold_sweeps=1,
-        still=STILL,
-        rest=REST,
-        residual=RESIDUAL,
-        penetration=PENETRATION,
-    )
+    return USUAL
 
 
 def rule_in_space(assembly: SpatialAssembly) -> Settings:  # noqa: ARG001 - a rule is given one
     """Return the same settings for every assembly in space."""
-    return Settings(
-        step=STEP,
-        sweeps=1,
-        hold_sweeps=1,
-        still=STILL_IN_SPACE,
-        rest=REST_IN_SPACE,
-        residual=RESIDUAL_IN_SPACE,
-        penetration=PENETRATION,
-    )
+    return replace(USUAL, still=STILL_IN_SPACE, rest=REST_IN_SPACE, residual=RESIDUAL_IN_SPACE)
 
 
 def blocks_in_space(problem: SpatialProblem, settings: Settings) -> World:

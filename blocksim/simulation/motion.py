@@ -28,6 +28,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -181,10 +182,15 @@ def _released(
 
 def lie_still(assembly: Assembly, poses: list[Array]) -> bool:
     """Tell whether blocks have hardly moved for a while."""
+    return hardly_move(poses, partial(displacement, assembly=assembly))
+
+
+def hardly_move(poses: list[Array], displaced: Callable[[Array], Array]) -> bool:
+    """Tell the same, of blocks whose displacements are found from those of their poses."""
     if len(poses) <= AT_REST:
         return False
     last = np.array(poses[-1 - AT_REST :])
-    return float(displacement(last - last[-1], assembly).max()) < UNSEEN
+    return float(displaced(last - last[-1]).max()) < UNSEEN
 
 
 def distrust(quality: Quality, settings: Settings, length: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import os
 import struct
@@ -10,7 +9,7 @@ import tokenize
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, BinaryIO, Literal
 
 import numpy as np
@@ -24,6 +23,7 @@ from blocksim.common.errors import InputError, in_line
 from blocksim.common.files import AnyPath, json_of, json_text, opened, write_whole
 from blocksim.common.shown import Shown, renderer
 from blocksim.engines.base import Quality, Settings
+from blocksim.simulation.recorded import Recorded
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Maker
@@ -62,8 +62,8 @@ _UNREADABLE = (
 """What an empty, damaged or foreign file makes numpy, zipfile and json raise."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Recording(Shown):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Recording(Recorded[Problem], Shown):
     """The motion of blocks in one engine.
 
     Lengths are in units of the assembly's size, which is the radius r of an arch.
@@ -82,20 +82,6 @@ class Recording(Shown):
         How well contact and friction were kept.
     """
 
-    problem: Problem
-    engine: str
-    engine_version: str
-    settings: Settings
-    times: Array
-    poses: Array
-    quality: Quality = field(default_factory=Quality)
-
-    def __repr__(self) -> str:
-        return (
-            f"Recording({len(self.times)} frames, {self.times[-1]:.4g} sqrt(size/g), "
-            f"by {self.engine}, of {self.problem!r})"
-        )
-
     @property
     def assembly(self) -> Assembly:
         """Its blocks and joints."""
@@ -105,12 +91,6 @@ class Recording(Shown):
     def mu(self) -> float:
         """Friction coefficient of all joints that have none of their own."""
         return self.problem.mu
-
-    @property
-    def state_hash(self) -> str:
-        """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
-        little = np.ascontiguousarray(self.poses, dtype="<f8")
-        return hashlib.sha256(little.reshape(-1).data).hexdigest()[:16]
 
     @property
     def displacement(self) -> Array:

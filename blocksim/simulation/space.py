@@ -5,42 +5,40 @@ The criteria are those of the plane (`onset`, `motion`).
 
 from __future__ import annotations
 
-import hashlib
-import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.space.assembly import SpatialAssembly
 from blocksim.blocks.space.parting import (
     displacement_in_space,
     overlap_in_space,
     slip_in_space,
 )
+from blocksim.blocks.space.points import JointPoints
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import renderer
-from blocksim.common.words import counted
 from blocksim.engines import ENGINES, get_engine
-from blocksim.engines.base import FRICTION_CAP, Engine, Quality, Settings, World, trusted
+from blocksim.engines.base import FRICTION_CAP, Engine, Settings, World, trusted
 from blocksim.limit.space import can_rest
 from blocksim.simulation.motion import (
-    AT_REST,
     FRAME,
     LONGEST,
     MOVED,
     QUIET,
     SPARSE,
-    UNSEEN,
     distrust,
+    hardly_move,
     is_early,
     verdict_of,
     words_of,
 )
-from blocksim.simulation.onset import FIRST_SWEEPS, GROWTH, PROBE, STICKS, UNFOUND, WORK
+from blocksim.simulation.onset import FIRST_SWEEPS, GROWTH, PROBE, STICKS, WORK, Onset
+from blocksim.simulation.recorded import Recorded
 from blocksim.simulation.simulated import BY_RULE, Overrides, setting_of
 from blocksim.simulation.verdict import Evidence, Verdict
 
@@ -50,8 +48,8 @@ LENGTH = "L"
 """What the unit of length is called."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SpatialRecording:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class SpatialRecording(Recorded[SpatialProblem]):
     """The motion of blocks in space in one engine.
 
     Parameters
@@ -65,26 +63,6 @@ class SpatialRecording:
         Centres of mass x, y, z in units of the size, and rotation vectors since the release.
     quality : Quality
     """
-
-    problem: SpatialProblem
-    engine: str
-    engine_version: str
-    settings: Settings
-    times: Array
-    poses: Array
-    quality: Quality
-
-    def __repr__(self) -> str:
-        return (
-            f"SpatialRecording({len(self.times)} frames, {self.times[-1]:.4g} sqrt(size/g), "
-            f"by {self.engine}, of {self.problem!r})"
-        )
-
-    @property
-    def state_hash(self) -> str:
-        """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
-        little = np.ascontiguousarray(self.poses, dtype="<f8")
-        return hashlib.sha256(little.reshape(-1).data).hexdigest()[:16]
 
     def film(self, path: AnyPath, *, slow: float | None = None, height: int = 720) -> None:
         """Write it as a film in perspective.
@@ -169,11 +147,10 @@ def observe_in_space(
         Given instead of what the engine's rule says.
     progress : Progress, optional
     """
-    chosen = _settings(problem, engine, settings)
-    world = _built(problem, engine, chosen)
-    verdict, rates, words = _onset(problem, world, engine, chosen, progress)
-    evidence = (Evidence("onset test", words),)
-    recording = None
+    chosen, world = _begun(problem, engine, settings)
+    first, rates = _onset(problem, world, engine, chosen, progress)
+    verdict, recording = first.verdict, None
+    evidence = (Evidence("onset test", first.reason),)
     if moving and verdict is not Verdict.UNDECIDED:
         until = QUIET if verdict is Verdict.STANDS else LONGEST
         recording, seen, said = _released(
@@ -194,7 +171,7 @@ def simulate_in_space(
     problem: SpatialProblem,
     engine: Engine,
     *,
-    until: float = LONGEST,
+    until: float,
     settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> SpatialRecording:
@@ -209,23 +186,21 @@ def simulate_in_space(
     settings : mapping of str to float
     progress : Progress, optional
     """
-    chosen = _settings(problem, engine, settings)
-    world = _built(problem, engine, chosen)
+    chosen, world = _begun(problem, engine, settings)
     world.hold(chosen.hold_sweeps)
     return _released(
         problem, world, engine, chosen, until=until, whole=True, progress=progress
     )[0]
 
 
-def _settings(problem: SpatialProblem, engine: Engine, given: Overrides) -> Settings:
-    assert engine.rule_in_space is not None  # noqa: S101 - asked of engines in space only
+def _begun(problem: SpatialProblem, engine: Engine, given: Overrides) -> tuple[Settings, World]:
+    """Return the settings that are taken, and the blocks in the engine."""
+    # Asked of engines in space only.
+    assert engine.rule_in_space is not None  # noqa: S101
+    assert engine.build_in_space is not None  # noqa: S101
     own = {name: setting_of(name, value) for name, value in given.items()}
-    return replace(engine.rule_in_space(problem.assembly), **own)
-
-
-def _built(problem: SpatialProblem, engine: Engine, settings: Settings) -> World:
-    assert engine.build_in_space is not None  # noqa: S101 - asked of engines in space only
-    return engine.build_in_space(problem, settings)
+    settings = replace(engine.rule_in_space(problem.assembly), **own)
+    return settings, engine.build_in_space(problem, settings)
 
 
 def _onset(
@@ -234,8 +209,8 @@ def _onset(
     engine: Engine,
     settings: Settings,
     progress: Progress,
-) -> tuple[Verdict, Array, str]:
-    """Return the verdict of the onset test, accelerations, and words."""
+) -> tuple[Onset, Array]:
+    """Return what the onset test tells, and the accelerations."""
     assembly, built = problem.assembly, world.poses()
     allowed, total = settings.hold_sweeps, 0
     sweeps = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
@@ -253,28 +228,13 @@ def _onset(
                 residual is not None or _driven(problem, rates)
             ):
                 verdict = Verdict.COLLAPSES
-        size = f"{largest:.1e} g, found in {counted(total, 'sweep')}"
+        found = Onset(verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=total)
         if verdict is Verdict.COLLAPSES and _may_hold(problem, engine, mechanism):
-            words = f"friction allows both: it rests, or it starts with {size}"
-            return Verdict.UNDECIDED, rates, words
+            return replace(found, verdict=Verdict.UNDECIDED, may_rest=True), rates
         if verdict is not Verdict.UNDECIDED or total >= allowed:
-            return verdict, rates, _onset_words(verdict, size, largest)
+            return found, rates
         progress(total / allowed, "onset test")
         sweeps = min(int(total * (GROWTH - 1)), allowed - total)
-
-
-def _onset_words(verdict: Verdict, size: str, largest: float) -> str:
-    match verdict:
-        case Verdict.STANDS:
-            return f"contact forces balance the weight to {size}"
-        case Verdict.COLLAPSES:
-            return f"no contact forces hold it: a mechanism starts with {size}"
-        case _:
-            return (
-                f"contact forces have not converged: {size}"
-                if math.isfinite(largest)
-                else UNFOUND
-            )
 
 
 def _may_hold(problem: SpatialProblem, engine: Engine, mechanism: Array) -> bool:
@@ -289,11 +249,10 @@ def _may_hold(problem: SpatialProblem, engine: Engine, mechanism: Array) -> bool
 
 def _driven(problem: SpatialProblem, rates: Array) -> bool:
     """Tell whether the loads do the work of the motion, from rest over one step."""
-    assembly = problem.assembly
-    unit, size = float(assembly.weights.mean()), assembly.size
-    pull = (problem.fixed_pull + problem.load * problem.live_pull) / unit
-    pull[:, 3:] /= size
-    masses = assembly.weights / unit
+    assembly, size = problem.assembly, problem.assembly.size
+    points = JointPoints(problem)
+    pull = points.pull(problem.load).reshape(-1, 6)
+    masses = assembly.weights / points.unit
     spin = [
         float(turn @ block.gyration @ turn) / size**2
         for turn, block in zip(rates[:, 3:], assembly.blocks, strict=True)
@@ -313,7 +272,8 @@ def _released(
     progress: Progress,
 ) -> tuple[SpatialRecording, Verdict, str]:
     """Let blocks go; until they are seen to stand or fall, or as long as something moves."""
-    assembly, step = problem.assembly, settings.step
+    step = settings.step
+    moved_by = partial(displacement_in_space, assembly=problem.assembly)
     stride, taken = max(1, round(FRAME / step)), 0
     times, poses, moved = [0.0], [world.poses()], [0.0]
     while times[-1] < until - step / 2:
@@ -322,10 +282,10 @@ def _released(
         taken += frames * stride
         times.append(taken * step)
         poses.append(world.poses())
-        moved.append(float(displacement_in_space(poses[-1] - poses[0], assembly)))
+        moved.append(float(moved_by(poses[-1] - poses[0])))
         if not whole and verdict_of(times, moved, settings.rest) is not Verdict.UNDECIDED:
             break
-        if whole and moved[-1] > MOVED and _lie_still(poses, assembly):
+        if whole and moved[-1] > MOVED and hardly_move(poses, moved_by):
             break
         progress(min(1.0, times[-1] / until), "moving run")
     quality = world.quality()
@@ -344,11 +304,3 @@ def _released(
         quality=quality,
     )
     return recording, verdict, words
-
-
-def _lie_still(poses: list[Array], assembly: SpatialAssembly) -> bool:
-    """Tell whether blocks have hardly moved for a while."""
-    if len(poses) <= AT_REST:
-        return False
-    last = np.array(poses[-1 - AT_REST :])
-    return float(displacement_in_space(last - last[-1], assembly).max()) < UNSEEN
