@@ -155,12 +155,13 @@ def render(
         require(kind != "dxf", "--out", str(out), "another kind: a .dxf is of no motion")
         shown = RenderOptions(view=view, slow=slow, time=time, height=height or HEIGHT)
         require(time is None or kind not in FILMS, "--time", time, "left out of a film")
-        if kind in FILMS and scene is not None and is_structure(scene):
+        asked = None
+        if kind in FILMS and is_structure(scene):
             asked = anything_asked(scene, given, loading)
             if isinstance(asked, SpatialProblem):
                 film_in_space(out, asked, method, shown, beside)
                 return
-        film(out, recordings(scene, given, loading, method, beside), shown)
+        film(out, recordings(scene, given, loading, method, beside, asked), shown)
     else:
         for name, value in (("slow", slow), ("time", time)):
             require(value is None, f"--{name}", value, "left out: the picture is of no motion")

@@ -98,16 +98,21 @@ def require_height(height: int) -> None:
 
 
 def recordings(
-    scene: str | None, given: Given, loading: Loading, method: str | None, beside: Path | None
+    scene: str | None,
+    given: Given,
+    loading: Loading,
+    method: str | None,
+    beside: Path | None,
+    problem: Problem | None = None,
 ) -> list[Recording]:
-    """Read recordings, or simulate the scenario."""
+    """Read recordings, or simulate the scenario; `problem` is that, where it is read."""
     second = [] if beside is None else [load_recording(beside)]
     if scene is not None and scene.endswith(".npz"):
         said = {**asdict(given), **asdict(loading), "method": method}
         for name, value in said.items():
             require(value is None, option_of(name), value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
-    problem = problem_asked(scene, given, loading)
+    problem = problem or problem_asked(scene, given, loading)
     with named_options(), progress() as report:
         until = FALL if problem.shaking is None else None
         run = simulate(problem, method=method or "auto", duration=until, progress=report)

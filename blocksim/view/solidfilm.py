@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -13,15 +14,13 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.space.parting import displacement_in_space
 from blocksim.simulation.space import SpatialRecording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
+from blocksim.view.film import AFTER, BEFORE, FOOT, HEAD, TALL
 from blocksim.view.filmwords import digits_of, fitting, slowness
-from blocksim.view.solidscene import Camera, blocks_of, moving_box, supports_of
+from blocksim.view.solidscene import Camera, blocks_of, corners_of, supports_of
 from blocksim.view.style import INK, QUIET
 
-BEFORE, AFTER = 0.8, 1.2
-"""How long the first and the last frame stand [s]."""
-TALL = 720
-"""Height for which sizes below are given [pixels]."""
-HEAD, FOOT, MARGIN = 74.0, 44.0, 30.0
+MARGIN = 30.0
+"""To both sides of what is shown, at a height of `TALL` [pixels]."""
 LAST, STILL = 5, 1e-3
 """Frames at the end, and the way in them, over the size, that nobody sees."""
 
@@ -87,9 +86,8 @@ class SolidFilm:
 
     def corners(self, seconds: float) -> Array:
         """Return where all corners that move are in the picture at a time, (k, 2) [pixels]."""
-        assembly = self._recording.problem.assembly
-        pieces = blocks_of(assembly, *self._at(seconds))
-        return self._placed(np.concatenate([each.corners for each in pieces]))
+        corners = corners_of(self._recording.problem.assembly, *self._at(seconds))
+        return self._in_pixels(self._camera.seen(corners))
 
     def _at(self, seconds: float) -> tuple[Array, Array]:
         """Return turns of the blocks at a time, and shifts of their centres [m]."""
@@ -106,31 +104,20 @@ class SolidFilm:
     def _reached(self) -> Array:
         """Return least and largest places that corners come to, (2, 3) [m]."""
         assembly = self._recording.problem.assembly
-        found = [moving_box(assembly)]
-        for seconds in self._recording.times * self._unit:
-            pieces = blocks_of(assembly, *self._at(float(seconds)))
-            corners = np.concatenate([each.corners for each in pieces])
-            found.append(np.stack([corners.min(axis=0), corners.max(axis=0)]))
-        every = np.array(found)
-        return np.stack([every[:, 0].min(axis=0), every[:, 1].max(axis=0)])
+        moments = (self._recording.times * self._unit).tolist()
+        every = np.concatenate([corners_of(assembly, *self._at(each)) for each in moments])
+        return np.stack([every.min(axis=0), every.max(axis=0)])
 
     def _frame_all(self, low: Array, high: Array) -> None:
         """Choose scale and middle so that the box of all places is in frame."""
-        ends = np.array(
-            [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1])
-             for z in (low[2], high[2])]
-        )  # fmt: skip
-        seen = self._camera.seen(ends)
+        ends = list(itertools.product(*zip(low, high, strict=True)))
+        seen = self._camera.seen(np.array(ends))
         wide, tall = np.ptp(seen, axis=0)
         room = np.array(
             [self.width - 2 * MARGIN * self._size, self.height - (HEAD + FOOT) * self._size]
         )
         self._scale = float(min(room / np.array([wide, tall])))
         self._middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
-
-    def _placed(self, points: Array) -> Array:
-        """Return places in pixels of points in space."""
-        return self._in_pixels(self._camera.seen(points))
 
     def _in_pixels(self, seen: Array) -> Array:
         middle = np.array([self.width, self.height + (FOOT - HEAD) * self._size]) / 2
@@ -161,10 +148,10 @@ class SolidFilm:
         ]
         polygons, fills = self._camera.painted(pieces)
         edge = colour(INK)
-        shapes = [
-            Shape(self._in_pixels(each), (*map(float, fill), 1.0), edge, 0.7 * s)  # type: ignore[arg-type]
-            for each, fill in zip(polygons, fills, strict=True)
-        ]
+        shapes: list[Shape] = []
+        for each, fill in zip(polygons, fills, strict=True):
+            red, green, blue = fill.tolist()
+            shapes.append(Shape(self._in_pixels(each), (red, green, blue, 1.0), edge, 0.7 * s))
         clock = f"t = {seconds:.{digits_of(self.seconds)}f} s"
         if seconds >= self.seconds:
             clock += ", at rest" if self.at_rest else ", still moving"

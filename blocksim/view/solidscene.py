@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -126,13 +127,8 @@ def blocks_of(
     """
     found: list[Piece] = []
     for at, block in enumerate(assembly.blocks):
-        turn, shift, about = turns[at], shifts[at], block.centre
-
-        def put(
-            points: Array, turn: Array = turn, shift: Array = shift, about: Array = about
-        ) -> Array:
-            return (points - about) @ turn.T + about + shift
-
+        turn = turns[at]
+        put = partial(_put, turn=turn, shift=shifts[at], about=block.centre)
         for hull in block.hulls:
             faces = [(put(each.corners), turn @ each.normal, STONE) for each in hull.faces]
             # What joints do is painted on the faces they are on.
@@ -143,6 +139,22 @@ def blocks_of(
             ]
             found.append(Piece(put(hull.corners), faces))
     return found
+
+
+def corners_of(assembly: SpatialAssembly, turns: Array, shifts: Array) -> Array:
+    """Return the corners of what moves, where it has gone, (k, 3) [m]."""
+    return np.concatenate(
+        [
+            _put(hull.corners, turn, shift, block.centre)
+            for block, turn, shift in zip(assembly.blocks, turns, shifts, strict=True)
+            for hull in block.hulls
+        ]
+    )
+
+
+def _put(points: Array, turn: Array, shift: Array, about: Array) -> Array:
+    """Turn points about a point, and shift them."""
+    return (points - about) @ turn.T + about + shift
 
 
 def _lies_on(points: Array, normal: Array, hull: Polyhedron) -> bool:
