@@ -203,15 +203,13 @@ def _crosses(triangles: Array) -> Array:
 def _face_of(plane: Array, near: Array) -> Face:
     """Return the face of points that lie nearly in a plane, about a normal near to its own.
 
-    Its normal is that of the polygon's area (Newell's), so corners that were rounded count alike.
+    Its normal is that of the polygon's area (Newell's): corners that were rounded count alike.
     """
     (x, y, z), count = plane.sum(axis=0).tolist(), len(plane)
     x, y, z = x / count, y / count, z / count
     (a, b, c), (d, e, f) = frame(near).tolist()
     arms = [(u - x, v - y, w - z) for u, v, w in plane.tolist()]
-    angles = [
-        math.atan2(d * u + e * v + f * w, a * u + b * v + c * w) for u, v, w in arms
-    ]
+    angles = [math.atan2(d * u + e * v + f * w, a * u + b * v + c * w) for u, v, w in arms]
     order = sorted(range(count), key=angles.__getitem__)
     around = [arms[at] for at in order]
     i = j = k = 0.0
