@@ -333,8 +333,9 @@ class Stepping:
         """Find the contacts of the pairs known, where the blocks are."""
         seen = self._seen
         if seen is None or seen[0] is not self._poses or seen[1] is not self._keys:
-            self._seen = self._poses, self._keys, self._neighbours.again(self._poses)
-        return self._seen[2]
+            seen = self._poses, self._keys, self._neighbours.again(self._poses)
+            self._seen = seen
+        return seen[2]
 
     def _new_problem(self) -> ContactProblem:
         before, after = self._neighbours.before, self._neighbours.after
