@@ -20,7 +20,7 @@ from structure_cases import names as plane_names
 from structure_cases import scenes
 
 import blocksim
-from blocksim import InputError, Solid, SpatialLoad, SpatialProblem, Verdict
+from blocksim import InputError, Load, Solid, SpatialProblem, Verdict
 from blocksim.blocks.space.extruded import extruded
 from blocksim.blocks.space.files import problem_in_space
 from blocksim.blocks.space.polyhedron import frame
@@ -99,7 +99,7 @@ def test_a_load_factor_lies_between_those_of_two_pyramids(seed: int, mu: float) 
     problem = problem_of(tower(seed, blocks=4, offset=0.15), mu)
     way = rotation(seed)[0] * np.array([1, 1, 0.2])
     blocks = tuple(range(len(problem.assembly.blocks)))
-    problem = replace(problem, live=(SpatialLoad(force=way, blocks=blocks, per_weight=True),))
+    problem = replace(problem, live=(Load(force=way, blocks=blocks, per_weight=True),))
     factor = largest_load(problem).factor
     low, high = enclosed(problem)
     if math.isnan(low) or math.isnan(high):
@@ -372,7 +372,7 @@ def test_a_wall_with_a_return_is_that_of_the_case() -> None:
     known = case("wall_6_4_2_0_-1_0")
     problem = ReturnWall(friction=known["scene"]["friction"]).problem()
     assert len(problem.assembly.joints) == known["faces"]
-    push = SpatialLoad(force=[0, -1, 0], blocks=tuple(range(42)), per_weight=True)
+    push = Load(force=[0, -1, 0], blocks=tuple(range(42)), per_weight=True)
     factor = blocksim.check(replace(problem, live=(push,))).load_factor
     assert factor == pytest.approx(known["expected"]["value"], rel=1e-6)
 
