@@ -1,3 +1,4 @@
+# pyright: basic
 """Drawings and files of other programs: read as structures, or refused in one line."""
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 from drawn import (
     GROUND,
+    Polygon,
     compas_of,
     new_dxf,
     structure,
@@ -288,7 +290,7 @@ def test_svg_of_any_encoding_is_read_or_refused_in_a_line(
 
 
 def test_svg_and_dxf_of_a_wall_are_one_problem(tmp_path: Path, told: np.ndarray) -> None:
-    def polygon(each: object) -> str:
+    def polygon(each: Polygon) -> str:
         return f'<polygon points="{" ".join(f"{x!r},{-y!r}" for x, y in each)}"/>'
 
     body = f'<g id="supports">{polygon(GROUND)}</g>'
