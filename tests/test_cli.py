@@ -80,7 +80,7 @@ def test_options_override_the_scenario() -> None:
 
 
 REPEATED = {
-    *("--level", "--group"),
+    *("--layer", "--level", "--group"),
     *("--with", "--point-load", "--patch-load", "--set", "--figure"),
     *("cite --method", "bracket --out"),
 }
