@@ -19,6 +19,7 @@ from blocksim.common.checks import (
     FACTOR,
     LEAN,
     SMOOTH_OR_ROUGH,
+    STRENGTH,
     is_number,
     require,
     require_all,
@@ -67,6 +68,9 @@ class Problem(Shown):
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
         forces have a meaning.
+    strength : float or None
+        Compressive strength of the blocks [Pa], beyond which they crush at their joints; None
+        where they are rigid. Limit analysis alone knows it (`limit.crushing`).
     notes : tuple of str
         What was mended or assumed when it was read; answers repeat it.
 
@@ -90,12 +94,15 @@ class Problem(Shown):
     road: tuple[tuple[float, float, float], ...] = ()
     dispersal: Dispersal | None = None
     weighed: bool = True
+    strength: float | None = None
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the ranges."""
         SMOOTH_OR_ROUGH.require("mu", self.mu)
         FACTOR.require("load", self.load)
+        if self.strength is not None:
+            STRENGTH.require("strength", self.strength)
         object.__setattr__(self, "gravity", frozen(self.gravity, (3,)))
         require_all(FACTOR, "gravity", self.gravity)
 
