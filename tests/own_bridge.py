@@ -15,12 +15,6 @@ from scipy.integrate import quad
 from scipy.optimize import linprog
 
 
-RATIO = 1.05
-TANGENTS = RATIO ** -np.arange(200.0)
-"""Shares of the strength at which tangents touch."""
-SPARED = 4 * RATIO / (1 + RATIO) ** 2
-
-
 @dataclass
 class Bridge:
     """Clear span, rise, thickness and fill over the crown [m], kN/m3; one metre deep."""
@@ -125,23 +119,6 @@ class Bridge:
         found = linprog(cost, A_eq=matrix, b_eq=-dead.ravel(), bounds=(0, None), **more)
         assert found.status in {0, 3}
         return -found.fun if found.status == 0 else math.inf
-
-    def crushing(self, strength: float) -> dict[str, np.ndarray]:
-        """Rows that a strength [kPa] adds to `factor`: tangents of n^2 / (2 P) at both ends.
-
-        They lie below it, and above that of `SPARED` of the strength.
-        """
-        count, rows, right = 4 * (self.count + 1), [], []
-        full = strength * self.thick
-        for joint in range(self.count + 1):
-            for end in (0, 1):
-                for share in TANGENTS:
-                    row = np.zeros(count + 1)
-                    row[4 * joint : 4 * joint + 4] = share
-                    row[4 * joint + 2 * end : 4 * joint + 2 * end + 2] -= 1
-                    rows.append(row / share)
-                    right.append(share * full / 2)
-        return {"A_ub": np.array(rows), "b_ub": np.array(right)}
 
     def options(self) -> list[str]:
         """The same bridge on the command line."""

@@ -36,8 +36,8 @@ FAITHFUL = 1e-7
 NOTHING = 1e-6
 """Force that is none, over what the joint carries."""
 ALIKE = 10.0
-"""Ratio of the strength that is needed to that of which a share is sought, up to which the share
-is exact."""
+"""Ratio of the strength that is needed to that of which a share is sought, up to which it is
+exact."""
 TRIES, FARTHER = 6, 100.0
 """How often another strength is tried, and how much more where nothing is told."""
 SPARED = (0.9, 0.5, 0.2, 0.05)
@@ -265,14 +265,6 @@ def exists(problem: Problem) -> bool:
     if problem.strength is None:
         return equilibrium(problem).exists
     return standing_margin(problem) >= 0
-
-
-def _crushing_forces(problem: Problem, strength: float | None) -> Array:
-    """Return the force that crushes all of each joint, (joints,) float [mean weights]."""
-    STRENGTH.require("strength", strength)
-    assert strength is not None  # noqa: S101 - required
-    require_sizes(problem)
-    return strength * joint_areas(problem) / problem.unit_force
 
 
 def require_sizes(problem: Problem) -> None:
