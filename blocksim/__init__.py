@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from blocksim.blocks.space.assembly import FaceJoint, Solid, assembly_in_space
     from blocksim.blocks.space.extruded import extruded
     from blocksim.blocks.space.maker import SolidMaker
-    from blocksim.blocks.space.problem import SpatialLoad, SpatialProblem
+    from blocksim.blocks.space.problem import SpatialProblem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
     from blocksim.kinds.arcade import Arcade
     from blocksim.kinds.basket import BasketHandleArch
@@ -111,7 +111,6 @@ __all__ = [
     "SolidMaker",
     "SpatialBracket",
     "SpatialCheck",
-    "SpatialLoad",
     "SpatialProblem",
     "Stack",
     "Table",
@@ -154,7 +153,7 @@ _PLACES = {
     "blocks.maker": ("Maker", "Table", "count", "metres", "parameter"),
     "blocks.problem": ("Load", "Problem"),
     "blocks.space.assembly": ("FaceJoint", "Solid", "assembly_in_space"),
-    "blocks.space.problem": ("SpatialLoad", "SpatialProblem"),
+    "blocks.space.problem": ("SpatialProblem",),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "simulation.recording": ("Recording",),
     "simulation.verdict": ("Evidence", "Verdict"),
