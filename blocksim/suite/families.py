@@ -84,7 +84,7 @@ class Family:
         return built.tilted(math.radians(self.tilt_deg)) if self.tilt_deg else built
 
     def _solid(self, changes: dict[str, float]) -> SpatialProblem:
-        said = self.structure | changes
+        said: dict[str, Any] = {**self.structure, **changes}
         maker = SOLID_KINDS[said.pop("kind")](density=WEIGHT, **said)
         return replace(maker.problem(), azimuth=math.radians(self.azimuth_deg))
 
