@@ -14,7 +14,7 @@ from blocksim.blocks.joints import joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
 from blocksim.kinds.circular import weighed_arch
-from blocksim.limit import reactions, resultants
+from blocksim.limit import in_world, reactions, resultants
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import tilt_and_lean
 from blocksim.view.arrows import forces_of
@@ -233,7 +233,11 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
         return [], []
     rows = [
         [first.name]
-        + [sheet.unit.number(float(part)) for each in borne for part in each[place].force]
+        + [
+            sheet.unit.number(float(part))
+            for each in borne
+            for part in in_world(problem, each[place].force)
+        ]
         for place, first in enumerate(borne[0])
     ]
     return [name for name, _ in columns], rows

@@ -61,6 +61,8 @@ from blocksim.engines.base import Engine, Settings, TakesForces, World, trusted
 from blocksim.limit import equilibrium, least_motion
 from blocksim.simulation.verdict import Verdict
 
+ROUNDING = 1e-12
+"""What is smaller is nothing but rounding."""
 WORK = 0.99
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
@@ -129,6 +131,8 @@ class Onset:
                 given = "contacts keep the forces of equilibrium that they were given"
                 return f"{given}, to {size}; friction may let it move, too"
             case Verdict.STANDS:
+                if self.acceleration < ROUNDING:
+                    return f"contact forces balance the weight, found in {spent}"
                 return f"contact forces balance the weight to {size}"
             case Verdict.COLLAPSES:
                 return f"no contact forces hold it: a mechanism starts with {size}"

@@ -17,6 +17,7 @@ from blocksim.blocks.outlines import signed_area
 from blocksim.common.errors import InputError
 from blocksim.common.later import require_library
 from blocksim.common.words import printable
+from blocksim.limit import in_world
 from blocksim.view.dimensions import Length, dimensions_of
 from blocksim.view.drawing import HINGES, outer_sides
 from blocksim.view.sheet import A4, Sheet, scale_for
@@ -183,7 +184,8 @@ def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         text.set_placement(tuple(at), align=TextEntityAlignment.RIGHT if before else None)
 
     for each in sheet.reactions:
-        across, up = (unit.words(float(part)) for part in each.force)
+        borne = in_world(sheet.problem, each.force)
+        across, up = (unit.words(float(part)) for part in borne)
         below = np.array([each.point[0], float(shown[:, 1].min()) - 5 * mm])
         write(f"H = {across}", below)
         write(f"V = {up}", below - [0, 4 * mm])

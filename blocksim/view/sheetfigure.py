@@ -20,6 +20,7 @@ from matplotlib.transforms import Bbox
 from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.version import __version__
+from blocksim.limit import in_world
 from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
 from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
 from blocksim.view.drawing import literal, round_length
@@ -230,11 +231,12 @@ def _draw_reactions(axes: Axes, sheet: Sheet, layout: Layout, low: float) -> Non
             arrow(axes, np.array([tail, each.point]), INK, f"reaction-{index}", zorder=9)
         else:
             tail = np.array([each.point[0], low])
-        across, up = (unit.words(float(part)) for part in np.abs(each.force))
-        side = "\N{RIGHTWARDS ARROW}" if each.force[0] >= 0 else "\N{LEFTWARDS ARROW}"
-        rise = "\N{UPWARDS ARROW}" if each.force[1] >= 0 else "\N{DOWNWARDS ARROW}"
+        borne = in_world(sheet.problem, each.force)
+        across, up = (unit.words(float(part)) for part in np.abs(borne))
+        side = "\N{RIGHTWARDS ARROW}" if borne[0] >= 0 else "\N{LEFTWARDS ARROW}"
+        rise = "\N{UPWARDS ARROW}" if borne[1] >= 0 else "\N{DOWNWARDS ARROW}"
         words = f"{rise} {up}"
-        if abs(each.force[0]) > 1e-6 * largest:
+        if abs(borne[0]) > 1e-6 * largest:
             words += f"\n{side} {across}"
         style: dict[str, Any] = {"linespacing": 1.15, "gid": f"reaction-{index}-words"}
         if abs(way[0]) > 2 * abs(way[1]):
