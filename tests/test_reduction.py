@@ -417,7 +417,7 @@ def test_brackets_are_those_of_all_voussoirs(method, voussoirs):
     assert few.arch.mode is every.arch.mode
     assert few.blocks < 6
     assert every.blocks == voussoirs
-    assert f"{few.blocks} of {voussoirs}" in few.reason
+    assert f"{few.blocks} instead of {voussoirs} blocks" in few.reason
 
 
 def test_where_no_thickness_stands_none_is_found():

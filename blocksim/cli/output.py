@@ -29,12 +29,12 @@ def progress() -> AbstractContextManager[Progress]:
     return bar()
 
 
-def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
+def picture_kind(out: Path, kinds: tuple[str, ...], option: str = "--out") -> str:
     """Return the kind of a picture, by the ending of a file that can be written."""
     kind = out.suffix.removeprefix(".")
     *most, last = (f".{each}" for each in kinds)
     allowed = f"a file name ending in {', '.join(most)} or {last}"
-    require(kind in kinds, "--out", str(out), allowed)
+    require(kind in kinds, option, str(out), allowed)
     require_place(out)
     return kind
 

@@ -116,8 +116,8 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     _road(space, sheet, shown)
     _states(space, sheet, scale)
     _dimensions(space, sheet, shown, scale)
-    _words(space, sheet, shown, scale)
-    _title(space, sheet, shown, scale)
+    foot = _words(space, sheet, shown, scale)
+    _title(space, sheet, float(shown[:, 0].max()), foot, scale)
     text = io.StringIO()
     document.write(text)
     file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
@@ -193,8 +193,8 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         made.render()
 
 
-def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
-    """Write title and facts below, and forces where they act."""
+def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> float:
+    """Write title and facts below, and forces where they act; return how far down."""
     from ezdxf.enums import TextEntityAlignment
 
     mm = scale / 1e3
@@ -207,7 +207,9 @@ def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
     for each in sheet.reactions:
         borne = in_world(sheet.problem, each.force)
         across, up = (unit.words(float(part)) for part in borne)
-        below = np.array([each.point[0], float(shown[:, 1].min()) - 5 * mm])
+        # Left of an arrow that comes from the left or from below, right of another.
+        side = -22.0 if each.force[0] >= 0 else 8.0
+        below = np.array([each.point[0] + side * mm, float(shown[:, 1].min()) - 5 * mm])
         write(f"H = {across}", below)
         write(f"V = {up}", below - [0, 4 * mm])
     if sheet.thrust is not None:
@@ -221,6 +223,7 @@ def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
     for line in said:
         at = at - [0, 5 * mm]
         write(line, at)
+    return float(at[1])
 
 
 def _numbers(space: Any, sheet: Sheet, scale: float) -> None:
@@ -230,9 +233,8 @@ def _numbers(space: Any, sheet: Sheet, scale: float) -> None:
     for index, block in enumerate(sheet.problem.assembly.blocks):
         name = _literal(block.name or str(index))
         sides = np.ptp(block.vertices, axis=0)
-        height = min(
-            LETTERS * scale / 1e3, float(sides.min()) / 3, float(sides.max()) / len(name)
-        )
+        room = min(float(sides.min()) / 3, float(sides.max()) / len(name))
+        height = min(LETTERS * scale / 1e3, room)
         text = space.add_text(name, height=height, dxfattribs={"layer": "numbers"})
         text.set_placement(tuple(block.centre), align=TextEntityAlignment.MIDDLE_CENTER)
 
@@ -273,27 +275,24 @@ def _road(space: Any, sheet: Sheet, shown: Array) -> None:
     space.add_line((low, top), (high, top), dxfattribs=layer)
     space.add_point((0.0, top), dxfattribs=layer)
     height = (high - low) / 80
-    space.add_text("x = 0", height=height, dxfattribs=layer).set_placement(
-        (0.0, top + height / 2)
-    )
+    text = space.add_text("x = 0", height=height, dxfattribs=layer)
+    text.set_placement((0.0, top + height / 2))
 
 
-def _title(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
-    """Draw a title block to the lower right, a line for each thing that it says."""
+def _title(space: Any, sheet: Sheet, right: float, foot: float, scale: float) -> None:
+    """Draw a title block below the words, to the right, a line for each thing that it says."""
     said = [*sheet.titles.said, ("drawing", sheet.title), ("scale", scale_words(scale)),
             ("made by", f"blocksim {__version__}")]  # fmt: skip
     mm, layer = scale / 1e3, {"layer": "title"}
     wide, high = TITLED * mm
-    right, top = float(shown[:, 0].max()), float(shown[:, 1].min()) - 22 * mm
-    left, split = right - wide, right - 0.75 * wide
+    top, left, split = foot - high, right - wide, right - 0.75 * wide
     for row, (name, value) in enumerate(said):
         level = top - row * high
         corners = [(left, level), (right, level), (right, level - high), (left, level - high)]
         space.add_lwpolyline(corners, close=True, dxfattribs=layer)
-        foot = level - 0.7 * high
         for at, words in ((left, name), (split, value)):
             text = space.add_text(_literal(words)[:60], height=LETTERS * mm, dxfattribs=layer)
-            text.set_placement((at + 2 * mm, foot))
+            text.set_placement((at + 2 * mm, level - 0.7 * high))
     space.add_line((split, top), (split, top - len(said) * high), dxfattribs=layer)
 
 
