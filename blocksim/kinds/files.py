@@ -31,6 +31,7 @@ from blocksim.kinds import KINDS
 from blocksim.reading.compas import is_compas, read_compas
 from blocksim.reading.drawing import Reading
 from blocksim.reading.dxf import read_dxf
+from blocksim.reading.scenes import is_scene, read_scene
 from blocksim.reading.svg import read_svg
 
 if TYPE_CHECKING:
@@ -149,17 +150,25 @@ def load_any(
     InputError
         In one line: file, entry, value, and what would be accepted.
     """
-    from blocksim.blocks.space.files import is_spatial, problem_in_space
+    from blocksim.blocks.space.files import is_spatial
 
     with named_file(path, reading) as said:
         data = said if friction is None else with_friction(said, friction)
         data = data if tolerance is None else within(data, tolerance)
         table: object = changed(data, changes) if changes else data
         table = table if density is None else weighed(table, density)
-        if is_spatial(table):
-            require(depth is None, "depth", depth, "left out: it is of blocks in the plane")
-            return problem_in_space(table)
-        return structure_of(table if depth is None else deepened(table, depth))
+        if depth is not None:
+            spatial = is_spatial(table)
+            require(not spatial, "depth", depth, "left out: it is of blocks in the plane")
+            table = deepened(table, depth)
+        return any_of(table)
+
+
+def any_of(data: object) -> Problem | SpatialProblem:
+    """Make a problem of what a structure file says, in the plane or in space."""
+    from blocksim.blocks.space.files import is_spatial, problem_in_space
+
+    return problem_in_space(data) if is_spatial(data) else structure_of(data)
 
 
 def with_friction(data: object, friction: float) -> object:
@@ -215,7 +224,7 @@ def named_file(path: AnyPath, reading: Reading = AS_DRAWN) -> Generator[object]:
     data: object = None
     try:
         drawn = DRAWN.get(ending)
-        data = drawn(path, reading).structure() if drawn else _written(text, WRITTEN[ending])
+        data = drawn(path, reading).structure() if drawn else written(text, WRITTEN[ending])
         yield data
     except InputError as error:
         field = _by_name(error.field, data)
@@ -234,11 +243,19 @@ def require_undrawn(reading: Reading) -> None:
     require(reading.snap is None, "snap", reading.snap, "left out: it is of drawings")
 
 
-def _written(text: bytes, language: str) -> object:
-    """Return what a text says, an assembly of compas as a structure file would."""
+def written(text: bytes, language: str) -> object:
+    """Return what a text says, a scene or an assembly of compas as a structure file would.
+
+    Raises
+    ------
+    InputError, ValueError, RecursionError
+        If it is not of that language, JSON or TOML, or says what cannot be.
+    """
     if language == "TOML":
         return toml_of(text)
     data: object = json_of(text, _once)
+    if is_scene(data):
+        return read_scene(cast("dict[str, Any]", data))
     return read_compas(cast("dict[str, Any]", data)) if is_compas(data) else data
 
 

@@ -17,7 +17,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Patch
 from matplotlib.transforms import Bbox
 
-from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import signed_area
 from blocksim.common.version import __version__
@@ -35,7 +34,7 @@ from blocksim.view.structure import (
     draw_supports,
     edge_width,
 )
-from blocksim.view.style import FONT, FRICTION, INK, MODES, QUIET, THRUST
+from blocksim.view.style import FONT, INK, QUIET, THRUST
 
 INCH = 25.4
 """In millimetres."""
@@ -49,12 +48,8 @@ SMALL, SMALLER, NUMBERED = 8.0, 7.5, 5.0
 """Sizes of letters [points]."""
 NUMBER, DIGIT = 2.4, 1.1
 """Height of a block that has room for its number, and width of a letter of that [mm]."""
-LINES = {
-    "min": (FRICTION, (0, (6, 2))),
-    "max": (MODES[Mode.RS].colour, (0, (6, 1.6, 1.2, 1.6))),
-    "safest": (THRUST, "-"),
-}
-"""Colour and dashes of each line of thrust."""
+LINES = {"min": (0, (6, 2)), "max": (0, (1, 1.2)), "safest": "-"}
+"""Dashes of each line of thrust."""
 
 
 def sheet_figure(
@@ -135,9 +130,8 @@ def _entries(axes: Axes) -> dict[str, Patch | Line2D]:
 
 
 def _draw_line(axes: Axes, name: str, words: str, paths: tuple[Array, ...]) -> None:
-    tone, dashes = LINES[name]
     for index, path in enumerate(paths):
-        axes.plot(*path.T, color=tone, ls=dashes, lw=1.5 if name == "safest" else 1.2,
+        axes.plot(*path.T, color=THRUST, ls=LINES[name], lw=1.5 if name == "safest" else 1.2,
                   zorder=8, label=words, gid=f"thrust-{name}-{index}",
                   solid_capstyle="round")  # fmt: skip
 
