@@ -365,7 +365,7 @@ def test_contacts_are_kept_where_an_arch_begins_to_turn() -> None:
 def test_a_block_on_its_head_lies_still() -> None:
     """Turned by half a turn it may be seen as turned either way, and would rock in numbers."""
     world = Bodies(CircularArch.of(THIN, 0.6).problem(), ENGINE.rule(THIN.assembly()))
-    body, place = world._bodies[0], world._built[0].place
+    body, place = world._bodies[0], world._parts.states[0].place
     poses: list[Array] = []
     for angle in [*np.arange(0.0, math.pi, 0.1), *[math.pi + 1e-4, math.pi - 1e-4] * 30]:
         turn = Rotation.from_rotvec([0.0, 0.0, angle]).as_quat().tolist()

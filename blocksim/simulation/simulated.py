@@ -14,6 +14,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.checks import Range
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, TakesForces, TellsForces, World
+from blocksim.simulation.looking import Looking, looking_at
 from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
@@ -225,6 +226,11 @@ class Simulation:
         """The problem with the friction asked for, where the engine takes less of it."""
         least = (self.problem.friction <= self.engine.most_friction).all()
         return None if least else self.problem
+
+    @property
+    def look(self) -> Looking:
+        """The problem as it is looked at where blocks move."""
+        return looking_at(self.problem)
 
     @property
     def length(self) -> str:
