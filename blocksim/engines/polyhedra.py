@@ -113,12 +113,11 @@ class Polyhedra:
 
     def loads(self, poses: Array) -> Array | None:
         """Return loads besides gravity along the axes, (blocks, 6); None where none acts."""
-        problem = self.problem
-        if not (problem.dead or (problem.live and problem.load)):
+        if not self.problem.is_loaded:
             return None
         place = self.place(poses)
         found = self.bodies.pull(place)
-        found[:, :3] -= self.bodies.weights[:, None] * problem.gravity
+        found[:, :3] -= self.bodies.weights[:, None] * self.problem.gravity
         found[:, 3:] = np.einsum("bij,bj->bi", place.turns[:-1], found[:, 3:])
         return found
 

@@ -8,7 +8,7 @@ loads bounds it at all those between.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.crushing import crushing_forces, most_before_crushing
 from blocksim.limit.linear import LinearProgramme, Optimum
 from blocksim.limit.programme import most, most_common, scaled
+from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
 
 if TYPE_CHECKING:
     from scipy import sparse
@@ -145,6 +146,15 @@ def collapse(problem: Problem, *, strength: float | None = None) -> Collapse:
     capacity = Capacity(problem)
     still = np.zeros(capacity.cones.shape)
     live = sum((problem.of_load(load) for load in problem.live), still)
-    if strength is None:
-        return capacity.of(live)
-    return capacity.crushed(live, crushing_forces(problem, strength))
+    if strength is not None:
+        return capacity.crushed(live, crushing_forces(problem, strength))
+    found, at_rest = capacity.of(live), problem.with_load(0.0)
+    return replace(
+        found,
+        forces=found.forces
+        if found.forces is None
+        else symmetric_forces(at_rest, found.forces, live),
+        mechanism=found.mechanism
+        if found.mechanism is None
+        else symmetric_rates(at_rest, found.mechanism, live),
+    )

@@ -18,6 +18,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.limit.cones import Cones
 from blocksim.limit.linear import LinearProgramme
 from blocksim.limit.programme import extreme, most_common
+from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
 
 HOPELESS = 1e3
 """Share of width or friction beyond which blocks count as never standing."""
@@ -110,7 +111,12 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
             return None
         else:
             forces = cones.forces(found.values)
-            ends.append(Thrust(thrust=float((across * forces).sum()), forces=forces))
+            thrust = float((across * forces).sum())
+            even = symmetric_forces(problem, forces)
+            # A joint off the middle may have its extreme on its own side only.
+            if abs(float((across * even).sum()) - thrust) <= NOTHING * (1 + abs(thrust)):
+                forces = even
+            ends.append(Thrust(thrust=thrust, forces=forces))
     return ends[0], ends[1]
 
 
@@ -151,11 +157,12 @@ def margins(problem: Problem) -> Margins:
     known = np.isfinite(problem.friction).all() and friction is not None
     start = max(width or 0.0, (friction or 0.0) if known else 0.0)
     strength = _least_share(both, start, stands=stands)
+    forces = None if strength is None else both.forces(strength)
     return Margins(
         width=width,
         friction=friction,
         strength=strength,
-        forces=None if strength is None else both.forces(strength),
+        forces=None if forces is None else symmetric_forces(problem, forces),
     )
 
 
@@ -189,7 +196,7 @@ def nearest_mechanism(problem: Problem) -> Array | None:
         share = (share + step) * (1 - ROUGHLY / 2)
         if not low < share < high:
             share = (low + high) / 2
-    return rates
+    return None if rates is None else symmetric_rates(problem, rates)
 
 
 def _least_share(search: _Search, low: float, *, stands: bool = False) -> float | None:

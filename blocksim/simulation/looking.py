@@ -15,7 +15,6 @@ from blocksim.blocks.space.parting import (
     overlap_in_space,
     slip_in_space,
 )
-from blocksim.blocks.space.points import JointPoints
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines.base import FRICTION_CAP, Engine, Settings, World, trusted
 from blocksim.limit import equilibrium, least_motion
@@ -162,19 +161,19 @@ class InSpace:
 
     def work(self, built: Array, rates: Array) -> tuple[float, float]:  # noqa: ARG002 - of both
         """Return works from rest over one step."""
-        assembly, points = self._assembly, JointPoints(self._problem)
-        pull = points.pull(self._problem.load).reshape(-1, 6)
+        assembly = self._assembly
         gyration = np.array([block.gyration for block in assembly.blocks]) / assembly.size**2
         spin = np.einsum("bi,bij,bj->b", rates[:, 3:], gyration, rates[:, 3:])
-        moving = (assembly.weights / points.unit) @ ((rates[:, :3] ** 2).sum(axis=1) + spin)
-        return float((pull * rates).sum()), float(moving)
+        masses = assembly.weights / self._problem.unit_force
+        moving = float(masses @ ((rates[:, :3] ** 2).sum(axis=1) + spin))
+        return float((self._problem.pull() * rates).sum()), moving
 
     def equilibrium(self) -> tuple[bool, Array | None]:
         """Return forces (points, 3), along normals and across."""
         found = can_rest(self._problem)
         forces = found.point_forces
         if forces is not None:
-            forces = forces / JointPoints(self._problem).unit
+            forces = forces / self._problem.unit_force
         return found.exists is not False, forces
 
     def least(self) -> Array | None:
