@@ -61,6 +61,15 @@ def test_a_study_takes_a_folder_with_a_slash(
     assert capsys.readouterr().out == f"{tmp_path}/rows True\n"
 
 
+def test_cases_in_space_are_asked_once(tmp_path: Path) -> None:
+    """Two small ones, by limit analysis; what is on disk is not asked again."""
+    for _ in range(2):
+        told = study("space_cases").main(tmp_path, quick=True, method="limit")
+        assert "| limit | 1.0% | 3 | 0 | 0 |" in told
+    with (tmp_path / "space_cases.csv").open(encoding="utf-8") as file:
+        assert len(list(csv.DictReader(file))) == 5
+
+
 def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
     """Where it turns a lune of any width carries itself; where it slides it needs more."""
     rows = {
