@@ -289,6 +289,14 @@ class Loading:
             "side; or boussinesq, up to 30 deg from the vertical. Not at all if left out.",
         ),
     ] = None
+    strength: Annotated[
+        float | None,
+        Option(
+            about="Compressive strength of the blocks in MPa: they crush where joints press by "
+            "more (limit). Blocks are rigid if left out.",
+            range=Range(low=0, high=1e3, unit="MPa", above=True),
+        ),
+    ] = None
     load: Annotated[
         float | None,
         Option(
