@@ -1,3 +1,4 @@
+# pyright: basic
 """Every study runs, and its headline numbers hold."""
 
 from __future__ import annotations
@@ -426,7 +427,7 @@ def test_what_is_thrown_would_be_seen() -> None:
         poses[:, blocks, 1] += (speed * times - times**2 / 2)[:, None]
         # Something has to fall: the lowest sinks into what it stands on.
         poses[:, order[-1], 1] -= sinks * times
-        recording = Simulation.of(problem, "direct").record(times, poses, Quality())
+        recording = Simulation.of(problem, "direct").record(times.tolist(), [*poses], Quality())
         found = module.measured(recording)
         assert found["thrown"] == pytest.approx(thrown, rel=0.02)
         assert found["rise"] == pytest.approx(speed**2 / 2, rel=1e-3)
