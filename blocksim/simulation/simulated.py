@@ -14,10 +14,10 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.checks import Range
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, TakesForces, TellsForces, World
-from blocksim.simulation.looking import Looking, looking_at
 from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
+    from blocksim.simulation.looking import Looking
     from blocksim.simulation.onset import Onset
 
 Overrides = Mapping[str, float]
@@ -230,6 +230,9 @@ class Simulation:
     @property
     def look(self) -> Looking:
         """The problem as it is looked at where blocks move."""
+        # Questions without motion do without what this loads.
+        from blocksim.simulation.looking import looking_at
+
         return looking_at(self.problem)
 
     @property
