@@ -9,7 +9,7 @@ import blocksim
 from blocksim import Verdict
 from blocksim.simulation.space import engine_in_space, observe_in_space
 
-ENGINES = ("pybullet",)
+ENGINES = ("pybullet", "mujoco")
 QUICK = ("block_topples_20", "plate_slides_25", "tower_102", "tower_113", "harmonic_4_out")
 """Of each kind one that is answered at once: turning, sliding, rest, a fall."""
 

@@ -9,6 +9,7 @@ from typing import NamedTuple, Protocol
 from blocksim.blocks.assembly import Array
 from blocksim.engines.bulletspace import Framed, Space, State
 from blocksim.engines.energy import Balance
+from blocksim.engines.solids import Meeting
 
 
 class Built(NamedTuple):
@@ -41,17 +42,6 @@ def met(space: Space, ends: Ends) -> dict[tuple[int, int, int, int], list[tuple[
             joints[other, one, second, first].append((joint, against))
             space.meet(one, other, first, second)
     return joints
-
-
-class Solids(Protocol):
-    """When blocks may meet others than those of their joints."""
-
-    loose: bool
-    largest: float
-
-    def update(self, poses: Array) -> object:
-        """Look where blocks are."""
-        ...
 
 
 class Pulled(Protocol):
@@ -97,7 +87,7 @@ class Parts(Protocol):
         ...
 
     @property
-    def solids(self) -> Solids:
+    def solids(self) -> Meeting:
         """When they may meet others."""
         ...
 

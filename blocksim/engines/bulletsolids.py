@@ -95,6 +95,10 @@ class Spatial(Polyhedra):
         """When blocks may meet others is known here."""
         return self
 
+    def loads(self, poses: Array) -> Array | None:
+        """Return loads besides gravity, (blocks, 6), or None."""
+        return self.along(poses)
+
     def pressures(self, forces: Array) -> Array:
         """Return pressures of forces at the points of joints, (points, 3)."""
         return np.maximum(forces[:, 0], 0.0)

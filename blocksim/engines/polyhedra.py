@@ -111,7 +111,7 @@ class Polyhedra:
             np.concatenate([turned @ built.turns[:-1], built.turns[-1:]]),
         )
 
-    def loads(self, poses: Array) -> Array | None:
+    def along(self, poses: Array) -> Array | None:
         """Return loads besides gravity along the axes, (blocks, 6); None where none acts."""
         if not self.problem.is_loaded:
             return None
