@@ -71,6 +71,7 @@ def test_cases_in_space_are_asked_once(tmp_path: Path) -> None:
         assert len(list(csv.DictReader(file))) == 5
 
 
+@pytest.mark.long
 def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
     """Where it turns a lune of any width carries itself; where it slides it needs more."""
     rows = {
