@@ -17,6 +17,9 @@ from blocksim.blocks.space.parting import (
 )
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.engines.base import FRICTION_CAP, Engine, Settings, World, trusted
+from blocksim.engines.solid.bodies import Bodies
+from blocksim.engines.solid.coulomb import dilating
+from blocksim.engines.solid.stepping import at_rest
 from blocksim.limit import equilibrium, least_motion
 from blocksim.limit.space import can_rest
 
@@ -177,8 +180,8 @@ class InSpace:
         return found.exists is not False, forces
 
     def least(self) -> Array | None:
-        """Return nothing: engines in space find motions from nothing."""
-        return None
+        """Return forces (points, 3); where joints slide they open."""
+        return dilating(at_rest(Bodies(self._problem)))
 
     def trusts(self, world: World, settings: Settings, largest: float) -> bool:
         """Tell whether the residual is small beside the accelerations."""
