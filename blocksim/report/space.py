@@ -129,6 +129,7 @@ def _joints(answer: SpatialCheck) -> list[JointRecord]:
                 "friction_force": None if force is None else float(np.hypot(*force[1:])),
                 "width_used": None,
                 "friction_used": None,
+                "stress_MPa": None,
             }
         )
     return told
