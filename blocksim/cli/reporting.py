@@ -45,10 +45,7 @@ def report(
     method: MethodOption = "auto",
     settings: Set = None,
 ) -> None:
-    """Write a report on one structure: pages to print, or a drawing with a title block.
-
-    Exit codes are those of check.
-    """
+    """Write a report on one structure, to print and to sign. Exit codes are those of check."""
     problem = problem_asked(scene, given, loading, thick=True, out=out)
     require_given(out=out)
     out = out or Path()
