@@ -254,7 +254,15 @@ class Spreading:
             left -= FRAME * (world.fastest > FAST * SEEN or left < AFTER)
             progress(world.value / self.farthest, f"supports at {world.value:.4g} m")
         return Recording(
-            problem=replace(world.problem, title=f"{self.asked.title}, its supports move"),
+            # Supports that move are its last blocks; it says so by their moves.
+            problem=replace(
+                world.problem,
+                title=f"{self.asked.title}, its supports move",
+                moves=tuple(
+                    replace(move, support=len(world.problem.assembly.supports) - 1)
+                    for move in self.problem.moves
+                ),
+            ),
             engine=ENGINE.name,
             engine_version=ENGINE.version,
             settings=settings,
