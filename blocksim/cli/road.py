@@ -74,7 +74,8 @@ def _filled(problem: Problem, loading: Loading, density: float) -> Problem:
     for name in SOIL:
         value = getattr(loading, name)
         allowed = "left out, or --fill beside it"
-        require(value is None or filled, option_of(name), _said(value), allowed)
+        said = value if isinstance(value, float) else _said(value)
+        require(value is None or filled, option_of(name), said, allowed)
     if heavy is not None:
         require_unit_weight("--fill-unit-weight", heavy)
         allowed = "left out, or --fill beside it"
