@@ -133,7 +133,9 @@ class Soil:
         for body, parts in self._parts(profile, depths, road, more):
             for rises in (True, False):
                 mine = parts[parts[:, 2] > 0 if rises else parts[:, 2] < 0]
-                found.setdefault((body, rises), []).append(mine * [1.0, 1.0, 1.0, 0.0])
+                found.setdefault((body, rises), []).append(
+                    mine * np.array([1.0, 1.0, 1.0, 0.0])
+                )
         known = [(body, np.concatenate(parts)) for (body, _), parts in sorted(found.items())]
         return _loads(known)
 
@@ -148,7 +150,8 @@ class Soil:
         for link, body in enumerate(profile.owner.tolist()):
             if 0 <= body < depths.size:
                 parts = self._along(chain[link], chain[link + 1], edges, levels, sides)
-                yield body, parts * [1.0, 1.0, depths[body], depths[body]]
+                deep = float(depths[body])
+                yield body, parts * np.array([1.0, 1.0, deep, deep])
 
     def _along(
         self,
