@@ -61,6 +61,7 @@ def test_a_study_takes_a_folder_with_a_slash(
     assert capsys.readouterr().out == f"{tmp_path}/rows True\n"
 
 
+@pytest.mark.long
 def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
     """Where it turns a lune of any width carries itself; where it slides it needs more."""
     rows = {
