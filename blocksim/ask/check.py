@@ -235,6 +235,7 @@ def check(
         found = _offered(problem, offered, chosen, given)
     else:
         found = _general(problem, chosen, given)
+        problem = found.answer.problem
     rest = motion = None
     if problem.shaking is None:
         rest, motion = rest_of(
@@ -299,8 +300,10 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
 def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
     """Answer by a linear programme or by an engine."""
     planar = problem.is_planar
-    static = equilibrium(problem) if planar else None
     factor = collapse(problem).load_factor if planar and problem.live else None
+    static = equilibrium(problem) if planar else None
+    # What soil bears is mobilised as far as it has to be.
+    problem = problem if static is None else static.problem
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES

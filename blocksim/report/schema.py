@@ -42,6 +42,7 @@ class ProblemRecord(TypedDict):
     weight_kN: float | None
     fill_m: float | None
     fill_weight_kN: float | None
+    fill_is: list[str] | None
     dispersal: str | None
     live_weight_kN: float
 

@@ -140,8 +140,10 @@ def load_words(problem: Problem) -> list[str]:
     words = ["Own weight acts at each block's centre of mass."]
     if getattr(problem.maker, "weight", "") == "centreline":
         words = ["Own weight acts at the centroid of each voussoir's part of the centreline."]
-    if fill_of(problem) is not None:
-        words.append("Fill is weight alone: it does not press from the side.")
+    if (fill := fill_of(problem)) is not None:
+        words += [f"Fill: {each}." for each in fill.words]
+        if problem.soil is None or not any(problem.soil.pressure):
+            words.append("Fill does not press from the side.")
     elif problem.dead:
         count = len(problem.dead)
         words.append(f"{count} dead load{'s' * (count > 1)} besides own weight.")
