@@ -318,7 +318,7 @@ def test_a_legend_is_of_what_is_there() -> None:
     }  # fmt: skip
     assert "slides" in legend(drawn("slides")[1])
     stands = legend(drawn("engineer's")[1])
-    assert len(stands) == 5
+    assert len(stands) == 6
     assert not [each for each in stands if "hinge" in each or "mechanism" in each]
 
 
