@@ -408,15 +408,15 @@ def _unit(rates: Array, problem: Problem) -> Array:
 def _static_words(static: Equilibrium) -> str:
     """Say what limit analysis found."""
     if static.exists:
+        spare = max(0.0, static.margin)
         return (
-            "forces of equilibrium exist, every contact pressing by "
-            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its "
-            "friction cone, or more"
+            "forces of equilibrium exist, and no contact is nearer to opening or sliding than "
+            f"by {spare:.3g} of its force"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
     return (
-        "no forces of equilibrium exist: contacts would have to pull by "
+        "no forces of equilibrium exist: contacts would have to pull with "
         f"{-static.margin:.3g} of what they carry"
     )
 
@@ -447,7 +447,9 @@ def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
             other = Verdict.COLLAPSES if stands else Verdict.STANDS
             found = f"the drawing leaves it open: {other} with blocks {words} by what was "
             return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
-    found = "the same with blocks grown and shrunk by what was closed, "
+    found = (
+        "the verdict is the same with blocks grown and shrunk by what was closed at joints, "
+    )
     return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)
 
 

@@ -191,4 +191,4 @@ def chosen_words(method: str | Method, rung: Method) -> str:
     else:
         seen = "sees the blocks as built" if rung.is_static else "can move blocks"
     fine = f"brackets down to {rung.finest:g}" if rung.finest else "is exact"
-    return f"; auto took {rung.name}, the cheapest method that {seen} and {fine}"
+    return f"; {rung.name}, as no cheaper method {seen} and {fine}"

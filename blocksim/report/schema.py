@@ -170,7 +170,6 @@ class CheckRecord(CarriedRecord):
     reason: str
     problem: ProblemRecord
     load_factor: Number | None
-    factor_of_safety: Number | None
     rest: Literal["must", "can", "cannot"] | None
     rest_goes_on: bool | None
     joints: list[JointRecord]
