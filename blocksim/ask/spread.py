@@ -162,7 +162,7 @@ class Spreading:
     @property
     def words(self) -> str:
         """Say what happens on the way."""
-        return "".join(f"; {_words(event)}" for event in self.events)
+        return "".join(f"; {happening_words(event)}" for event in self.events)
 
     @property
     def events(self) -> tuple[Happening, ...]:
@@ -315,6 +315,7 @@ def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int
 
 
 def happening_words(event: Happening) -> str:
+    """Say what happens, and where."""
     said = ", ".join(f"{joint.a}-{joint.b} {joint.state}" for joint in event.joints)
     return f"at {event.value:.6g} m {_WORDS[event.what]}: {said}"
 
