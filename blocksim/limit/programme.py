@@ -27,7 +27,8 @@ from blocksim.common.later import Library
 from blocksim.limit.bodies import alike, widened
 from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.exact import Exact
-from blocksim.limit.linear import LinearProgramme, Optimum
+from blocksim.limit.interior import most_inside
+from blocksim.limit.linear import MANY, LinearProgramme, Optimum
 from blocksim.limit.proof import Proof, proof_in_rationals, proof_of_fall, proof_of_rest
 
 if TYPE_CHECKING:
@@ -87,8 +88,9 @@ class Equilibrium:
         if self.rates is not None and self.margin < NEAR:
             rates = widened(self.problem, self._cones, self.rates)
             found = None if rates is None else proof_of_fall(exact, rates)
-            owner = alike(self.problem, self._cones, self.rates)
-            found = found or proof_in_rationals(exact, weights, owner)
+            if found is None:
+                owner = alike(self.problem, self._cones, self.rates)
+                found = proof_in_rationals(exact, weights, owner)
             if found is not None:
                 return found
         return proof_in_rationals(exact, weights, range(blocks))
@@ -146,9 +148,8 @@ def equilibrium(problem: Problem) -> Equilibrium:
     """
     cones, pull = Cones(problem), problem.pull()
     try:
-        found = most_common(cones, pull, LinearProgramme(vertex=False))
-        if not found.exists or abs(found.values[-1]) < NEAR:
-            found = most_common(cones, pull)
+        found = _clear(cones, pull) if cones.count > MANY else None
+        found = most_common(cones, pull) if found is None else found
         for _ in range(RESCALED):
             if not found.exists or cones.left(_parts(cones, found), pull) < ROUND_OFF:
                 break
@@ -168,6 +169,13 @@ def equilibrium(problem: Problem) -> Equilibrium:
         rates=scaled(cones.rates(found.prices)),
         cones=cones,
     )
+
+
+def _clear(cones: Cones, pull: Array) -> Optimum | None:
+    """Find what `most_common` does in less time; None where it is near the limit."""
+    found = most_inside(cones, *_common(cones, pull), SPARE)
+    near = found is None or not NEAR < abs(found.values[-1]) < TENSION
+    return None if near else found
 
 
 def _parts(cones: Cones, found: Optimum) -> Array:
@@ -232,8 +240,12 @@ def most_common(cones: Cones, pull: Array, solver: LinearProgramme | None = None
 
     What all parts have in common comes last in the optimum's values.
     """
-    common = sparse.csc_array(cones.balance @ cones.bounded[:, None])
-    return most(cones, common, -cones.loads(pull), (-TENSION, SPARE), solver)
+    return most(cones, *_common(cones, pull), (-TENSION, SPARE), solver)
+
+
+def _common(cones: Cones, pull: Array) -> tuple[Any, Array]:
+    """Return what parts do that all have in common, and what they all balance."""
+    return sparse.csc_array(cones.balance @ cones.bounded[:, None]), -cones.loads(pull)
 
 
 def extreme(
