@@ -93,6 +93,7 @@ def _opening(cones: Cones) -> Array | None:
         [("nonnegative", joints)],
         finest=FINEST,
         scaled=False,
+        refined=False,
     )
     motion: Array = np.array(found.x)
     opens = str(found.status) == "Solved" and (rows @ motion).min() > ENOUGH

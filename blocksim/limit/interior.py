@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 else:
     sparse = Library("scipy.sparse")
 
-FINEST = 1e-8
+FINEST = 1e-7
 """Gap and residuals at which it ends."""
 
 
@@ -42,6 +42,7 @@ def most_inside(cones: Cones, column: Any, right: Array, highest: float) -> Opti
     -------
     Optimum or None
         As of `LinearProgramme`, without a basis; None where the solver does not end there.
+        Where nothing balances there are no values, and prices whose motion gains work.
     """
     turned: Any = cones.balance.T.tocsr()
     presses = cones.bounded > 0
@@ -59,10 +60,14 @@ def most_inside(cones: Cones, column: Any, right: Array, highest: float) -> Opti
         finest=FINEST,
         # Equations and parts have units of their own.
         scaled=False,
+        refined=False,
     )
+    rates = -np.array(found.x)
+    if str(found.status) == "DualInfeasible":
+        return Optimum(values=np.zeros(0), prices=rates, unbounded=False)
     if str(found.status) != "Solved":
         return None
     prices = np.array(found.z)
     values = np.append(np.zeros(cones.count), highest - prices[-1])
     values[:-1][~presses], values[:-1][presses] = prices[:free], prices[free:-1]
-    return Optimum(values=values, prices=-np.array(found.x), unbounded=False)
+    return Optimum(values=values, prices=rates, unbounded=False)

@@ -159,7 +159,8 @@ def equilibrium(problem: Problem) -> Equilibrium:
     except Unsolved:
         return Equilibrium(problem=problem, margin=math.nan, parts=None, rates=None)
     if not found.exists:
-        driven = falling(problem)
+        known = found.prices.size > 0
+        driven = scaled(cones.rates(found.prices)) if known else falling(problem)
         return Equilibrium(problem=problem, margin=-math.inf, parts=None, rates=driven)
     margin = float(found.values[-1])
     return Equilibrium(
@@ -174,8 +175,9 @@ def equilibrium(problem: Problem) -> Equilibrium:
 def _clear(cones: Cones, pull: Array) -> Optimum | None:
     """Find what `most_common` does in less time; None where it is near the limit."""
     found = most_inside(cones, *_common(cones, pull), SPARE)
-    near = found is None or not NEAR < abs(found.values[-1]) < TENSION
-    return None if near else found
+    if found is not None and found.exists and not NEAR < abs(found.values[-1]) < TENSION:
+        return None
+    return found
 
 
 def _parts(cones: Cones, found: Optimum) -> Array:
