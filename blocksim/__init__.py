@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from blocksim.arch.circular import Arch
     from blocksim.arch.modes import Mode
     from blocksim.ask.bracket import Bracket, bracket
+    from blocksim.ask.bulk import Told, check_many
     from blocksim.ask.check import Check, check
     from blocksim.ask.citing import cite
     from blocksim.ask.options import Options
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from blocksim.blocks.space.assembly import FaceJoint, Solid, assembly_in_space
     from blocksim.blocks.space.extruded import extruded
     from blocksim.blocks.space.maker import SolidMaker
-    from blocksim.blocks.space.problem import SpatialLoad, SpatialProblem
+    from blocksim.blocks.space.problem import SpatialProblem
     from blocksim.common.errors import BlocksimError, InputError, MachineError, MissingPart
     from blocksim.kinds.arcade import Arcade
     from blocksim.kinds.basket import BasketHandleArch
@@ -111,10 +112,10 @@ __all__ = [
     "SolidMaker",
     "SpatialBracket",
     "SpatialCheck",
-    "SpatialLoad",
     "SpatialProblem",
     "Stack",
     "Table",
+    "Told",
     "Tower",
     "Verdict",
     "Wall",
@@ -122,6 +123,7 @@ __all__ = [
     "assembly_in_space",
     "bracket",
     "check",
+    "check_many",
     "cite",
     "collapse",
     "count",
@@ -142,6 +144,7 @@ _PLACES = {
     "arch.circular": ("Arch",),
     "arch.modes": ("Mode",),
     "ask.bracket": ("Bracket", "bracket"),
+    "ask.bulk": ("Told", "check_many"),
     "ask.check": ("Check", "check"),
     "ask.citing": ("cite",),
     "ask.options": ("Options",),
@@ -154,7 +157,7 @@ _PLACES = {
     "blocks.maker": ("Maker", "Table", "count", "metres", "parameter"),
     "blocks.problem": ("Load", "Problem"),
     "blocks.space.assembly": ("FaceJoint", "Solid", "assembly_in_space"),
-    "blocks.space.problem": ("SpatialLoad", "SpatialProblem"),
+    "blocks.space.problem": ("SpatialProblem",),
     "common.errors": ("BlocksimError", "InputError", "MachineError", "MissingPart"),
     "simulation.recording": ("Recording",),
     "simulation.verdict": ("Evidence", "Verdict"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from runpy import run_path
 
@@ -10,7 +11,13 @@ import pytest
 
 from blocksim.ask.check import check
 from blocksim.ask.families import family_of
+from blocksim.ask.options import problem_of
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.kinds.circular import CircularArch
+from blocksim.kinds.elliptic import EllipticArch
 from blocksim.kinds.known import load_known
+from blocksim.kinds.portal import Portal
 from blocksim.view.placing import distance_of
 from blocksim.view.sheet import answer_sheet
 
@@ -57,3 +64,54 @@ def test_the_sketch_points_at_its_line_of_thrust() -> None:
     (line,) = [each.get_xydata() for each in axes.lines if each.get_gid() == "thrust"]
     (words,) = [each for each in axes.texts if each.get_text() == "line of thrust"]
     assert np.hypot(*(line - words.xy).T).min() < 1e-12
+
+
+def mirrored(problem: Problem) -> tuple[Array, Array]:
+    """Which block and joint lies where another does in a mirror, by brute force."""
+    centres = problem.assembly.built[:-1, :2]
+    middles = problem.assembly.joint_arrays.ends.mean(axis=1)
+    axis = (centres[:, 0].min() + centres[:, 0].max()) / 2
+    return tuple(
+        np.abs(each[:, None] - (each - [axis, 0]) * [-1, 1] - [axis, 0])
+        .max(axis=-1)
+        .argmin(axis=0)
+        for each in (centres, middles)
+    )
+
+
+def thin_portal() -> Problem:
+    arch = CircularArch(half_angle_deg=90, radius=1, thickness=0.2, voussoirs=15)
+    return problem_of(Portal(arch=arch, pier_width=0.3, pier_height=3, friction=0.7))
+
+
+SYMMETRIC: dict[str, Callable[[], Problem]] = {
+    "pointed arch": lambda: load_known("pointed_e0_25").problem,
+    "two spans": lambda: load_known("two_spans_load_b9").problem,
+    "upright joints": lambda: load_known("semicircle_vertical_joints").problem,
+    "thin ellipse": lambda: problem_of(
+        EllipticArch(span=2.0, rise=0.7, thickness=0.03, voussoirs=21, friction=0.7)
+    ),
+    "thin portal": thin_portal,
+}
+
+
+@pytest.mark.parametrize("made", SYMMETRIC.values(), ids=SYMMETRIC)
+def test_what_is_drawn_of_a_symmetric_structure_is_symmetric(
+    made: Callable[[], Problem],
+) -> None:
+    """Lines of thrust, mechanism, joint states and reactions, not a corner of a programme."""
+    problem = made()
+    answer = check(problem, method="limit")
+    sheet = answer_sheet(answer)
+    blocks, joints = mirrored(problem)
+    # Which end of a pier's joint is the inner one differs from side to side.
+    states = [joint.state.value.split("-")[0] for joint in answer.joints]
+    assert states == [states[each] for each in joints]
+    if answer.mechanism is not None:
+        moved = answer.mechanism
+        assert moved == pytest.approx(moved[blocks] * [-1, 1, -1], abs=1e-9)
+    for line in [each for each in sheet.lines if each.name == "safest"]:
+        points = np.concatenate(line.paths)
+        axis = problem.assembly.built[:-1, 0].mean() * problem.assembly.size
+        image = (points - [axis, 0]) * [-1, 1] + [axis, 0]
+        assert np.abs(points[:, None] - image).max(axis=-1).min(axis=0).max() < 1e-7

@@ -20,7 +20,7 @@ from structure_cases import names as plane_names
 from structure_cases import scenes
 
 import blocksim
-from blocksim import InputError, Solid, SpatialLoad, SpatialProblem, Verdict
+from blocksim import InputError, Load, Solid, SpatialProblem, Verdict
 from blocksim.blocks.space.extruded import extruded
 from blocksim.blocks.space.files import problem_in_space
 from blocksim.blocks.space.polyhedron import frame
@@ -99,7 +99,7 @@ def test_a_load_factor_lies_between_those_of_two_pyramids(seed: int, mu: float) 
     problem = problem_of(tower(seed, blocks=4, offset=0.15), mu)
     way = rotation(seed)[0] * np.array([1, 1, 0.2])
     blocks = tuple(range(len(problem.assembly.blocks)))
-    problem = replace(problem, live=(SpatialLoad(force=way, blocks=blocks, per_weight=True),))
+    problem = replace(problem, live=(Load(force=way, blocks=blocks, per_weight=True),))
     factor = largest_load(problem).factor
     low, high = enclosed(problem)
     if math.isnan(low) or math.isnan(high):
@@ -118,7 +118,7 @@ def test_a_verdict_does_not_change_as_blocks_are_turned_scaled_mirrored_renumber
     solids = tower(seed)
     problem = problem_of(solids)
     turn = rotation(seed + 1) @ np.diag([-1, 1, 1])
-    order = np.random.default_rng(seed).permutation(len(solids))
+    order: list[int] = np.random.default_rng(seed).permutation(len(solids)).tolist()
     moved = [
         Solid(parts=(scale * np.array(solids[at].parts[0]) @ turn.T + 3.0,),
               fixed=solids[at].fixed, name=solids[at].name)
@@ -149,6 +149,7 @@ def test_a_block_slides_or_topples_on_a_table_tilted_towards_any_azimuth(
     assert answer.limit == pytest.approx(math.degrees(math.atan(min(mu, over))), rel=1e-7)
     assert answer.low is not None
     assert answer.high is not None
+    assert answer.limit is not None
     assert answer.low < answer.limit < answer.high
     assert blocksim.check(problem.tilted(math.radians(answer.low))).verdict is Verdict.STANDS
     fallen = blocksim.check(problem.tilted(math.radians(answer.high)))
@@ -275,9 +276,10 @@ def test_a_broken_file_is_told_in_one_line(kind: str, tmp_path: Path) -> None:
 def test_a_survey_with_few_decimals_has_the_same_joints(decimals: int) -> None:
     """A skew arch rounded as a file would be."""
     known = case("arch_15_skew_30_crown")
+    written: list[dict[str, Any]] = known["scene"]["blocks"]
     blocks = [
-        {**block, "vertices": np.round(block["vertices"], decimals).tolist()}
-        for block in known["scene"]["blocks"]
+        {**block, "vertices": np.round(np.array(block["vertices"]), decimals).tolist()}
+        for block in written
     ]
     problem = problem_in_space({**known["scene"], "blocks": blocks})
     assert len(problem.assembly.joints) == known["faces"]
@@ -372,7 +374,7 @@ def test_a_wall_with_a_return_is_that_of_the_case() -> None:
     known = case("wall_6_4_2_0_-1_0")
     problem = ReturnWall(friction=known["scene"]["friction"]).problem()
     assert len(problem.assembly.joints) == known["faces"]
-    push = SpatialLoad(force=[0, -1, 0], blocks=tuple(range(42)), per_weight=True)
+    push = Load(force=np.array([0.0, -1, 0]), blocks=tuple(range(42)), per_weight=True)
     factor = blocksim.check(replace(problem, live=(push,))).load_factor
     assert factor == pytest.approx(known["expected"]["value"], rel=1e-6)
 

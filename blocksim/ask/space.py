@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -249,7 +249,10 @@ def bracket_in_space(
     """Find the value at which blocks in space change; see `blocksim.bracket`."""
     started = time.perf_counter()
     _require_static(given)
-    own: Mapping[str, Field] = {} if problem.maker is None else problem.maker.bracketed
+    maker = problem.maker
+    own: dict[str, Field] = {}
+    if maker is not None:
+        own = {name: maker.number(name)[0] for name in maker.bracketed}
     allowed = f"one of {', '.join([*FAMILIES_IN_SPACE, *own])}"
     over = "thickness" if over is None and "thickness" in own else over
     if over is None:
@@ -319,16 +322,14 @@ def _made(problem: SpatialProblem, name: str) -> Callable[[float], SpatialProble
     assert maker is not None  # noqa: S101 - asked of kinds only
     allowed = "left out with loads besides gravity: they are of blocks that are made anew"
     require(not problem.live and not problem.dead, "over", name, allowed)
-    return lambda value: replace(
-        problem, assembly=(made := maker.but(**{name: value})).assembly, maker=made
-    )
+    return lambda value: problem.but(**{name: value})
 
 
 def _range(problem: SpatialProblem, name: str) -> tuple[float, float]:
     """Return the values of a parameter that are looked at."""
     maker = problem.maker
     assert maker is not None  # noqa: S101 - asked of kinds only
-    (low, high), value = maker.limits(name), float(getattr(maker, name))
+    (low, high), value = maker.limits(name), float(maker.value(name))
     # Of a parameter that is 0 there is no multiple.
     return max(low, value / WIDEST), min(high, WIDEST * value) if value else high
 

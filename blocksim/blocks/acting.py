@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 import numpy as np
 
@@ -12,10 +11,20 @@ from blocksim.common.checks import COORDINATE, FACTOR, FORCE, require_all
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Acting:
-    """What loads are in the plane and in space: a force on blocks, with its ranges."""
+class Load:
+    """A force on a block, or on several in proportion to their weights.
 
-    dimensions: ClassVar[int]
+    Parameters
+    ----------
+    force : (2,) or (3,) float
+        x and y, in space also z [N]; with `per_weight` in units of each block's weight.
+    blocks : tuple of int
+        The blocks it acts on.
+    point : (2,) or (3,) float or None
+        Where it acts [m], carried by its block; None for the centre of mass.
+    per_weight : bool
+        Whether it is a body force.
+    """
 
     force: Array
     blocks: tuple[int, ...]
@@ -24,30 +33,12 @@ class Acting:
 
     def __post_init__(self) -> None:
         """Check the ranges, and make the arrays read-only."""
-        object.__setattr__(self, "force", frozen(self.force, (self.dimensions,)))
+        dimensions = 3 if np.size(self.force) == 3 else 2
+        object.__setattr__(self, "force", frozen(self.force, (dimensions,)))
         require_all(FACTOR if self.per_weight else FORCE, "force", self.force)
         if self.point is not None:
-            object.__setattr__(self, "point", frozen(self.point, (self.dimensions,)))
+            object.__setattr__(self, "point", frozen(self.point, (dimensions,)))
             require_all(COORDINATE, "point", self.point)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Load(Acting):
-    """A force on a block, or on several in proportion to their weights.
-
-    Parameters
-    ----------
-    force : (2,) float
-        x and y [N]; with `per_weight` in units of each block's weight.
-    blocks : tuple of int
-        The blocks it acts on.
-    point : (2,) float or None
-        Where it acts [m], carried by its block; None for the centre of mass.
-    per_weight : bool
-        Whether it is a body force.
-    """
-
-    dimensions: ClassVar[int] = 2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

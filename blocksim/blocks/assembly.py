@@ -322,6 +322,11 @@ class Assembly:
             polygons, fixed=fixed, weights=weights, centres=centres, density=density
         )
 
+    @property
+    def friction(self) -> Array:
+        """Friction coefficient of each joint, (joints,); nan where it has none of its own."""
+        return self.joint_arrays.friction
+
     @cached_property
     def centres(self) -> Array:
         """Centres of mass, shape (blocks, 2) [m]."""

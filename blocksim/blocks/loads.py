@@ -1,22 +1,29 @@
-"""Loads as structure files say them: on blocks, on all of them, or along a patch."""
+"""Loads as structure files say them, in the plane and in space: on blocks, or along a patch."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence, Sized
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from blocksim.blocks.entries import BlockEntry, Id, JointEntry, LoadEntry
+from blocksim.blocks.acting import Load
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.entries import Around, BlockEntry, Id, JointEntry, LoadEntry
 from blocksim.blocks.patch import Profile
 from blocksim.blocks.polygons import Body
-from blocksim.blocks.problem import Load
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 
 if TYPE_CHECKING:
     from blocksim.blocks.space.assembly import Solid
-    from blocksim.blocks.space.files import FaceEntry, SolidEntry
+    from blocksim.blocks.space.files import (
+        FaceEntry,
+        SolidEntry,
+        SpatialFile,
+        SpatialLoadEntry,
+    )
 
 FORMS = ("body", "block", "patch")
 """What a load acts on: blocks by their weight, one block, or what lies uppermost."""
@@ -87,16 +94,23 @@ def sides_of(
 
 
 class LoadsOf:
-    """What a load of a file comes to on the bodies of a structure."""
+    """What a load of a file comes to on the bodies of a structure.
 
-    def __init__(self, bodies: Sequence[Body]) -> None:
-        self._bodies, self._names = bodies, Names(bodies)
+    Parameters
+    ----------
+    bodies : sequence of Body or Solid
+    dimensions : int
+        Numbers of a force: 2 in the plane, 3 in space.
+    """
+
+    def __init__(self, bodies: Sequence[Body] | Sequence[Solid], dimensions: int = 2) -> None:
+        self._bodies, self._names, self.dimensions = bodies, Names(bodies), dimensions
         fixed = [body.fixed for body in bodies]
         # Blocks that move are numbered without the fixed ones.
         self._place = np.cumsum([not each for each in fixed]) - 1
         self._count = fixed.count(False)
 
-    def __call__(self, load: LoadEntry, field: str) -> list[Load]:
+    def __call__(self, load: LoadEntry | SpatialLoadEntry, field: str) -> list[Load]:
         """Return the loads of one entry.
 
         Raises
@@ -104,30 +118,34 @@ class LoadsOf:
         InputError
             In one line, if it is none, or on no block that moves.
         """
-        given = [form for form in FORMS if getattr(load, form) is not None]
-        require(len(given) == 1, field, _keys(load), "one of body, block and patch")
+        given = [form for form in FORMS if getattr(load, form, None) is not None]
+        forms = FORMS if self.dimensions == 2 else FORMS[:2]
+        allowed = f"one of {', '.join(forms[:-1])} and {forms[-1]}"
+        require(len(given) == 1, field, _keys(load), allowed)
         if load.body is not None:
-            return [self._body(load, load.body, field)]
+            return [self._body(load, list(load.body), field)]
         require(load.blocks is None, f"{field}.blocks", load.blocks, "left out: body has it")
         if load.force is None:
             raise InputError(f"{field}.force", MISSING, "given")
-        if load.patch is not None:
-            return self._patch(load.patch, load, np.array(load.force), field)
+        force = np.array(load.force, dtype=float)
+        if isinstance(load, LoadEntry) and load.patch is not None:
+            return self._patch(load.patch, load, force, field)
         assert load.block is not None  # noqa: S101
         point = None if load.point is None else np.array(load.point, dtype=float)
         on = self._moving(load.block, f"{field}.block")
-        return [Load(force=np.array(load.force, dtype=float), blocks=(on,), point=point)]
+        return [Load(force=force, blocks=(on,), point=point)]
 
-    def _body(self, load: LoadEntry, body: list[float], field: str) -> Load:
+    def _body(self, load: LoadEntry | SpatialLoadEntry, body: list[float], field: str) -> Load:
         alone = load.force is None and load.point is None
         require(alone, field, _keys(load), "body and blocks alone")
-        flat = len(body) == 2 or not body[2]
+        flat = not any(body[self.dimensions :])
         require(flat, f"{field}.body", body, "x and y, on these blocks")
         on = [self._moving(name, f"{field}.blocks") for name in load.blocks or ()]
         once = len(set(on)) == len(on)
         require(once, f"{field}.blocks", load.blocks, "each block once")
         blocks = tuple(on) if on else tuple(range(self._count))
-        return Load(force=np.array(body[:2], dtype=float), blocks=blocks, per_weight=True)
+        force = np.array(body[: self.dimensions], dtype=float)
+        return Load(force=force, blocks=blocks, per_weight=True)
 
     def _patch(
         self, patch: tuple[float, float], load: LoadEntry, force: np.ndarray, field: str
@@ -135,7 +153,11 @@ class LoadsOf:
         low, high = patch
         require(low < high, f"{field}.patch", patch, "two places, the left one first")
         require(load.point is None, f"{field}.point", load.point, "left out beside patch")
-        polygons = [[np.asarray(each) for each in body.polygons] for body in self._bodies]
+        polygons = [
+            [np.asarray(each) for each in body.polygons]
+            for body in self._bodies
+            if isinstance(body, Body)
+        ]
         found = Profile.of(polygons).along(low, high)
         if found is None:
             raise InputError(f"{field}.patch", patch, "above blocks all along")
@@ -151,6 +173,44 @@ class LoadsOf:
         return int(self._place[place])
 
 
-def _keys(load: LoadEntry) -> list[str]:
+def _keys(load: LoadEntry | SpatialLoadEntry) -> list[str]:
     names = ("body", "blocks", "block", "point", "force", "patch")
-    return [name for name in names if getattr(load, name) is not None]
+    return [name for name in names if getattr(load, name, None) is not None]
+
+
+class Acts(NamedTuple):
+    """What acts on blocks, as a file says, and what is to be noted of it."""
+
+    gravity: Array
+    dead: tuple[Load, ...]
+    live: tuple[Load, ...]
+    notes: tuple[str, ...]
+
+
+def acting_of(written: Around | SpatialFile, loads_of: LoadsOf, down: Array) -> Acts:
+    """Return gravity and loads; a body force on all blocks is gravity.
+
+    Parameters
+    ----------
+    written : Around or SpatialFile
+    loads_of : LoadsOf
+    down : (3,) float
+        Gravity where the file says nothing of it.
+    """
+    gravity, dead = down, list[Load]()
+    notes: tuple[str, ...] = ()
+    if written.dead is not None:
+        gravity = np.zeros(3)
+        for at, load in enumerate(written.dead):
+            if load.body is not None and load.blocks is None:
+                flat: list[float] = list(load.body)
+                loads_of(replace(load, body=flat[: loads_of.dimensions]), f"dead[{at}]")
+                gravity[: len(flat)] += flat
+            else:
+                dead += loads_of(load, f"dead[{at}]")
+        if not gravity.any():
+            notes = ("no gravity: dead has no body force on all blocks",)
+    live = [
+        each for at, load in enumerate(written.live) for each in loads_of(load, f"live[{at}]")
+    ]
+    return Acts(gravity, tuple(dead), tuple(live), notes)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic
+
+from blocksim.blocks.anyproblem import Blocks
 
 if TYPE_CHECKING:
-    from blocksim.blocks.assembly import Assembly
+    from blocksim.blocks.acting import Load
     from blocksim.blocks.given import Body, GivenJoint
-    from blocksim.blocks.problem import Load
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -48,12 +49,12 @@ class Made:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Built:
+class Built(Generic[Blocks]):
     """Blocks as engines and limit analysis take them.
 
     Parameters
     ----------
-    assembly : Assembly
+    assembly : Assembly or SpatialAssembly
     fills : tuple of Load
         What presses on blocks besides gravity.
     notes : tuple of str
@@ -62,7 +63,7 @@ class Built:
         Of which the blocks were made; none where they were made of nothing else.
     """
 
-    assembly: Assembly
+    assembly: Blocks
     fills: tuple[Load, ...] = ()
     notes: tuple[str, ...] = ()
     bodies: tuple[Body, ...] = ()

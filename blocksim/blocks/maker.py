@@ -14,6 +14,8 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, cast
 
+from blocksim.blocks.anyproblem import AnyProblem
+from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.made import Built, Made
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import (
@@ -107,11 +109,21 @@ class Table:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kind(Table, ABC):
-    """What makers in the plane and in space are: a name, friction and density."""
+class Kind(Shown, Table, ABC):
+    """What makers in the plane and in space are: a name, friction and density.
+
+    Parameters
+    ----------
+    friction : float or None
+        Friction coefficient of every joint, inf allowed; needed for a problem.
+    density : float or None
+        Weight per volume [N/m^3]; without it only ratios of forces have a meaning.
+    """
 
     name: ClassVar[str]
     about: ClassVar[str] = ""
+    is_arch: ClassVar[bool] = False
+    row_types: ClassVar[Mapping[str, type[Table]]] = {}
 
     friction: float | None = None
     density: float | None = None
@@ -145,51 +157,13 @@ class Kind(Table, ABC):
         """Weight per volume [N/m^3]; 1 where none was given."""
         return UNIT_WEIGHT if self.density is None else self.density
 
-
-@dataclass(frozen=True, kw_only=True)
-class Maker(Shown, Kind):
-    """What makes a problem of its parameters.
-
-    A class of one's own has a `name`, parameters, and `made`.
-
-    Parameters
-    ----------
-    friction : float or None
-        Friction coefficient of every joint, inf allowed; needed for a problem.
-    density : float or None
-        Weight per volume [N/m^3]; without it only ratios of forces have a meaning.
-
-    Examples
-    --------
-    >>> from dataclasses import dataclass
-    >>> from blocksim import Body
-    >>> @dataclass(frozen=True, kw_only=True)
-    ... class Cube(Maker):
-    ...     name = "cube"
-    ...     side: float = metres(1.0, "side of the cube")
-    ...     def made(self, density: float) -> Made:
-    ...         a = self.side
-    ...         bed = [[-a, -a], [2 * a, -a], [2 * a, 0], [-a, 0]]
-    ...         cube = [[0, 0], [a, 0], [a, a], [0, a]]
-    ...         return Made(bodies=(Body(polygons=(bed,), fixed=True), Body(polygons=(cube,))))
-    >>> Cube(side=2.0, friction=0.5).problem().assembly.size
-    1.0
-    """
-
-    is_arch: ClassVar[bool] = False
-    row_types: ClassVar[Mapping[str, type[Table]]] = {}
+    @cached_property
+    @abstractmethod
+    def built(self) -> Built[Any]:
+        """The blocks, made once."""
 
     @abstractmethod
-    def made(self, density: float) -> Made:
-        """Make the bodies.
-
-        Parameters
-        ----------
-        density : float
-            Weight per volume [N/m^3].
-        """
-
-    def problem(self) -> Problem:
+    def problem(self) -> AnyProblem[Any]:
         """Return what is made, under its own weight and that of its fill.
 
         Raises
@@ -197,28 +171,6 @@ class Maker(Shown, Kind):
         InputError
             If there is no friction, or nothing can be built of the parameters.
         """
-        mu, built = self.known_friction, self.built
-        return Problem(
-            assembly=built.assembly,
-            mu=mu,
-            dead=built.fills,
-            title=self.name,
-            maker=self,
-            weighed=self.density is not None,
-            notes=built.notes,
-        )
-
-    @cached_property
-    def built(self) -> Built:
-        """The blocks, made once."""
-        return self.built_of()
-
-    def built_of(self, size: float | None = None) -> Built:
-        """Make the blocks, with another characteristic length [m] if one is given."""
-        # Joints are found with libraries that blocks which know theirs do not need.
-        from blocksim.blocks.making import built_of
-
-        return built_of(self.made(self.unit_weight), self.unit_weight, size)
 
     def offers(self, problem: Problem) -> Any:  # noqa: ARG002 - one of its own may
         """Return what it knows of its problem better than the general way; None for nothing.
@@ -256,21 +208,21 @@ class Maker(Shown, Kind):
         for name, value in changes.items():
             here, _, rest = name.partition(".")
             require(here in given, name, value, f"one of {', '.join(given)}")
-            given[here] = cast(Maker, given[here]).but(**{rest: value}) if rest else value
+            given[here] = cast(Kind, given[here]).but(**{rest: value}) if rest else value
         return type(self)(**given)
 
     def number(self, name: str) -> tuple[Field, float, float]:
         """Return what is known of a number that may be bracketed over, and its range."""
         here, _, rest = name.partition(".")
         if rest:
-            return cast(Maker, getattr(self, here)).number(rest)
+            return cast(Kind, getattr(self, here)).number(rest)
         return fields_of(type(self))[here], *self.limits(here)
 
     def value(self, name: str) -> float:
         """Return the value of such a number."""
         here, _, rest = name.partition(".")
         if rest:
-            return cast(Maker, getattr(self, here)).value(rest)
+            return cast(Kind, getattr(self, here)).value(rest)
         return float(getattr(self, here))
 
     @property
@@ -283,6 +235,65 @@ class Maker(Shown, Kind):
             elif known.nested == "table":
                 names += [f"{name}.{each}" for each in getattr(self, name).bracketed]
         return tuple(names)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Maker(Kind):
+    """What makes a problem of its parameters.
+
+    A class of one's own has a `name`, parameters, and `made`.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> from blocksim import Body
+    >>> @dataclass(frozen=True, kw_only=True)
+    ... class Cube(Maker):
+    ...     name = "cube"
+    ...     side: float = metres(1.0, "side of the cube")
+    ...     def made(self, density: float) -> Made:
+    ...         a = self.side
+    ...         bed = [[-a, -a], [2 * a, -a], [2 * a, 0], [-a, 0]]
+    ...         cube = [[0, 0], [a, 0], [a, a], [0, a]]
+    ...         return Made(bodies=(Body(polygons=(bed,), fixed=True), Body(polygons=(cube,))))
+    >>> Cube(side=2.0, friction=0.5).problem().assembly.size
+    1.0
+    """
+
+    @abstractmethod
+    def made(self, density: float) -> Made:
+        """Make the bodies.
+
+        Parameters
+        ----------
+        density : float
+            Weight per volume [N/m^3].
+        """
+
+    def problem(self) -> Problem:
+        """Return what is made, under its own weight and that of its fill."""
+        mu, built = self.known_friction, self.built
+        return Problem(
+            assembly=built.assembly,
+            mu=mu,
+            dead=built.fills,
+            title=self.name,
+            maker=self,
+            weighed=self.density is not None,
+            notes=built.notes,
+        )
+
+    @cached_property
+    def built(self) -> Built[Assembly]:
+        """The blocks, made once."""
+        return self.built_of()
+
+    def built_of(self, size: float | None = None) -> Built[Assembly]:
+        """Make the blocks, with another characteristic length [m] if one is given."""
+        # Joints are found with libraries that blocks which know theirs do not need.
+        from blocksim.blocks.making import built_of
+
+        return built_of(self.made(self.unit_weight), self.unit_weight, size)
 
 
 def _plain(value: object) -> object:

@@ -13,7 +13,7 @@ from blocksim.blocks.polygons import assembly_of_bodies
 from blocksim.blocks.problem import STANDARD_GRAVITY, Load
 
 
-def built_of(made: Made, density: float, size: float | None = None) -> Built:
+def built_of(made: Made, density: float, size: float | None = None) -> Built[Assembly]:
     """Make blocks of bodies, and find their joints where those are not given.
 
     Parameters

@@ -1,42 +1,32 @@
-"""What is asked about: blocks, friction in their joints, gravity, and loads."""
+"""What is asked about in the plane: blocks, friction in their joints, gravity, and loads."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, ClassVar, Self, cast
 
 import numpy as np
 
 from blocksim.blocks.acting import Load as Load
 from blocksim.blocks.acting import Move as Move
-from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, frozen
+from blocksim.blocks.anyproblem import STANDARD_GRAVITY as STANDARD_GRAVITY
+from blocksim.blocks.anyproblem import AnyProblem
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly
 from blocksim.blocks.dispersal import Dispersal
 from blocksim.blocks.road import road_of, with_road
-from blocksim.blocks.shaking import Shaking
-from blocksim.common.checks import (
-    FACTOR,
-    LEAN,
-    SMOOTH_OR_ROUGH,
-    is_number,
-    require,
-    require_all,
-)
-from blocksim.common.errors import InputError
-from blocksim.common.shown import Shown, short
+from blocksim.common.checks import LEAN, STRENGTH
 
 if TYPE_CHECKING:
-    from blocksim.blocks.maker import Maker
+    from blocksim.blocks.maker import Kind, Maker
 
-STANDARD_GRAVITY = 9.81
-"""To turn weight into mass [m/s^2]."""
 DOWN = np.array([0.0, -1.0, 0.0])
 """Gravity where nothing is tilted: x, y, and z out of the plane."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Problem(Shown):
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Problem(AnyProblem[Assembly]):
     """Blocks and everything that acts on them.
 
     Parameters
@@ -67,6 +57,9 @@ class Problem(Shown):
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
         forces have a meaning.
+    strength : float or None
+        Compressive strength of the blocks [Pa], beyond which they crush at their joints; None
+        where they are rigid. Limit analysis alone knows it (`limit.crushing`).
     notes : tuple of str
         What was mended or assumed when it was read; answers repeat it.
 
@@ -76,47 +69,19 @@ class Problem(Shown):
         If a value is out of range.
     """
 
-    assembly: Assembly
-    mu: float
+    dimensions: ClassVar[int] = 2
+
     gravity: Array = field(default_factory=lambda: DOWN)
-    dead: tuple[Load, ...] = ()
-    live: tuple[Load, ...] = ()
-    load: float = 0.0
-    moves: tuple[Move, ...] = ()
-    shaking: Shaking | None = None
-    title: str = ""
-    source: str = ""
     maker: Maker | None = None
     road: tuple[tuple[float, float, float], ...] = ()
     dispersal: Dispersal | None = None
-    weighed: bool = True
-    notes: tuple[str, ...] = ()
+    strength: float | None = None
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        SMOOTH_OR_ROUGH.require("mu", self.mu)
-        FACTOR.require("load", self.load)
-        object.__setattr__(self, "gravity", frozen(self.gravity, (3,)))
-        require_all(FACTOR, "gravity", self.gravity)
-
-    def __repr__(self) -> str:
-        assembly = self.assembly
-        name = f"{short(self.title)!r}, " if self.title else ""
-        return (
-            f"Problem({name}{len(assembly.blocks)} blocks, {len(assembly.joints)} joints, "
-            f"mu={self.mu:g})"
-        )
-
-    @cached_property
-    def friction(self) -> Array:
-        """Friction coefficient of each joint, shape (joints,), inf allowed."""
-        own = self.assembly.joint_arrays.friction
-        return frozen(np.where(np.isnan(own), self.mu, own), (-1,))
-
-    @property
-    def is_loaded(self) -> bool:
-        """Whether anything acts besides gravity."""
-        return bool(self.dead or (self.live and self.load))
+        super().__post_init__()
+        if self.strength is not None:
+            STRENGTH.require("strength", self.strength)
 
     @property
     def turns_pull(self) -> bool:
@@ -129,90 +94,40 @@ class Problem(Shown):
         return bool(self.gravity[2] == 0)
 
     @property
+    def has_statics(self) -> bool:
+        """Whether limit analysis tells of it: the ground is at rest, gravity in the plane."""
+        return self.is_planar and super().has_statics
+
+    @property
     def unit_force(self) -> float:
         """Weight of the mean block [N], the unit of force of engines and limit analysis."""
         masses = [block.mass for block in self.assembly.blocks]
         return float(np.mean(masses)) * STANDARD_GRAVITY
 
-    def leaning(self, lean: float) -> Problem:
+    @property
+    def across(self) -> Array:
+        """Gravity turned by a right angle in the plane, (3,): what a tilt adds to it."""
+        x, y, _ = self.gravity
+        return np.array([-y, x, 0.0])
+
+    @property
+    def unturned(self) -> Array:
+        """The part of gravity that stays what it is as a table tilts, (3,)."""
+        return np.array([0.0, 0.0, self.gravity[2]])
+
+    def leaning(self, lean: float) -> Self:
         """Return the same with gravity leaning out of the plane by an angle [rad]."""
         LEAN.require("lean", lean)
         x, y, _ = self.gravity
         down = math.cos(lean)
         return replace(self, gravity=np.array([x * down, y * down, math.sin(lean)]))
 
-    def tilted(self, tilt: float) -> Problem:
-        """Return the same on a table tilted in the plane [rad]; its right-hand side goes down.
-
-        The blocks are seen as before: it is gravity that turns.
-        """
-        finite = is_number(tilt, -math.inf, math.inf) and math.isfinite(tilt)
-        require(finite, "tilt", tilt, "a finite angle")
-        (x, y, z), cos, sin = self.gravity, math.cos(tilt), math.sin(tilt)
-        return replace(self, gravity=np.array([x * cos - y * sin, x * sin + y * cos, z]))
-
-    def but(self, **changes: Any) -> Problem:
-        """Return the same, made with other parameters under the same loads.
-
-        Parameters
-        ----------
-        **changes
-            Parameters of its maker; `**{"arch.thickness": 0.2}` is one of its arch.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range, changes the number of blocks, or there is no maker.
-        """
-        name, value = next(iter(changes.items()))
-        if self.maker is None:
-            raise InputError(name, value, "left out: the blocks were given")
-        made, blocks = self.remade(self.maker.but(**changes)), len(self.assembly.blocks)
-        same = len(made.assembly.blocks) == blocks
-        require(same, name, value, f"a value that leaves {blocks} blocks, on which loads act")
-        return made
-
-    def remade(self, maker: Maker) -> Problem:
-        """Return the same by another maker, or by one with other parameters.
-
-        Loads stay as they are but for the weight of fill, which comes first among the dead
-        ones, and for those on the road.
-        """
-        before = 0 if self.maker is None else len(self.maker.built.fills)
-        built = maker.built
-        remade = replace(
-            self,
-            assembly=built.assembly,
-            dead=(*built.fills, *self.dead[before:]),
-            maker=maker,
-        )
-        if (road := road_of(remade)) is not None and self.dispersal is not None:
-            remade = replace(remade, dispersal=replace(self.dispersal, road=road))
-        return with_road(remade, self.road) if self.road else remade
-
-    @property
-    def length_name(self) -> str:
-        """What the unit of length of engines is called: the radius r, or the size L."""
-        return "L" if self.maker is None else self.maker.length_name
-
-    @property
-    def is_arch(self) -> bool:
-        """Whether it is one arch, whose joints follow each other from left to right."""
-        return self.maker is not None and self.maker.is_arch
-
-    @property
-    def has_size(self) -> bool:
-        """Whether lengths are metres, and no multiples of a radius that was not given."""
-        return self.maker is None or self.maker.has_size
-
-    @property
-    def measures(self) -> tuple[str, ...]:
-        """What its maker is known by, for drawings: half-angle and ratio of an arch."""
-        return () if self.maker is None else self.maker.measures
-
-    def with_load(self, load: float) -> Problem:
-        """Return the same under another load factor."""
-        return replace(self, load=load)
+    def remade(self, maker: Kind) -> Self:
+        """Return the same by another maker; what is on the road stays where it is."""
+        made = super().remade(maker)
+        if (road := road_of(made)) is not None and self.dispersal is not None:
+            made = replace(made, dispersal=replace(self.dispersal, road=road))
+        return cast("Self", with_road(made, self.road)) if self.road else made
 
     def shaken(self, start: float, end: float) -> Array:
         """Return gravity as it is seen from the ground, on average between two times.
@@ -232,15 +147,6 @@ class Problem(Shown):
         unit = self.seconds
         gained = self.shaking.gained(start * unit, end * unit)
         return self.gravity - np.array([gained / ((end - start) * unit), 0.0, 0.0])
-
-    @property
-    def seconds(self) -> float:
-        """The unit of time of engines, sqrt(size/g) [s]."""
-        return math.sqrt(self.assembly.size / STANDARD_GRAVITY)
-
-    def with_friction(self, mu: float) -> Problem:
-        """Return the same with another friction coefficient; joints with their own keep it."""
-        return replace(self, mu=mu)
 
     def pull(self, poses: Array | None = None) -> Array:
         """Sum gravity, dead and live loads on each block, and their moments about its centre.

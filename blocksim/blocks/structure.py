@@ -13,9 +13,9 @@ from typing import Any, cast
 import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Assembly
-from blocksim.blocks.entries import Around, LoadEntry, StructureFile, entries_of
+from blocksim.blocks.entries import Around, StructureFile, entries_of
 from blocksim.blocks.given import GivenJoint
-from blocksim.blocks.loads import LoadsOf, Names, name_of, sides_of
+from blocksim.blocks.loads import LoadsOf, Names, acting_of, name_of, sides_of
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.polygons import Body, assembly_of_bodies
 from blocksim.blocks.problem import DOWN, STANDARD_GRAVITY, Load, Move, Problem
@@ -119,21 +119,7 @@ def problem_of(
     body_of, loads_of = Names(bodies), LoadsOf(bodies)
     # Fixed blocks are numbered without those that move.
     bed = np.cumsum(fixed) - 1
-    gravity, dead = DOWN, list[Load]()
-    notes: list[str] = []
-    if written.dead is not None:
-        gravity = np.zeros(3)
-        for at, load in enumerate(written.dead):
-            if load.body is not None and load.blocks is None:
-                loads_of(_flat(load), f"dead[{at}]")
-                gravity[: len(load.body)] += load.body
-            else:
-                dead += loads_of(load, f"dead[{at}]")
-        if not gravity.any():
-            notes.append("no gravity: dead has no body force on all blocks")
-    live = [
-        each for at, load in enumerate(written.live) for each in loads_of(load, f"live[{at}]")
-    ]
+    acts = acting_of(written, loads_of, DOWN)
     moves: list[Move] = []
     for at, move in enumerate(written.move):
         place = body_of(move.block, f"move[{at}].block")
@@ -162,16 +148,16 @@ def problem_of(
     return Problem(
         assembly=assembly,
         mu=mu,
-        gravity=gravity,
-        dead=tuple(dead),
-        live=tuple(live),
+        gravity=acts.gravity,
+        dead=acts.dead,
+        live=acts.live,
         load=float(written.load),
         moves=tuple(moves),
         shaking=None if written.shake is None else shaking_of(**asdict(written.shake)),
         title=written.title,
         source=written.source,
         weighed=written.density is not None or all(map(_has_weight, bodies)),
-        notes=(*written.notes, *notes, *found),
+        notes=(*written.notes, *acts.notes, *found),
     )
 
 
@@ -182,11 +168,6 @@ def _has_weight(body: Body) -> bool:
 def _friction_text(value: float) -> float | str:
     """Return a number that JSON can write."""
     return "inf" if math.isinf(value) else value
-
-
-def _flat(load: LoadEntry) -> LoadEntry:
-    """Return a body force without its part out of the plane."""
-    return replace(load, body=None if load.body is None else load.body[:2])
 
 
 def _load_record(load: Load, names: Sequence[str]) -> list[dict[str, Any]]:

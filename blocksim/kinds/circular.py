@@ -12,6 +12,7 @@ import numpy as np
 from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.dimensions import LINES, At, Dimensions, Line
 from blocksim.arch.limit import least_thickness
+from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.made import Built
 from blocksim.blocks.maker import metres, parameter
 from blocksim.blocks.problem import Problem
@@ -251,7 +252,7 @@ class CircularArch(CurvedArch):
         made = super().problem()
         return replace(made, title="") if self.in_radii else made
 
-    def built_of(self, size: float | None = None) -> Built:
+    def built_of(self, size: float | None = None) -> Built[Assembly]:
         """Make the blocks."""
         plain = self.shape if self.in_radii and size is None else None
         return super().built_of(size) if plain is None else Built(assembly=plain.assembly())
@@ -263,7 +264,7 @@ class CircularArch(CurvedArch):
         mine = self.fill is None and problem.assembly is self.built.assembly
         alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
         still = problem.shaking is None and not problem.is_loaded and not problem.gravity[0]
-        if arch is None or not (mine and alike and still):
+        if arch is None or not (mine and alike and still) or problem.strength is not None:
             return None
         from blocksim.kinds.archoffers import ArchOffers
 

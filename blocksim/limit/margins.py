@@ -16,8 +16,10 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit.cones import Cones
+from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme
 from blocksim.limit.programme import extreme, most_common
+from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
 
 HOPELESS = 1e3
 """Share of width or friction beyond which blocks count as never standing."""
@@ -100,17 +102,26 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     sense = math.copysign(1.0, arrays.normal[joint, 0])
     across[joint, :, 0] = sense * arrays.normal[joint, 0]
     across[joint, :, 1] = sense * arrays.tangent[joint, 0]
-    cost = cones.work(across)
-    solver, ends = LinearProgramme(), list[Thrust]()
+    cost, ends = cones.work(across), list[Thrust]()
+    solver = LinearProgramme()
+    crushing = None if problem.strength is None else Crushing(problem, cones)
     for sign in (1.0, -1.0):
-        found = extreme(cones, sign * cost, problem.pull(), solver)
+        if crushing is None:
+            found = extreme(cones, sign * cost, problem.pull(), solver)
+        else:
+            found = crushing.extreme(sign * cost, -cones.loads(problem.pull()))
         if found.unbounded:
             ends.append(Thrust(thrust=-sign * math.inf, forces=None))
         elif not found.exists:
             return None
         else:
             forces = cones.forces(found.values)
-            ends.append(Thrust(thrust=float((across * forces).sum()), forces=forces))
+            thrust = float((across * forces).sum())
+            even = symmetric_forces(problem, forces)
+            # A joint off the middle may have its extreme on its own side only.
+            if abs(float((across * even).sum()) - thrust) <= NOTHING * (1 + abs(thrust)):
+                forces = even
+            ends.append(Thrust(thrust=thrust, forces=forces))
     return ends[0], ends[1]
 
 
@@ -151,11 +162,12 @@ def margins(problem: Problem) -> Margins:
     known = np.isfinite(problem.friction).all() and friction is not None
     start = max(width or 0.0, (friction or 0.0) if known else 0.0)
     strength = _least_share(both, start, stands=stands)
+    forces = None if strength is None else both.forces(strength)
     return Margins(
         width=width,
         friction=friction,
         strength=strength,
-        forces=None if strength is None else both.forces(strength),
+        forces=None if forces is None else symmetric_forces(problem, forces),
     )
 
 
@@ -189,7 +201,7 @@ def nearest_mechanism(problem: Problem) -> Array | None:
         share = (share + step) * (1 - ROUGHLY / 2)
         if not low < share < high:
             share = (low + high) / 2
-    return rates
+    return None if rates is None else symmetric_rates(problem, rates)
 
 
 def _least_share(search: _Search, low: float, *, stands: bool = False) -> float | None:

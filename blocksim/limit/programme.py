@@ -30,6 +30,7 @@ from blocksim.limit.exact import Exact
 from blocksim.limit.interior import most_inside
 from blocksim.limit.linear import MANY, LinearProgramme, Optimum
 from blocksim.limit.proof import Proof, proof_in_rationals, proof_of_fall, proof_of_rest
+from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
 
 if TYPE_CHECKING:
     from scipy import sparse
@@ -114,21 +115,24 @@ class Equilibrium:
     def forces(self) -> Array | None:
         """Forces at the inner and the outer end of each joint, along normal and tangent.
 
-        (joints, 2, 2) float, as they act on the block after it [mean weights]. None where there
-        is no equilibrium.
+        (joints, 2, 2) float, as they act on the block after it [mean weights]; symmetric where
+        the problem is. None where there is no equilibrium.
         """
         if not self.exists or self.parts is None:
             return None
         parts = self._cones.polished(self.parts, self.problem.pull())
-        return self._cones.forces(parts)
+        return symmetric_forces(self.problem, self._cones.forces(parts))
 
-    @property
+    @cached_property
     def mechanism(self) -> Array | None:
         """Rates x, y and rotation of a mechanism that the loads drive, (blocks, 3) float.
 
-        None where the blocks can rest, and where not even contacts that pull would hold them.
+        Symmetric where the problem is. None where the blocks can rest, and where not even
+        contacts that pull would hold them.
         """
-        return None if self.exists else self.rates
+        if self.exists or self.rates is None:
+            return None
+        return symmetric_rates(self.problem, self.rates)
 
 
 def equilibrium(problem: Problem) -> Equilibrium:

@@ -16,7 +16,6 @@ from blocksim.blocks.space.parting import (
     overlap_in_space,
     slip_in_space,
 )
-from blocksim.blocks.space.points import JointPoints
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
@@ -250,15 +249,13 @@ def _may_hold(problem: SpatialProblem, engine: Engine, mechanism: Array) -> bool
 def _driven(problem: SpatialProblem, rates: Array) -> bool:
     """Tell whether the loads do the work of the motion, from rest over one step."""
     assembly, size = problem.assembly, problem.assembly.size
-    points = JointPoints(problem)
-    pull = points.pull(problem.load).reshape(-1, 6)
-    masses = assembly.weights / points.unit
+    masses = assembly.weights / problem.unit_force
     spin = [
         float(turn @ block.gyration @ turn) / size**2
         for turn, block in zip(rates[:, 3:], assembly.blocks, strict=True)
     ]
     moving = float(masses @ ((rates[:, :3] ** 2).sum(axis=1) + np.array(spin)))
-    return float((pull * rates).sum()) > WORK * moving
+    return float((problem.pull() * rates).sum()) > WORK * moving
 
 
 def _released(

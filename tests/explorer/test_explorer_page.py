@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from collections.abc import Callable
@@ -16,6 +17,8 @@ import pytest
 from blocksim.arch import limit, theory
 from blocksim.arch.modes import Mode
 from blocksim.arch.theory.map import at_points
+from blocksim.ask.check import check
+from blocksim.kinds.circular import CircularArch
 from blocksim.view import style
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -598,3 +601,58 @@ def test_prints_on_paper(page: playwright.Page) -> None:
     assert not page.locator("#alpha").is_visible()
     assert page.locator("#arch .stone").first.is_visible()
     assert page.pdf(format="A4").startswith(b"%PDF")
+
+
+def none_stands(count: int) -> list[tuple[float, float, int, float]]:
+    """Half-angle [deg], friction, voussoirs and thickness of arches that no thickness saves."""
+    random, found = np.random.default_rng(40), []
+    while len(found) < count:
+        degrees, mu = random.uniform(90, 175), math.tan(random.uniform(0.05, 1.5))
+        voussoirs, eta = int(random.integers(3, 40)), random.uniform(0.02, 2)
+        least = limit.least_thickness(math.radians(degrees), mu, voussoirs, "centreline")
+        if least.eta is None:
+            found.append((degrees, mu, voussoirs, eta))
+    return found
+
+
+def test_the_mode_said_is_that_of_the_thickness_it_is_said_of(page: playwright.Page) -> None:
+    """Where none stands, a thinner arch may fall in another mode than the thickest."""
+    others = 0
+    for degrees, mu, voussoirs, eta in none_stands(12):
+        fields = {"alpha": degrees, "mu": mu, "eta": eta, "n": voussoirs, "arch": "built"}
+        page.evaluate(f"location.hash = '{'&'.join(f'{k}={v}' for k, v in fields.items())}'")
+        settle(page)
+        here, thickest = (
+            check(
+                CircularArch(
+                    half_angle_deg=degrees, friction=mu, eta=each, voussoirs=voussoirs,
+                    weight="centreline",
+                ),
+                method="limit",
+            )
+            for each in (eta, 2.0)
+        )  # fmt: skip
+        others += here.arch.mode is not thickest.arch.mode
+        said = re.search(r"Even at η = 2 it falls, in mode (\w+)", text(page, "#because"))
+        mode = thickest.arch.mode_limit
+        assert (said and said[1]) == (mode and mode.value)
+        shown = "\N{EN DASH}" if mode is None else f"{mode.value} at η = 2"
+        assert text(page, "#built-mode") == shown
+    assert others > 0
+
+
+def test_few_voussoirs_are_not_said_to_stand_any_number_of_times(page: playwright.Page) -> None:
+    """What stands at any thickness has no least one to be compared with."""
+    compared = 0
+    for voussoirs, degrees in itertools.product((3, 4, 5), (20, 90, 120)):
+        fields = f"alpha={degrees}&mu=2&eta=0.3&n={voussoirs}&arch=built"
+        page.evaluate(f"location.hash = '{fields}'")
+        settle(page)
+        exact = limit.least_thickness(math.radians(degrees), 2.0, voussoirs, "centreline")
+        head = text(page, "#verdict")
+        assert ("stand at any thickness" in head) == (exact.eta < 1e-9)
+        times = re.search(r"(\S+) times the least", head)
+        if times:
+            assert float(times[1]) == pytest.approx(0.3 / exact.eta, rel=0.1)
+            compared += 1
+    assert compared > 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -143,6 +144,12 @@ class SpatialAssembly:
         """Half the longest side of the box around all blocks that move [m]."""
         boxes = np.array([hull.box for block in self.blocks for hull in block.hulls])
         return float((boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)).max()) / 2
+
+    @cached_property
+    def friction(self) -> Array:
+        """Friction coefficient of each joint, (joints,); nan where it has none of its own."""
+        own = (each.friction for each in self.joints)
+        return frozen([math.nan if mu is None else mu for mu in own], (-1,))
 
     @cached_property
     def weights(self) -> Array:

@@ -9,8 +9,7 @@ from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Joint
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.space.assembly import FaceJoint, SolidBlock, SpatialAssembly
 from blocksim.blocks.space.polyhedron import Polyhedron
-from blocksim.blocks.space.problem import SpatialLoad, SpatialProblem
-from blocksim.common.checks import require
+from blocksim.blocks.space.problem import SpatialProblem
 
 UP = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0]])
 """The plane in space."""
@@ -37,8 +36,6 @@ def extruded(problem: Problem) -> SpatialProblem:
     SpatialProblem(9 blocks, 10 joints, mu=0.7)
     """
     assembly = problem.assembly
-    allowed = "left out: the ground is at rest in space"
-    require(problem.shaking is None, "shake", "ground that shakes", allowed)
     x, y, out = problem.gravity.tolist()
     return SpatialProblem(
         assembly=_prisms(assembly),
@@ -50,6 +47,7 @@ def extruded(problem: Problem) -> SpatialProblem:
         load=problem.load,
         title=problem.title,
         source=problem.source,
+        shaking=problem.shaking,
         weighed=problem.weighed,
         notes=(*problem.notes, "blocks of the plane as prisms"),
     )
@@ -105,8 +103,8 @@ def _face(joint: Joint, assembly: Assembly) -> FaceJoint:
     )
 
 
-def _load(load: Load) -> SpatialLoad:
+def _load(load: Load) -> Load:
     point = None if load.point is None else UP @ load.point
-    return SpatialLoad(
+    return Load(
         force=UP @ load.force, blocks=load.blocks, point=point, per_weight=load.per_weight
     )

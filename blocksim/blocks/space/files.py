@@ -23,16 +23,15 @@ from blocksim.blocks.entries import (
     Times,
     listed,
 )
-from blocksim.blocks.loads import Names, name_of, sides_of
+from blocksim.blocks.loads import LoadsOf, Names, acting_of, name_of, sides_of
 from blocksim.blocks.space.assembly import (
     MOST_SOLIDS,
     FaceJoint,
     Solid,
     assembly_in_space,
 )
-from blocksim.blocks.space.problem import DOWN, SpatialLoad, SpatialProblem
+from blocksim.blocks.space.problem import DOWN, SpatialProblem
 from blocksim.common.checks import WEIGHT, require
-from blocksim.common.errors import MISSING, InputError
 from blocksim.common.tables import Written, as_said
 
 MOST_CORNERS = 1000
@@ -201,28 +200,17 @@ def problem_in_space(data: object) -> SpatialProblem:
         density=written.unit_weight,
         tolerance=written.tolerance,
     )
-    loads_of = _Loads(solids)
-    gravity, dead = DOWN, list[SpatialLoad]()
-    notes = list(written.notes)
-    if written.dead is not None:
-        gravity = np.zeros(3)
-        for at, load in enumerate(written.dead):
-            found = loads_of(load, f"dead[{at}]")
-            if load.body is not None and load.blocks is None:
-                gravity = gravity + np.array(load.body)
-            else:
-                dead.append(found)
-        if not gravity.any():
-            notes.append("no gravity: dead has no body force on all blocks")
+    acts = acting_of(written, LoadsOf(solids, SPACE), DOWN)
+    notes = [*written.notes, *acts.notes]
     closed = [abs(each.gap) for each in assembly.joints if each.gap]
     if closed and max(closed) > 1e-9 * assembly.size:
         notes.append(f"gaps and overlaps of up to {1000 * max(closed):.3g} mm closed")
     return SpatialProblem(
         assembly=assembly,
         mu=written.friction,
-        gravity=gravity,
-        dead=tuple(dead),
-        live=tuple(loads_of(each, f"live[{at}]") for at, each in enumerate(written.live)),
+        gravity=acts.gravity,
+        dead=acts.dead,
+        live=acts.live,
         load=float(written.load),
         title=written.title,
         source=written.source,
@@ -270,41 +258,3 @@ def _joints(written: SpatialFile, solids: Sequence[Solid]) -> list[FaceJoint] | 
             )
         )
     return joints
-
-
-class _Loads:
-    """What a load of a file comes to on the blocks that move."""
-
-    def __init__(self, solids: Sequence[Solid]) -> None:
-        moving = [solid.name for solid in solids if not solid.fixed]
-        self._place = {name: at for at, name in enumerate(moving)}
-
-    def __call__(self, load: SpatialLoadEntry, field: str) -> SpatialLoad:
-        """Return the load of one entry.
-
-        Raises
-        ------
-        InputError
-            In one line, if it is none, or on no block that moves.
-        """
-        if (load.body is None) == (load.block is None):
-            raise InputError(field, "both or none", "one of body and block")
-        if load.body is not None:
-            alone = load.force is None and load.point is None
-            require(alone, field, "force or point beside body", "body and blocks alone")
-            named = load.blocks
-            on = list(self._place) if named is None else [str(each) for each in named]
-            places = [self._at(name, f"{field}.blocks") for name in on]
-            once = len(set(places)) == len(places)
-            require(once, f"{field}.blocks", named, "each block once")
-            return SpatialLoad(force=np.array(load.body), blocks=tuple(places), per_weight=True)
-        require(load.blocks is None, f"{field}.blocks", load.blocks, "left out: body has it")
-        if load.force is None:
-            raise InputError(f"{field}.force", MISSING, "given")
-        place = self._at(str(load.block), f"{field}.block")
-        point = None if load.point is None else np.array(load.point, dtype=float)
-        return SpatialLoad(force=np.array(load.force), blocks=(place,), point=point)
-
-    def _at(self, name: str, field: str) -> int:
-        require(name in self._place, field, name, "the id of a block that is not fixed")
-        return self._place[name]

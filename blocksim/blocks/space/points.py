@@ -46,7 +46,7 @@ class JointPoints:
     @cached_property
     def unit(self) -> float:
         """The mean block's weight [N]."""
-        return float(self.problem.assembly.weights.mean())
+        return self.problem.unit_force
 
     @cached_property
     def axes(self) -> Array:
@@ -93,19 +93,10 @@ class JointPoints:
         entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
         return sparse.csc_matrix(entries, shape=shape)
 
-    def pull(self, load: float) -> Array:
-        """Return gravity, dead and live loads, (6 blocks,)."""
-        problem = self.problem
-        return self._scaled(problem.fixed_pull + load * problem.live_pull)
-
     @property
     def live(self) -> Array:
-        """Return live loads at a factor of 1, (6 blocks,)."""
-        return self._scaled(self.problem.live_pull)
-
-    def _scaled(self, pull: Array) -> Array:
-        size = self.problem.assembly.size
-        return (pull / self.unit / np.array([1.0, 1.0, 1.0, size, size, size])).ravel()
+        """Live loads at a factor of 1, (6 blocks,)."""
+        return self.problem.scaled(self.problem.live_pull).ravel()
 
     @cached_property
     def rows(self) -> Array:

@@ -100,7 +100,7 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
         If the solver gives up.
     """
     contacts = Contacts(problem)
-    pull = contacts.pull(problem.load)
+    pull = problem.pull().ravel()
     found = contacts.most(pull)
     exists, gap, forces, rates = None, math.inf, None, found.rates
     if len(found.forces) and found.value > 0:
@@ -139,7 +139,7 @@ def largest_load(problem: SpatialProblem) -> LargestLoad:
         If the solver gives up.
     """
     contacts = Contacts(problem)
-    pull, live = contacts.pull(0.0), contacts.live
+    pull, live = problem.scaled(problem.fixed_pull).ravel(), contacts.live
     # In units of its own size, as loads may be of any.
     unit = float(np.abs(live / contacts.rows).max()) or 1.0
     found = contacts.most(pull, live / unit)

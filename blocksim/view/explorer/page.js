@@ -107,7 +107,9 @@
     put(`${arch}-h`, number(critical.eta === null ? null : critical.thrust, 6));
     put(`${arch}-r`, degrees(uses("intrados") ? critical.betaR : null));
     put(`${arch}-s`, degrees(uses("in") ? betaS : null));
-    find(`${arch}-mode`).replaceChildren(mode === null ? "–" : modeName(mode));
+    // Where none stands, the mode is that of the thickest; thinner ones may fall otherwise.
+    const when = critical.eta === null ? " at η = 2" : "";
+    find(`${arch}-mode`).replaceChildren(...(mode === null ? ["–"] : [modeName(mode), when]));
   }
 
   function modeName(mode) {

@@ -69,7 +69,7 @@ const wordsWith = (modes) => {
          friction.`
       : "No thrust holds it up: its halves overturn by themselves.";
     const falls = critical.eta === null
-      ? `It falls in ${named(mode)}.`
+      ? `Even at η = 2 it falls, in ${named(mode)}; thinner, it may fall in another.`
       : `At its least thickness, η = ${number(critical.eta)}, it falls in ${named(mode)}.`;
     let remedy = "";
     if (friction === Infinity) {
@@ -97,7 +97,7 @@ const wordsWith = (modes) => {
         ? "each springing" : `the joint at ${(angle / DEGREE).toFixed(1)}°`;
       return `${where} ${KINDS[kind]}`;
     });
-    const when = critical.eta === null ? "" : " at the least thickness";
+    const when = critical.eta === null ? " at η = 2" : " at the least thickness";
     return `Mechanism of ${which(voussoirs)}${when}: ${told.join(", ")}.`;
   }
 
