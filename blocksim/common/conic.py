@@ -59,7 +59,8 @@ def solved_cones(
     settings.equilibrate_enable = scaled
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = finest
     if not refined:
-        settings.iterative_refinement_reltol = settings.iterative_refinement_abstol = finest / 10
+        settings.iterative_refinement_reltol = finest / 10
+        settings.iterative_refinement_abstol = finest / 10
     made = {kind: getattr(clarabel, name) for kind, name in KINDS.items()}
     kinds = [made[kind](rows) for kind, rows in cones]
     return clarabel.DefaultSolver(quadratic, cost, matrix, right, kinds, settings).solve()
