@@ -12,6 +12,7 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.outlines import signed_area
 from blocksim.common.errors import InputError
@@ -29,6 +30,7 @@ LAYERS = {
     "thrust-max": 6,
     "thrust-safest": 30,
     "mechanism": 3,
+    "gaps": 1,
     "dimensions": 7,
     "text": 7,
 }
@@ -94,6 +96,7 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     paper = np.array([A4[0].width, A4[0].height])
     scale = scale_for(span, ROOM * paper)
     _states(space, sheet, scale)
+    _gaps(space, sheet, scale)
     _dimensions(space, sheet, shown, scale)
     _words(space, sheet, shown, scale)
     text = io.StringIO()
@@ -125,6 +128,19 @@ def _states(space: Any, sheet: Sheet, scale: float) -> None:
             space.add_line(*ends, dxfattribs=layer)
         if state in HINGES:
             space.add_circle(ends[HINGES[state]], HINGE * scale / 1e3, dxfattribs=layer)
+
+
+def _gaps(space: Any, sheet: Sheet, scale: float) -> None:
+    """Draw joints at which a gap or an overlap of the drawing is closed, with its size."""
+    layer, mm = {"layer": "gaps"}, scale / 1e3
+    for index, gap in marked_gaps(sheet.problem.assembly).items():
+        joint = sheet.problem.assembly.joints[index]
+        if not joint.is_corner:
+            space.add_line(joint.inner, joint.outer, dxfattribs=layer)
+        size = space.add_text(
+            f"{1000 * gap:+.3g} mm", height=LETTERS * mm / 2, dxfattribs=layer
+        )
+        size.set_placement(tuple((joint.inner + joint.outer) / 2))
 
 
 def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
