@@ -34,7 +34,7 @@ def closing_of_verdict(problem: Problem, *, stands: bool) -> tuple[Evidence, ...
         if exists(_resized(problem, sign)) != stands:
             other = Verdict.COLLAPSES if stands else Verdict.STANDS
             return _said(problem, f"the drawing leaves it open: {other} with blocks {words}")
-    return _said(problem, "the same with blocks grown and shrunk")
+    return _said(problem, "the verdict is the same with blocks grown and shrunk")
 
 
 def closing_of_value(family: Family) -> tuple[Evidence, ...]:
@@ -47,7 +47,9 @@ def closing_of_value(family: Family) -> tuple[Evidence, ...]:
         return ()
     others = [family.of(_resized(problem, sign)).exact() for sign, _ in WAYS]
     if all(each is not None and abs(each - value) <= SAME * abs(value) for each in others):
-        return _said(problem, "the same to six digits with blocks grown and shrunk")
+        return _said(
+            problem, "the value is the same to six digits with blocks grown and shrunk"
+        )
     told = (
         f"{'none' if each is None else f'{each:.6g}'} with blocks {words}"
         for each, (_, words) in zip(others, WAYS, strict=True)
