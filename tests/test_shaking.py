@@ -475,10 +475,15 @@ def test_wrong_options_are_refused_in_one_line(
     assert said in ended.stderr
 
 
-def test_an_amplitude_is_bracketed() -> None:
+@pytest.mark.parametrize(
+    "confirm", [False, pytest.param(True, marks=pytest.mark.long)], ids=["once", "confirmed"]
+)
+def test_an_amplitude_is_bracketed(confirm: bool) -> None:
     """Corpus: a pulse of 0.5 g has to last 0.3677 s, so one of that duration 0.5 g."""
     problem = shaken("pulse_1x4_05", 1.0)
-    found = bracket(family_of(problem, "amplitude"), method="pymunk", tol=0.05)
+    family = family_of(problem, "amplitude")
+    found = bracket(family, method="pymunk", tol=0.05, confirm=confirm)
+    assert found.confirmed is (True if confirm else None)
     assert found.low is not None
     assert found.high is not None
     assert found.low < 0.5 * 1.005
@@ -486,7 +491,7 @@ def test_an_amplitude_is_bracketed() -> None:
     assert found.high / found.low < 1.06
     assert (found.stands, found.limit) == ("low", None)
     # A range in which it stands all over, although it starts with 0.5 g.
-    less = bracket(family_of(problem, "amplitude"), method="pymunk", within=(0.0, 1e-4))
+    less = bracket(family, method="pymunk", within=(0.0, 1e-4))
     assert (less.low, less.high) == (1e-4, None)
     still = structure_of(scenes("pulse_1x4_05")[0])
     with pytest.raises(InputError, match="the ground is at rest"):

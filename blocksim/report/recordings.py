@@ -30,7 +30,9 @@ def recording_record(recording: Recording) -> dict[str, object]:
         "recorded_s": float(recording.seconds(STANDARD_GRAVITY)[-1]),
         "moved_m": float(recording.displacement[-1]) * size,
         "largest_rotation_deg": math.degrees(rocking.rotation),
+        "gravity_m_s2": STANDARD_GRAVITY,
         "quality": to_record(recording.quality),
+        "overlap_of_smallest_block": recording.overlap_share,
         "state_hash": recording.state_hash,
     }
 
@@ -57,7 +59,9 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         lines.append("  " + ", ".join(said))
     said = []
     if kept.penetration is not None:
-        said.append(f"blocks overlap by at most {kept.penetration:.1e} {unit}")
+        share = recording.overlap_share or 0.0
+        of_it = f"{share:.2g} of the smallest"
+        said.append(f"blocks overlap by at most {kept.penetration:.1e} {unit}, {of_it}")
     if kept.gain is not None:
         said.append(
             f"energy at most {kept.gain:.2%} of what fell above that at the release"
@@ -66,4 +70,11 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         )
     if said:
         lines.append("  " + ", ".join(said))
+    if kept.error is not None:
+        until = recording.times[-1] if kept.known is None else kept.known
+        ends = "" if kept.known is None else ", not known beyond"
+        lines.append(
+            f"  right to {kept.error:.1e} {unit} until {until * problem.seconds:.3g} s{ends}, "
+            "says a run at twice the step"
+        )
     return lines

@@ -274,6 +274,9 @@ class Film:
         facts[1:1] = built if problem.title else []
         facts[1:1] = ["still moving as it ends"] if stage.speed and not self._is_mode else []
         run = stage.recording
+        if run.quality.known is not None and not self._is_mode:
+            until = self._clock(run.quality.known * problem.seconds).removeprefix("t = ")
+            facts.append(f"known to 1 % until {until}")
         below = printable(f"{', '.join(facts)}   {run.engine} {run.engine_version}")
         x, top, wide = panel.x + 24 * size, self.height, panel.width - 48 * size
         head = fitting(head, 20 * size, wide, bold=True)
