@@ -405,7 +405,10 @@ def _of_family(
         problem=probe,
         events=None if family.spreading is None else family.spreading.events,
         intervals=intervals,
-        changes=changes_of(family, intervals or ()) if chosen.name == "limit" else (),
+        # Proofs are of rigid blocks.
+        changes=changes_of(family, intervals or ())
+        if chosen.name == "limit" and probe.strength is None
+        else (),
     )
 
 

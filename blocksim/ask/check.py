@@ -24,6 +24,7 @@ from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
+from blocksim.limit.crushing import Needed, exists, strength_needed
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import proof_of_rest
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from blocksim.simulation.observation import Observation
     from blocksim.simulation.shaken import Shaken
 
+UNPROVED = "none: strengths are compared in floating point, not in rational arithmetic"
+"""What is said of answers about blocks that crush."""
 SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
 
@@ -63,10 +66,12 @@ class Check(Shown):
         Whether that was to be found out.
     motion : Moving or None
         Where it was, the motion that was found; `joints` say what they do in it.
+    needed : Needed or None
+        Of blocks that crush, the least strength at which forces of equilibrium exist.
     load_factor : float or None
         Largest factor on the live loads at which forces of equilibrium exist, by limit
-        analysis; inf where no live load is too much. None without live loads, or where
-        there is no equilibrium at any factor.
+        analysis; below 0 where none exist without live loads; inf where no live load is too
+        much. None without live loads, or where there is no equilibrium at any factor.
     rates : (blocks, 3 or 6) float or None
         By an engine, velocities in proportion to those with which a collapse starts.
     shaken : Shaken or None
@@ -93,6 +98,7 @@ class Check(Shown):
     rest: Rest | None = None
     asked_rest: bool = False
     motion: Moving | None = None
+    needed: Needed | None = None
     load_factor: float | None = None
     rates: Array | None = None
     shaken: Shaken | None = None
@@ -120,6 +126,9 @@ class Check(Shown):
         if self.method != "limit":
             return None
         found = None
+        if self.problem.strength is not None and self.needed is not None:
+            # Proofs are of rigid blocks, which stand.
+            return None
         stands = self.verdict is Verdict.STANDS
         if stands and offers_of(self.problem) and self.carried is not None:
             # The maker's own statics know forces: no linear programme has to be loaded.
@@ -151,7 +160,7 @@ class Check(Shown):
         """
         rates, falls = self.rates, self.verdict is not Verdict.STANDS
         if self.method == "limit" and falls and self.static is not None:
-            rates = self.static.mechanism
+            rates = self.static.mechanism if self.needed is None else self.needed.mechanism
         if self.motion is not None:
             rates = self.motion.accelerations
         return None if rates is None else _unit(rates, self.problem)
@@ -163,7 +172,7 @@ class Check(Shown):
         `blocksim.ask.carried.carried_of` has no such bound.
         """
         small = offers_of(self.problem) or len(self.problem.assembly.joints) <= SOUGHT
-        return carried_of(self.problem) if small else None
+        return carried_of(self.problem, needed=self.needed) if small else None
 
     def __repr__(self) -> str:
         return f"Check({self.verdict}, by {self.method}, of {self.problem!r})"
@@ -250,7 +259,7 @@ def check(
     if found.static is not None:
         # Asked for already.
         vars(answer)["static"] = found.static
-    if answer.method == "limit" and not answer.proved:
+    if answer.method == "limit" and not answer.proved and answer.needed is None:
         open_ = Evidence("limit analysis", undecided_words(problem))
         evidence = (open_, *answer.evidence[1:])
         return replace(answer, verdict=Verdict.UNDECIDED, evidence=evidence)
@@ -295,15 +304,21 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
+        found = (Evidence("limit analysis", _static_words(static)),)
+        needed, rates = None, static.mechanism
+        if static.exists and problem.strength is not None:
+            needed = strength_needed(problem)
+            verdict, said = _crushing(needed, problem.strength)
+            exists = verdict is Verdict.STANDS
+            found = (Evidence("limit analysis", said),)
+            rates = None if exists or needed is None else needed.mechanism
         answer = Check(
             method=chosen.name,
             verdict=verdict,
-            evidence=(
-                Evidence("limit analysis", _static_words(static)),
-                *_closing(problem, static.exists),
-            ),
+            evidence=(*found, *_closing(problem, verdict is Verdict.STANDS)),
             problem=problem,
-            joints=_observed(problem, static.mechanism),
+            joints=_observed(problem, rates),
+            needed=needed,
             load_factor=factor,
             wall_s=0.0,
         )
@@ -403,6 +418,20 @@ def _static_words(static: Equilibrium) -> str:
     )
 
 
+def _crushing(needed: Needed | None, strength: float) -> tuple[Verdict, str]:
+    """Say whether forces of equilibrium exist within a strength."""
+    if needed is None:
+        return Verdict.UNDECIDED, "the strength that is needed was not found"
+    least, most = f"{needed.low / 1e6:.6g} MPa", f"{needed.high / 1e6:.6g} MPa"
+    if needed.high <= strength:
+        said = f"forces of equilibrium exist that press joints by {most} at most"
+        return Verdict.STANDS, said
+    if needed.low > strength:
+        said = f"forces of equilibrium exist, and all crush a joint: {least} are needed"
+        return Verdict.COLLAPSES, said
+    return Verdict.UNDECIDED, f"the strength that is needed is between {least} and {most}"
+
+
 def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
     """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
     gaps = closed_gaps(problem.assembly)
@@ -411,7 +440,7 @@ def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
     most = 1000 * max(map(abs, gaps.values()))
     for sign, words in ((1, "grown"), (-1, "shrunk")):
         assembly = resized(problem.assembly, sign)
-        if equilibrium(replace(problem, assembly=assembly)).exists != stands:
+        if exists(replace(problem, assembly=assembly)) != stands:
             other = Verdict.COLLAPSES if stands else Verdict.STANDS
             found = f"the drawing leaves it open: {other} with blocks {words} by what was "
             return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
@@ -422,6 +451,8 @@ def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
 def proof_words(answer: Check) -> str:
     """Say whether a verdict by limit analysis is proved, and by what."""
     proof = answer.proof
+    if answer.needed is not None:
+        return UNPROVED
     if proof is None:
         return "none was found"
     if proof.claim == "collapses":

@@ -55,6 +55,8 @@ def require_rest(problem: Problem) -> None:
     """Raise `InputError` where it cannot be found out whether blocks must rest."""
     allowed = "left out where gravity leans or the ground shakes"
     require(problem.is_planar and problem.shaking is None, "must_rest", "asked", allowed)
+    rigid = problem.strength is None
+    require(rigid, "must_rest", "asked", "left out beside a strength: blocks are rigid there")
     bounded = bool(np.isfinite(problem.friction).all())
     require(bounded, "must_rest", "asked", "left out where friction is unbounded")
 

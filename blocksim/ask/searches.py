@@ -13,6 +13,7 @@ from blocksim.ask.options import Taken
 from blocksim.ask.search import Answer, Bisection
 from blocksim.common.progress import Progress, silent
 from blocksim.limit import equilibrium
+from blocksim.limit.crushing import exists
 from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -182,9 +183,7 @@ def by_programmes(family: Family, exact: float | None, *, rises: bool) -> Search
         ends = exact * (1 - sure), exact * (1 + sure)
         falls, stands = ends if rises else ends[::-1]
         runs += 2
-        confirmed = (
-            equilibrium(family.at(stands)).exists and not equilibrium(family.at(falls)).exists
-        )
+        confirmed = exists(family.at(stands)) and not exists(family.at(falls))
         if confirmed:
             break
     words = "confirmed" if confirmed else "not confirmed"

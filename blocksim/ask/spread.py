@@ -12,6 +12,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, side_name
 from blocksim.blocks.problem import Move, Problem
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.direct import ENGINE, rule
@@ -112,6 +113,8 @@ class Spreading:
     def problem(self) -> Problem:
         """The problem with its supports' motion."""
         asked, supports = self.asked, self.asked.assembly.supports
+        allowed = "left out where supports move: blocks are rigid there"
+        require(asked.strength is None, "strength", "given", allowed)
         if asked.moves:
             return asked
         joints = asked.assembly.springings

@@ -159,6 +159,7 @@ def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
     problem = answer.problem
     assembly, words = problem.assembly, state_words(problem)
     found = None if carried is None else carried.resultants
+    known = problem.weighed and problem.has_size
     told: list[JointRecord] = []
     for k, joint in enumerate(assembly.joints):
         ends = [joint.inner.tolist()] + ([] if joint.is_corner else [joint.outer.tolist()])
@@ -176,6 +177,9 @@ def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
                 "normal_force": None if found is None else float(found.normal[k]),
                 "friction_force": None if found is None else float(found.friction[k]),
                 "width_used": None if found is None else float(found.width_used[k]),
+                "stress_MPa": None
+                if found is None or joint.is_corner or not known
+                else float(found.stress[k]) / 1e6,
                 "friction_used": None if found is None else float(found.friction_used[k]),
             }
         )

@@ -52,6 +52,7 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
         **tilt_and_lean(problem),
         "azimuth_deg": None,
         "load": problem.load,
+        "strength_MPa": None if problem.strength is None else problem.strength / 1e6,
         "shake": None if shaking is None else shaking_record(shaking),
         **(dict.fromkeys(SIZES) if arch is None else size_record(arch)),
         "weight_kN": weight_of(problem) / 1000,
@@ -202,6 +203,8 @@ def described(problem: Problem) -> str:
         said.append(
             f"live loads times {problem.load:g}" if problem.load else "no live load on it"
         )
+    if problem.strength is not None:
+        said.append(f"strength {problem.strength / 1e6:g} MPa")
     if problem.shaking is not None:
         said.append(problem.shaking.words)
     said.append(f"L = {assembly.size:g} m" if problem.has_size else "L = r")

@@ -29,7 +29,7 @@ from blocksim.view.planar import PlanarView
 from blocksim.view.sheet import factor_words
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Moment, Stage
-from blocksim.view.style import INK, QUIET, THRUST
+from blocksim.view.style import DASHES, INK, QUIET, THRUST
 
 ViewName = Literal["2d", "3d"]
 BEFORE, AFTER = 0.8, 1.2
@@ -321,7 +321,8 @@ class Film:
             x -= width_of(words, 13 * size)
             labels.append(Label(x, y, words, size=13 * size))
             line = np.array([[x - 28 * size, y + 5 * size], [x - 8 * size, y + 5 * size]])
-            shapes.append(Shape(line, edge=colour(tone), width=5 * size, closed=False))
+            shapes.append(Shape(line, edge=colour(tone), width=5 * size, closed=False,
+                                dash=DASHES.get(tone, ())))  # fmt: skip
             x -= 54 * size
         return shapes, labels
 

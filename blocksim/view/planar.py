@@ -10,7 +10,7 @@ from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
 from blocksim.view.drawing import HINGES, along_side, words_of
 from blocksim.view.stage import Moment, Stage
-from blocksim.view.style import GROUND, INK, PAPER, STONE, THRUST
+from blocksim.view.style import DASHES, GROUND, INK, PAPER, STONE, THRUST
 
 MARGIN = 0.06
 """Free share of a panel on each side."""
@@ -121,9 +121,12 @@ class PlanarView:
         for state, face in zip(moment.joints, moment.faces, strict=True):
             if state is JointState.CLOSED:
                 continue
-            tone = colour(words_of(state, is_arch=self._stage.is_arch)[1])
+            name = words_of(state, is_arch=self._stage.is_arch)[1]
+            tone, dash = colour(name), DASHES.get(name, ())
             places = [self._to_pixels(pair[:, :2]) for pair in face]
-            faces += [Shape(pair, edge=tone, width=width, closed=False) for pair in places]
+            faces += [
+                Shape(pair, edge=tone, width=width, closed=False, dash=dash) for pair in places
+            ]
             hinge = HINGES.get(state)
             if hinge is not None:
                 middle = (places[0][hinge] + places[1][hinge]) / 2

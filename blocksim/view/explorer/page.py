@@ -20,7 +20,16 @@ from blocksim.blocks.assembly import Array
 from blocksim.common.words import printed
 from blocksim.view.explorer.results import Result
 from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line, map_shapes
-from blocksim.view.style import FRICTION, MISS, MODES, THRUST, UNNAMED, VERDICTS
+from blocksim.view.style import (
+    FRICTION,
+    JOINTS,
+    MECHANISM,
+    MISS,
+    MODES,
+    THRUST,
+    UNNAMED,
+    VERDICTS,
+)
 
 HERE = Path(__file__).parent
 SCRIPTS = (
@@ -77,6 +86,8 @@ def _data(results: Sequence[Result]) -> dict[str, Any]:
             "thrust": THRUST,
             "friction": FRICTION,
             "wrong": MISS,
+            "mechanism": MECHANISM,
+            **{state.value: colour for state, colour in JOINTS.items()},
             **{verdict.value: colour for verdict, colour in VERDICTS.items()},
         },
         "largestMu": LARGEST_MU,
