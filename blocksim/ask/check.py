@@ -235,6 +235,7 @@ def check(
         found = _offered(problem, offered, chosen, given)
     else:
         found = _general(problem, chosen, given)
+        problem = found.answer.problem
     rest = motion = None
     if problem.shaking is None:
         rest, motion = rest_of(
@@ -299,8 +300,10 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
 def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
     """Answer by a linear programme or by an engine."""
     planar = problem.is_planar
-    static = equilibrium(problem) if planar else None
     factor = collapse(problem).load_factor if planar and problem.live else None
+    static = equilibrium(problem) if planar else None
+    # What soil bears is mobilised as far as it has to be.
+    problem = problem if static is None else static.problem
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
@@ -405,15 +408,15 @@ def _unit(rates: Array, problem: Problem) -> Array:
 def _static_words(static: Equilibrium) -> str:
     """Say what limit analysis found."""
     if static.exists:
+        spare = max(0.0, static.margin)
         return (
-            "forces of equilibrium exist, every contact pressing by "
-            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its "
-            "friction cone, or more"
+            "forces of equilibrium exist, and no contact is nearer to opening or sliding than "
+            f"by {spare:.3g} of its force"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
     return (
-        "no forces of equilibrium exist: contacts would have to pull by "
+        "no forces of equilibrium exist: contacts would have to pull with "
         f"{-static.margin:.3g} of what they carry"
     )
 
@@ -444,7 +447,9 @@ def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
             other = Verdict.COLLAPSES if stands else Verdict.STANDS
             found = f"the drawing leaves it open: {other} with blocks {words} by what was "
             return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
-    found = "the same with blocks grown and shrunk by what was closed, "
+    found = (
+        "the verdict is the same with blocks grown and shrunk by what was closed at joints, "
+    )
     return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)
 
 

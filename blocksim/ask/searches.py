@@ -192,7 +192,7 @@ def by_programmes(family: Family, exact: float | None, *, rises: bool) -> Search
         stands=stands,
         confirmed=confirmed,
         runs=runs,
-        reason=f"limit analysis: a linear programme, {words} by two others at the ends",
+        reason=f"limit analysis, {words} by two more linear programmes at the ends",
     )
 
 

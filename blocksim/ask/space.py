@@ -222,10 +222,10 @@ def static_words(static: SpatialEquilibrium) -> str:
     """Say what limit analysis found, and how near it was held to."""
     own = "of the lighter block's share of weight beside it"
     if static.exists:
-        left = "nothing but rounding" if not static.gap else f"{static.gap:.1g} of a weight"
+        left = f", but for {static.gap:.1g} of a weight" if static.gap else ""
         return (
-            f"forces of equilibrium exist, each contact pressing by {static.margin:.3g} {own} "
-            f"more than friction needs; {left} is left over"
+            f"forces of equilibrium exist{left}; each contact presses by {static.margin:.3g} "
+            f"{own} more than its friction needs"
         )
     if static.exists is None:
         return (

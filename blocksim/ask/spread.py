@@ -18,6 +18,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines.direct import ENGINE, rule
 from blocksim.engines.moving import DEEP, OnMovingSupports
 from blocksim.engines.stepping import UNSOLVED
+from blocksim.limit.bearing import bears
 from blocksim.limit.spreading import Path, follow, lying
 from blocksim.simulation.motion import FRAME
 from blocksim.simulation.recording import Recording
@@ -114,6 +115,7 @@ class Spreading:
         """The problem with its supports' motion."""
         asked, supports = self.asked, self.asked.assembly.supports
         allowed = "left out where supports move: blocks are rigid there"
+        require(not bears(asked), "fill_passive", "given", "left out where supports move")
         require(asked.strength is None, "strength", "given", allowed)
         if asked.moves:
             return asked
@@ -252,7 +254,15 @@ class Spreading:
             left -= FRAME * (world.fastest > FAST * SEEN or left < AFTER)
             progress(world.value / self.farthest, f"supports at {world.value:.4g} m")
         return Recording(
-            problem=replace(world.problem, title=f"{self.asked.title}, its supports move"),
+            # Supports that move are its last blocks; it says so by their moves.
+            problem=replace(
+                world.problem,
+                title=f"{self.asked.title}, its supports move",
+                moves=tuple(
+                    replace(move, support=len(world.problem.assembly.supports) - 1)
+                    for move in self.problem.moves
+                ),
+            ),
             engine=ENGINE.name,
             engine_version=ENGINE.version,
             settings=settings,

@@ -91,7 +91,7 @@ def check(
         told = answer.carried
         if at is not None and told is not None:
             report(1.0, "thrust")
-            told = carried_of(problem, at, answer.needed)
+            told = carried_of(answer.problem, at, answer.needed)
     found = answer.proof
     write_proof(answer.method, () if found is None else (found,), proof)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)

@@ -35,13 +35,16 @@ def write_still(
     """
     built = is_structure(scene) or loading.given
     asked = None if built else question(scene, given)
+    flat = "another kind: a page to turn around (.html) is of blocks in space"
     if asked is None or (not asked.lean and asked.has_thickness):
         problem = anything_asked(scene, given, loading, thick=True)
         if isinstance(problem, SpatialProblem):
             draw_in_space(out, kind, problem, method, height)
         else:
+            require(kind != "html", "--out", str(out), flat)
             _write_sheet(out, kind, problem, method, height)
         return
+    require(kind != "html", "--out", str(out), flat)
     require(method is None, "--method", method, "left out: the picture is of no motion")
     flat = "a .png, .svg or .pdf: it leans" if asked.lean else (
         "a .png, .svg or .pdf where no thickness is given"

@@ -21,8 +21,9 @@ from blocksim.cli.options import (
     named_options,
     option_of,
 )
-from blocksim.cli.output import answer_with, save_picture
+from blocksim.cli.output import answer_with, save_picture, say
 from blocksim.common.checks import require
+from blocksim.common.files import write_whole
 from blocksim.report.space import (
     bracket_in_space_lines,
     bracket_in_space_record,
@@ -64,14 +65,21 @@ def refuse(options: Mapping[str, object], known: Collection[str] = ()) -> None:
 def draw_in_space(
     out: Path, kind: str, problem: SpatialProblem, method: str | None, height: int | None
 ) -> None:
-    """Answer the command render: a still in perspective."""
-    allowed = "a .png, .svg or .pdf: it is drawn in perspective"
-    require(kind in {"png", "svg", "pdf"}, "--out", str(out), allowed)
+    """Answer the command render: a still in perspective, or a page to turn it around."""
+    allowed = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn it around"
+    require(kind in {"png", "svg", "pdf", "html"}, "--out", str(out), allowed)
     # Drawing takes a second to import, which other commands need not wait for.
     from blocksim.view.solidfigure import solid_figure
 
     with named_options():
         answer = check(problem, method=method or "auto")
+    if kind == "html":
+        from blocksim.view.turning import turning_page
+
+        text = turning_page(answer).encode()
+        write_whole(out, lambda file: file.write(text))
+        say(f"wrote {out}: a page to turn it around")
+        return
     save_picture(solid_figure(answer), out, kind, height)
 
 

@@ -29,7 +29,15 @@ FOLLOWS = {
     "spread": set[str](),
 }
 """What follows from each parameter that any problem may have."""
-BUILT = {"span_m", "rise_m", "thickness_m", "radius_m", "weight_kN", "fill_weight_kN"}
+BUILT = {
+    "span_m",
+    "rise_m",
+    "thickness_m",
+    "radius_m",
+    "weight_kN",
+    "fill_weight_kN",
+    "fill_is",
+}
 """What follows from the parameters of a maker."""
 
 
@@ -58,6 +66,7 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
         "weight_kN": weight_of(problem) / 1000,
         "fill_m": None if fill is None else fill.height,
         "fill_weight_kN": None if fill is None else fill.weight / 1000,
+        "fill_is": None if fill is None else list(fill.words),
         "dispersal": None if problem.dispersal is None else problem.dispersal.words,
         "live_weight_kN": 0.0 - _live(problem) / 1000,
     }
@@ -119,6 +128,7 @@ def size_lines(problem: Problem) -> list[str]:
     said: list[str] = []
     if fill is not None:
         said.append(f"fill {fill.height:.6g} m over the crown, {fill.weight / 1000:.6g} kN")
+        said += fill.words
     if live and any(load.point is not None for load in problem.live):
         said.append(f"live loads {live / 1000:.6g} kN times {problem.load:g}")
     if said:

@@ -12,7 +12,7 @@ from blocksim.blocks.joints import JointState, joint_names, side_name
 from blocksim.common.version import __version__
 from blocksim.common.words import counted
 from blocksim.report.answers import HINGE, HINGED, evidence_record
-from blocksim.report.answerwords import few, values_tried
+from blocksim.report.answerwords import aside_lines, because_lines, few, values_tried
 from blocksim.report.schema import (
     BracketRecord,
     CarriedRecord,
@@ -34,7 +34,6 @@ def check_in_space_record(answer: SpatialCheck) -> CheckRecord:
     """Return a check as `check --json` prints it; null what is not known in space."""
     problem = answer.problem
     factor = answer.load_factor
-    safety = factor / problem.load if factor is not None and problem.load > 0 else factor
     found: dict[str, object] = {
         **dict.fromkeys(CheckRecord.__annotations__),
         **dict.fromkeys(CarriedRecord.__annotations__),
@@ -46,7 +45,6 @@ def check_in_space_record(answer: SpatialCheck) -> CheckRecord:
         "reason": answer.reason,
         "problem": _problem_record(problem),
         "load_factor": factor,
-        "factor_of_safety": safety,
         "weights_given": problem.weighed,
         "weight_kN": float(problem.assembly.weights.sum()) / 1000,
         "joints": _joints(answer),
@@ -131,6 +129,7 @@ def _joints(answer: SpatialCheck) -> list[JointRecord]:
                 "friction_force": None if force is None else float(np.hypot(*force[1:])),
                 "width_used": None,
                 "friction_used": None,
+                "stress_MPa": None,
             }
         )
     return told
@@ -165,7 +164,7 @@ def check_in_space_lines(answer: SpatialCheck) -> list[str]:
     lines = [
         f"{answer.verdict.value.upper()}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  what    {described_in_space(problem)}",
-        f"  because {answer.reason}",
+        *because_lines(answer.evidence),
     ]
     if answer.load_factor is not None:
         at = f", asked at {problem.load:g}" if problem.load else ""
@@ -183,7 +182,7 @@ def check_in_space_lines(answer: SpatialCheck) -> list[str]:
         order = [int(at) for at in np.argsort(-speeds, kind="stable") if speeds[at] > STILL]
         movers = [problem.assembly.blocks[at].name for at in order]
         lines.append(f"  moves   {few(movers)} (the fastest first)")
-    return lines
+    return [*lines, *aside_lines(answer.evidence)]
 
 
 def bracket_in_space_lines(answer: SpatialBracket) -> list[str]:
@@ -192,11 +191,11 @@ def bracket_in_space_lines(answer: SpatialBracket) -> list[str]:
     lines = [
         f"{values_tried(answer, digits=12)}  ({answer.method}, {answer.wall_s:.2g} s)",
         f"  what    {described_in_space(answer.problem)}",
-        f"  because {answer.reason}",
+        *because_lines(answer.evidence),
     ]
     if answer.limit is not None and math.isfinite(answer.limit):
         lines.append(f"  exact   {answer.limit:.9g}{unit} by limit analysis")
-    return lines
+    return [*lines, *aside_lines(answer.evidence)]
 
 
 def described_in_space(problem: SpatialProblem) -> str:

@@ -11,6 +11,7 @@ from blocksim.blocks.assembly import PLANAR, Array
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.common.words import counted
 from blocksim.engines.base import Engine, TellsForces, World
 from blocksim.simulation.motion import Motion, moving_run
 from blocksim.simulation.onset import Onset, onset
@@ -45,7 +46,9 @@ class Held:
         built[:, :PLANAR] = self.simulation.assembly.built[:-1]
         return built
 
-    def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
+    def release(
+        self, until: float | None = None, progress: Progress = silent
+    ) -> Motion[Recording]:
         """Let the blocks go; see `moving_run`."""
         first = self.onset
         return moving_run(
@@ -93,7 +96,7 @@ class Observation:
     verdict: Verdict
     evidence: tuple[Evidence, ...]
     onset: Onset
-    motion: Motion | None
+    motion: Motion[Recording] | None
     joints: tuple[ObservedJoint, ...]
     joints_in_motion: tuple[ObservedJoint, ...]
     rates: Array | None
@@ -231,7 +234,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observ
     )
 
 
-def _asides(held: Held, motion: Motion | None) -> tuple[Evidence, ...]:
+def _asides(held: Held, motion: Motion[Recording] | None) -> tuple[Evidence, ...]:
     """Tell what else there is to know of an observation."""
     simulation = held.simulation
     said: list[Evidence] = []
@@ -253,4 +256,5 @@ def _asides(held: Held, motion: Motion | None) -> tuple[Evidence, ...]:
 
 def reduced_words(by: str, blocks: int, of: int, splits: int) -> str:
     """Tell what a reduction has come to."""
-    return f"reduced by {by} (blocks: {blocks} of {of}, joints split again: {splits})"
+    again = f"; {counted(splits, 'joint')} opened after all" if splits else ""
+    return f"{blocks} instead of {of} blocks were simulated, by {by}{again}"

@@ -55,9 +55,23 @@ def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
     str
         HTML, complete in itself.
     """
-    loader = PackageLoader("blocksim.view.explorer", "")
+    return (
+        environment_of("blocksim.view.explorer")
+        .get_template("page.html")
+        .render(
+            data=_data(results),
+            source=source,
+            style=(HERE / "style.css").read_text(encoding="utf-8"),
+            scripts=[(HERE / name).read_text(encoding="utf-8") for name in SCRIPTS],
+            version=blocksim.__version__,
+        )
+    )
+
+
+def environment_of(package: str) -> Environment:
+    """Return templates of a package, which escape what they are given."""
     environment = Environment(
-        loader=loader,
+        loader=PackageLoader(package, ""),
         autoescape=True,
         undefined=StrictUndefined,
         finalize=printed,
@@ -65,13 +79,7 @@ def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
     )
     # JSON has no infinity; modes keep the order of the paper.
     environment.policies["json.dumps_kwargs"] = {"allow_nan": False}
-    return environment.get_template("page.html").render(
-        data=_data(results),
-        source=source,
-        style=(HERE / "style.css").read_text(encoding="utf-8"),
-        scripts=[(HERE / name).read_text(encoding="utf-8") for name in SCRIPTS],
-        version=blocksim.__version__,
-    )
+    return environment
 
 
 def _data(results: Sequence[Result]) -> dict[str, Any]:
