@@ -219,6 +219,7 @@ def _over_push(problem: Problem) -> Family:
     given = asked(problem, worst)
     said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
     return Family(
+        problem=problem,
         name="push",
         unit="g",
         at=given.with_load,
