@@ -37,6 +37,8 @@ class Family:
 
     Parameters
     ----------
+    problem : Problem
+        Of which it is.
     name, unit : str
     at : callable
         Value to problem.
@@ -55,6 +57,7 @@ class Family:
         Where the parameter is the motion of supports.
     """
 
+    problem: Problem
     name: str
     at: Callable[[float], Problem]
     high: float
@@ -84,6 +87,10 @@ class Family:
             for each in found
             if each.low < self.high and each.high >= self.low
         )
+
+    def of(self, problem: Problem) -> Family:
+        """Return the same family of another problem."""
+        return family_of(problem, self.name)
 
     def exact(self) -> float | None:
         """Return the first value at which limit analysis sees the change.
@@ -131,6 +138,7 @@ def _over_load(problem: Problem) -> Family:
     if not problem.live:
         raise InputError("--over", "load", "another parameter: the structure has no live loads")
     return Family(
+        problem=problem,
         name="load",
         at=problem.with_load,
         high=HIGHEST_FACTOR,
@@ -151,6 +159,7 @@ def _over_tilt(problem: Problem) -> Family:
         )
 
     return Family(
+        problem=problem,
         name="tilt",
         unit="deg",
         at=lambda value: problem.tilted(math.radians(value)),
@@ -161,6 +170,7 @@ def _over_tilt(problem: Problem) -> Family:
 
 def _over_lean(problem: Problem) -> Family:
     return Family(
+        problem=problem,
         name="lean",
         unit="deg",
         at=lambda value: problem.leaning(math.radians(value)),
@@ -170,6 +180,7 @@ def _over_lean(problem: Problem) -> Family:
 
 def _over_mu(problem: Problem) -> Family:
     return Family(
+        problem=problem,
         name="mu",
         at=problem.with_friction,
         high=LARGEST_FRICTION,
@@ -184,6 +195,7 @@ def _over_spread(problem: Problem) -> Family:
 
     spreading = Spreading(problem)
     return Family(
+        problem=problem,
         name="spread",
         unit="m",
         at=spreading.at,
@@ -219,6 +231,7 @@ def _over_push(problem: Problem) -> Family:
 def _over_amplitude(problem: Problem) -> Family:
     shaking = _shaking(problem, "amplitude")
     return Family(
+        problem=problem,
         name="amplitude",
         unit="g",
         at=lambda value: replace(problem, shaking=shaking.with_amplitude(value)),
@@ -230,6 +243,7 @@ def _over_amplitude(problem: Problem) -> Family:
 def _over_duration(problem: Problem) -> Family:
     shaking = _shaking(problem, "duration")
     return Family(
+        problem=problem,
         name="duration",
         unit="s",
         at=lambda value: replace(problem, shaking=shaking.with_duration(value)),
@@ -269,6 +283,7 @@ def _over_parameter(problem: Problem, name: str) -> Family:
     ends = max(low, now / WIDEST), min(high, now * WIDEST)
     scan = Scan(lambda value: problem.but(**{name: value}), ends, now)
     return Family(
+        problem=problem,
         name=name,
         unit=known.unit,
         at=scan.at,
