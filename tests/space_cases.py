@@ -1,4 +1,3 @@
-# pyright: basic
 """Blocks in space for tests: cases whose answers are known, towers, an own programme."""
 
 from __future__ import annotations

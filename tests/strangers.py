@@ -1,4 +1,3 @@
-# pyright: basic, reportPrivateImportUsage=false, reportArgumentType=false
 """Files and options that nobody in his right mind would give: hypothesis strategies.
 
 Each file is a good one of its format in which something was changed. Questions are small, so

@@ -1,4 +1,3 @@
-# pyright: basic
 """Every study runs, and its headline numbers hold."""
 
 from __future__ import annotations

@@ -1,4 +1,3 @@
-# pyright: basic
 """Drawings as they are: lines and arcs, odd layers, gaps, mortar, references, clones."""
 
 from __future__ import annotations

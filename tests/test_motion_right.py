@@ -1,4 +1,3 @@
-# pyright: basic
 """How right a motion by `direct` is, at its usual step and finer.
 
 Truth: blocks that rock from impact to impact (`rocking`), integrated to 1e-10.

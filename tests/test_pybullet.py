@@ -1,4 +1,3 @@
-# pyright: basic
 """The pybullet engine: both sides of the least thickness, what cannot matter, what it says.
 
 Held to limit analysis, and to invariance: where in Bullet's space the arch stands and how

@@ -1,4 +1,3 @@
-# pyright: basic
 """Drawings and files of other programs: read as structures, or refused in one line."""
 
 from __future__ import annotations

@@ -1,4 +1,3 @@
-# pyright: basic
 """Ground that shakes, held against what is known of blocks that rock.
 
 Truth: Housner's equation of a rocking block, integrated here by scipy; the corpus (Makris and

@@ -1,4 +1,3 @@
-# pyright: basic
 """Blocks in space that move, held to known cases, closed forms, conservation and the plane."""
 
 from __future__ import annotations
