@@ -76,4 +76,4 @@ def simulate(
         )
         return seen.recording
     held = hold(problem, engine, settings=given.settings, progress=given.progress)
-    return held.release(duration, given.progress).recording
+    return held.record(duration, given.progress)

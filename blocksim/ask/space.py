@@ -212,6 +212,9 @@ def _engine(given: Taken) -> Engine:
     engine = engine_in_space("direct" if named == "auto" else named)
     require(given.reduce is None, "reduce", given.reduce, "left out in space")
     require_settings(engine, given.settings)
+    accuracy = given.settings.get("accuracy")
+    allowed = "left out in space: there settings.step says how fine a motion is"
+    require(accuracy is None, "settings.accuracy", accuracy, allowed)
     return engine
 
 
