@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
+from blocksim.ask.closed import closing_of_value
 from blocksim.ask.ends import (
     Ask,
     Change,
@@ -358,6 +359,7 @@ def _of_family(
     static = probe.is_planar and probe.shaking is None
     exact = family.exact() if static else None
     remark = family.remark() if static else ""
+    closing = closing_of_value(family) if static else ()
     rises = family.stands == "high"
 
     def by_limit(start: float, within: Within, rises: bool) -> Search:  # noqa: ARG001
@@ -381,7 +383,7 @@ def _of_family(
         reduced = reduces(chosen, given.reduce, probe)
         ask = _asking(family, get_engine(chosen), given, (low, high), merged=reduced)
         found = ask(start, around(family, start) if known else (low, high), rises)
-    evidence = (Evidence("search", found.reason), *aside("limit analysis", remark))
+    evidence = (Evidence("search", found.reason), *aside("limit analysis", remark), *closing)
     most = len(probe.assembly.blocks)
     if reduced and found.blocks is not None and found.blocks < most:
         from blocksim.simulation.merging import Merging

@@ -9,12 +9,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Unpack, overload
 
 from blocksim.ask.carried import carried_of
+from blocksim.ask.closed import closing_of_verdict
 from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
 from blocksim.ask.undecided import undecided_words
 from blocksim.blocks.assembly import Array, displacement
-from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
@@ -24,7 +24,7 @@ from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
-from blocksim.limit.crushing import Needed, exists, strength_needed
+from blocksim.limit.crushing import Needed, strength_needed
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import proof_of_rest
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
@@ -318,7 +318,7 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
         answer = Check(
             method=chosen.name,
             verdict=verdict,
-            evidence=(*found, *_closing(problem, verdict is Verdict.STANDS)),
+            evidence=(*found, *closing_of_verdict(problem, stands=verdict is Verdict.STANDS)),
             problem=problem,
             joints=_observed(problem, rates),
             needed=needed,
@@ -328,7 +328,10 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
         return _Found(answer, exists, moved=False, static=static)
     answer, seen = _simulated(problem, None, chosen, given)
     joints = _observed(problem, seen.rates) if planar else answer.joints
-    answer = replace(answer, joints=joints, load_factor=factor)
+    closing = () if exists is None else closing_of_verdict(problem, stands=exists)
+    answer = replace(
+        answer, joints=joints, load_factor=factor, evidence=(*answer.evidence, *closing)
+    )
     return _Found(answer, exists, moved=seen.moved, static=static)
 
 
@@ -433,24 +436,6 @@ def _crushing(needed: Needed | None, strength: float) -> tuple[Verdict, str]:
         said = f"forces of equilibrium exist, and all crush a joint: {least} are needed"
         return Verdict.COLLAPSES, said
     return Verdict.UNDECIDED, f"the strength that is needed is between {least} and {most}"
-
-
-def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
-    """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
-    gaps = closed_gaps(problem.assembly)
-    if not gaps:
-        return ()
-    most = 1000 * max(map(abs, gaps.values()))
-    for sign, words in ((1, "grown"), (-1, "shrunk")):
-        assembly = resized(problem.assembly, sign)
-        if exists(replace(problem, assembly=assembly)) != stands:
-            other = Verdict.COLLAPSES if stands else Verdict.STANDS
-            found = f"the drawing leaves it open: {other} with blocks {words} by what was "
-            return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
-    found = (
-        "the verdict is the same with blocks grown and shrunk by what was closed at joints, "
-    )
-    return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)
 
 
 def proof_words(answer: Check) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 from blocksim.ask.scan import TRIED, Scan, least_friction, standing_at
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION, Shaking
+from blocksim.common.checks import PUSH
 from blocksim.common.errors import InputError
 from blocksim.limit.intervals import Interval, over_factor, over_tilt
 
@@ -36,6 +37,8 @@ class Family:
 
     Parameters
     ----------
+    problem : Problem
+        Of which it is.
     name, unit : str
     at : callable
         Value to problem.
@@ -54,6 +57,7 @@ class Family:
         Where the parameter is the motion of supports.
     """
 
+    problem: Problem
     name: str
     at: Callable[[float], Problem]
     high: float
@@ -83,6 +87,10 @@ class Family:
             for each in found
             if each.low < self.high and each.high >= self.low
         )
+
+    def of(self, problem: Problem) -> Family:
+        """Return the same family of another problem."""
+        return family_of(problem, self.name)
 
     def exact(self) -> float | None:
         """Return the first value at which limit analysis sees the change.
@@ -130,6 +138,7 @@ def _over_load(problem: Problem) -> Family:
     if not problem.live:
         raise InputError("--over", "load", "another parameter: the structure has no live loads")
     return Family(
+        problem=problem,
         name="load",
         at=problem.with_load,
         high=HIGHEST_FACTOR,
@@ -150,6 +159,7 @@ def _over_tilt(problem: Problem) -> Family:
         )
 
     return Family(
+        problem=problem,
         name="tilt",
         unit="deg",
         at=lambda value: problem.tilted(math.radians(value)),
@@ -160,6 +170,7 @@ def _over_tilt(problem: Problem) -> Family:
 
 def _over_lean(problem: Problem) -> Family:
     return Family(
+        problem=problem,
         name="lean",
         unit="deg",
         at=lambda value: problem.leaning(math.radians(value)),
@@ -169,6 +180,7 @@ def _over_lean(problem: Problem) -> Family:
 
 def _over_mu(problem: Problem) -> Family:
     return Family(
+        problem=problem,
         name="mu",
         at=problem.with_friction,
         high=LARGEST_FRICTION,
@@ -183,6 +195,7 @@ def _over_spread(problem: Problem) -> Family:
 
     spreading = Spreading(problem)
     return Family(
+        problem=problem,
         name="spread",
         unit="m",
         at=spreading.at,
@@ -197,9 +210,29 @@ def _until(value: float | None) -> tuple[Interval, ...] | None:
     return None if value is None else (Interval(low=-math.inf, high=value),)
 
 
+def _over_push(problem: Problem) -> Family:
+    # It follows blocks that move.
+    from blocksim.ask.push import asked, borne
+
+    both = borne(problem)
+    worst = min(both, key=lambda way: both[way])
+    given = asked(problem, worst)
+    said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
+    return Family(
+        problem=problem,
+        name="push",
+        unit="g",
+        at=given.with_load,
+        high=PUSH.high,
+        standing=lambda: over_factor(given),
+        remark=lambda: f"; it bears {said}",
+    )
+
+
 def _over_amplitude(problem: Problem) -> Family:
     shaking = _shaking(problem, "amplitude")
     return Family(
+        problem=problem,
         name="amplitude",
         unit="g",
         at=lambda value: replace(problem, shaking=shaking.with_amplitude(value)),
@@ -211,6 +244,7 @@ def _over_amplitude(problem: Problem) -> Family:
 def _over_duration(problem: Problem) -> Family:
     shaking = _shaking(problem, "duration")
     return Family(
+        problem=problem,
         name="duration",
         unit="s",
         at=lambda value: replace(problem, shaking=shaking.with_duration(value)),
@@ -232,6 +266,7 @@ FAMILIES: dict[str, Callable[[Problem], Family]] = {
     "lean": _over_lean,
     "mu": _over_mu,
     "spread": _over_spread,
+    "push": _over_push,
     "amplitude": _over_amplitude,
     "duration": _over_duration,
 }
@@ -249,6 +284,7 @@ def _over_parameter(problem: Problem, name: str) -> Family:
     ends = max(low, now / WIDEST), min(high, now * WIDEST)
     scan = Scan(lambda value: problem.but(**{name: value}), ends, now)
     return Family(
+        problem=problem,
         name=name,
         unit=known.unit,
         at=scan.at,

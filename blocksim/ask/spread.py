@@ -18,6 +18,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines.direct import ENGINE, rule
 from blocksim.engines.moving import DEEP, OnMovingSupports
 from blocksim.engines.stepping import UNSOLVED
+from blocksim.kinds.circular import CircularArch
 from blocksim.limit.bearing import bears
 from blocksim.limit.spreading import Path, follow, lying
 from blocksim.simulation.motion import FRAME
@@ -113,7 +114,11 @@ class Spreading:
     @cached_property
     def problem(self) -> Problem:
         """The problem with its supports' motion."""
-        asked, supports = self.asked, self.asked.assembly.supports
+        asked = self.asked
+        if not asked.moves and isinstance(asked.maker, CircularArch) and asked.maker.in_radii:
+            # On two planes; what moves are supports that are drawn.
+            asked = asked.remade(asked.maker.between_supports())
+        supports = asked.assembly.supports
         allowed = "left out where supports move: blocks are rigid there"
         require(not bears(asked), "fill_passive", "given", "left out where supports move")
         require(asked.strength is None, "strength", "given", allowed)
@@ -157,7 +162,7 @@ class Spreading:
     @property
     def words(self) -> str:
         """Say what happens on the way."""
-        return "".join(f"; {_words(event)}" for event in self.events)
+        return "".join(f"; {happening_words(event)}" for event in self.events)
 
     @property
     def events(self) -> tuple[Happening, ...]:
@@ -309,7 +314,8 @@ def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int
     return low, runs
 
 
-def _words(event: Happening) -> str:
+def happening_words(event: Happening) -> str:
+    """Say what happens, and where."""
     said = ", ".join(f"{joint.a}-{joint.b} {joint.state}" for joint in event.joints)
     return f"at {event.value:.6g} m {_WORDS[event.what]}: {said}"
 

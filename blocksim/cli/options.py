@@ -14,7 +14,15 @@ from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.blocks.shaking import COLUMNS, SHAPES
 from blocksim.cli.arguments import Argument, Option
-from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, RATIO, TILT_DEG, Range, require
+from blocksim.common.checks import (
+    FRICTION_ANGLE,
+    LEAN_DEG,
+    PUSH,
+    RATIO,
+    TILT_DEG,
+    Range,
+    require,
+)
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import json_of
 from blocksim.simulation.simulated import SETTINGS
@@ -357,6 +365,21 @@ class Loading:
             "else what the file says."
         ),
     ] = None
+    push: Annotated[
+        float | None,
+        Option(
+            about="Push sideways in g, over the weight of each block, to the side to which it "
+            "bears less.",
+            range=PUSH,
+        ),
+    ] = None
+    spread: Annotated[
+        float | None,
+        Option(
+            about="How far the supports have moved apart in m, or as `move` in the file says.",
+            range=Range(low=0, high=1000, unit="m"),
+        ),
+    ] = None
     tilt: Annotated[
         float | None,
         Option(
@@ -416,9 +439,10 @@ class Crossed:
     out: Annotated[
         list[Path] | None,
         Option(
-            about="Beside --vehicle, a file to write; repeatable: .csv, load factor and thrust "
+            about="A file to write; repeatable. With --vehicle: .csv, load factor and thrust "
             "at every place; .pdf, .svg, .png, their curve above the worst place; .dxf, the "
-            "drawing at the worst place."
+            "drawing at the worst place. Over push or spread: .csv, .pdf, .svg, .png of the "
+            "push that is borne, or the thrust, as it moves."
         ),
     ] = None
 

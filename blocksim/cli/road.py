@@ -44,7 +44,22 @@ def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
             problem = problem.tilted(math.radians(loading.tilt))
         if given.lean is not None:
             problem = problem.leaning(math.radians(given.lean))
-        return replace(problem, shaking=_shaking(problem.shaking, loading))
+        problem = replace(problem, shaking=_shaking(problem.shaking, loading))
+        return _moved(problem, loading)
+
+
+def _moved(problem: Problem, loading: Loading) -> Problem:
+    """Move the supports of a problem apart, and push it sideways, as the options say."""
+    if loading.spread is not None:
+        # What moves supports is loaded where it is asked for.
+        from blocksim.ask.moved import spread_by
+
+        problem = spread_by(problem, loading.spread)
+    if loading.push is not None:
+        from blocksim.ask.push import pushed
+
+        problem = pushed(problem, loading.push)
+    return problem
 
 
 def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:

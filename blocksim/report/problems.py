@@ -27,6 +27,7 @@ FOLLOWS = {
     "amplitude": {"shake"},
     "duration": {"shake"},
     "spread": set[str](),
+    "push": {"load"},
 }
 """What follows from each parameter that any problem may have."""
 BUILT = {
