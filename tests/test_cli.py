@@ -349,7 +349,7 @@ def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
         (
             "direct",
             "sweeps=5",
-            "= 'sweeps': must be one of step, accuracy, still, rest",
+            "= 'sweeps': must be one of step, accuracy, still, rest for direct",
         ),
         ("limit", "step=0.01", "= 'step': must be left out for limit"),
     ],
