@@ -340,13 +340,17 @@ def test_settings_of_an_engine_can_be_given(tmp_path: Path) -> None:
         (
             "pymunk",
             "step",
-            "= 'step': must be name=value, with a number and one of step, sweeps",
+            "= 'step': must be name=value, with a number and one of step, accuracy, sweeps",
         ),
         ("pymunk", "pace=3", "= 'pace=3': must be name=value"),
         ("pymunk", "step=fast", "= 'step=fast': must be name=value"),
         ("pymunk", "step=nan", "= 'step=nan': must be 1e-06 to 0.2"),
         ("pymunk", "sweeps=2.5", "= 'sweeps=2.5': must be a whole number from 1 to 1e+07"),
-        ("direct", "sweeps=5", "= 'sweeps': must be one of step, still, rest for direct"),
+        (
+            "direct",
+            "sweeps=5",
+            "= 'sweeps': must be one of step, accuracy, still, rest for direct",
+        ),
         ("limit", "step=0.01", "= 'step': must be left out for limit"),
     ],
 )
