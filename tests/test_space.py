@@ -100,7 +100,7 @@ def test_a_load_factor_lies_between_those_of_two_pyramids(seed: int, mu: float) 
     way = rotation(seed)[0] * np.array([1, 1, 0.2])
     blocks = tuple(range(len(problem.assembly.blocks)))
     problem = replace(problem, live=(Load(force=way, blocks=blocks, per_weight=True),))
-    factor = largest_load(problem).factor
+    factor = largest_load(problem).load_factor
     low, high = enclosed(problem)
     if math.isnan(low) or math.isnan(high):
         assert factor is None or math.isinf(factor) or math.isnan(low)
@@ -438,7 +438,7 @@ def test_prisms_have_the_same_load_factor_in_the_plane_and_in_space(name: str) -
     (scene, *_) = scenes(name)
     problem = blocksim.structure_of(scene)
     plane = blocksim.bracket(problem, over="load", method="limit").limit
-    assert largest_load(extruded(problem)).factor == pytest.approx(plane, rel=1e-8)
+    assert largest_load(extruded(problem)).load_factor == pytest.approx(plane, rel=1e-8)
 
 
 @pytest.mark.parametrize("lean", [5.0, 20.0])

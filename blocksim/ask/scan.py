@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import InputError
 from blocksim.common.later import Library
 from blocksim.limit import equilibrium
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 else:
     optimize = Library("scipy.optimize")
 
+At = Callable[[float], Problem | SpatialProblem]
+"""Value to problem."""
 ENOUGH = 1e-9
 """Lack of force at which limit analysis still calls blocks at rest [mean weights]."""
 NEAR = 1e-6
@@ -50,7 +52,10 @@ class Scan:
     """
 
     def __init__(
-        self, at: Callable[[float], Problem], ends: tuple[float, float], now: float
+        self,
+        at: At,
+        ends: tuple[float, float],
+        now: float,
     ) -> None:
         self.at = lru_cache(maxsize=2 * TRIED)(at)
         self.values = self._built(np.geomspace(*ends, TRIED).tolist(), now)
@@ -100,11 +105,11 @@ class Scan:
         return f"; {said}, as far as {tried} tell"
 
 
-def least_friction(problem: Problem, most: float) -> tuple[Interval, ...]:
+def least_friction(problem: Problem | SpatialProblem, most: float) -> tuple[Interval, ...]:
     """Find the friction from which on forces of equilibrium exist, up to a bound."""
 
-    def at(mu: float) -> Problem:
-        return replace(problem, mu=mu)
+    def at(mu: float) -> Problem | SpatialProblem:
+        return problem.with_friction(mu)
 
     if equilibrium(at(most)).margin < -ENOUGH:
         return ()
@@ -113,7 +118,7 @@ def least_friction(problem: Problem, most: float) -> tuple[Interval, ...]:
     return (Interval(low=low, high=math.inf),)
 
 
-def root(at: Callable[[float], Problem], low: float, high: float, *, rises: bool) -> float:
+def root(at: At, low: float, high: float, *, rises: bool) -> float:
     """Find where the margin of equilibrium vanishes between two values, one of which stands.
 
     Parameters

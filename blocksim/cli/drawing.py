@@ -12,7 +12,6 @@ from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import Given, Loading, named_options
 from blocksim.cli.output import progress, save_picture, say
 from blocksim.cli.question import question
-from blocksim.cli.space import draw_in_space
 from blocksim.cli.subject import anything_asked, is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
@@ -38,7 +37,7 @@ def write_still(
     if asked is None or (not asked.lean and asked.has_thickness):
         problem = anything_asked(scene, given, loading, thick=True)
         if isinstance(problem, SpatialProblem):
-            draw_in_space(out, kind, problem, method, height)
+            _write_perspective(out, kind, problem, method, height)
         else:
             _write_sheet(out, kind, problem, method, height)
         return
@@ -82,3 +81,16 @@ def _write_sheet(
         say(f"wrote {out}")
         return
     save_picture(sheet_figure(sheet), out, kind, height)
+
+
+def _write_perspective(
+    out: Path, kind: str, problem: SpatialProblem, method: str | None, height: int | None
+) -> None:
+    """Draw a problem in space, with its answer."""
+    allowed = "a .png, .svg or .pdf: it is drawn in perspective"
+    require(kind != "dxf", "--out", str(out), allowed)
+    from blocksim.view.solidfigure import solid_figure
+
+    with named_options(), progress() as report:
+        answer = check(problem, method=method or "auto", progress=report)
+    save_picture(solid_figure(answer), out, kind, height)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -17,11 +18,9 @@ from blocksim.blocks.space.parting import (
     slip_in_space,
 )
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import renderer
-from blocksim.engines import ENGINES, get_engine
 from blocksim.engines.base import FRICTION_CAP, Engine, Settings, World, trusted
 from blocksim.limit.space import can_rest
 from blocksim.simulation.motion import (
@@ -30,21 +29,21 @@ from blocksim.simulation.motion import (
     MOVED,
     QUIET,
     SPARSE,
+    Motion,
     distrust,
     hardly_move,
     is_early,
     verdict_of,
     words_of,
 )
+from blocksim.simulation.observation import Observation
 from blocksim.simulation.onset import FIRST_SWEEPS, GROWTH, PROBE, STICKS, WORK, Onset
 from blocksim.simulation.recorded import Recorded
-from blocksim.simulation.simulated import BY_RULE, Overrides, setting_of
-from blocksim.simulation.verdict import Evidence, Verdict
+from blocksim.simulation.simulated import BY_RULE, Overrides, given_words, setting_of
+from blocksim.simulation.verdict import Evidence, Verdict, aside
 
 SURE = 1e-4
 """Residual over the accelerations at which blocks surely move."""
-LENGTH = "L"
-"""What the unit of length is called."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -89,40 +88,92 @@ class SpatialRecording(Recorded[SpatialProblem]):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SpatialObservation:
-    """What an engine showed of one problem in space.
+class HeldInSpace:
+    """Blocks in space in an engine after the onset test; see `observation.Held`.
 
     Parameters
     ----------
-    verdict : Verdict
-        Undecided unless onset test and moving run agree, or only the first was asked for.
-    evidence : tuple of Evidence
-    rates : (blocks, 6) float or None
-        Velocities in proportion to those with which a collapse starts; None otherwise.
-    recording : SpatialRecording or None
-        None where the blocks were not let go.
+    problem : SpatialProblem
+    engine : Engine
+    settings : Settings
+    given : mapping of str to float
+        Settings that do not follow the engine's rule.
+    world : World
+    onset : Onset
+    rates : (blocks, 6) float
+        Accelerations the onset test found [g], rotations in [g/size].
     """
 
-    verdict: Verdict
-    evidence: tuple[Evidence, ...]
-    rates: Array | None
-    recording: SpatialRecording | None
+    problem: SpatialProblem
+    engine: Engine
+    settings: Settings
+    given: Overrides
+    world: World
+    onset: Onset
+    rates: Array
+    splits: ClassVar[int] = 0
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks the engine was given: all."""
+        return len(self.problem.assembly.blocks)
+
+    def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
+        """Let the blocks go, until a time or until all lie still; see `motion.moving_run`."""
+        stands = self.onset.verdict is Verdict.STANDS
+        end = (QUIET if stands else LONGEST) if until is None else until
+        return _released(self, end, whole=until is not None, progress=progress)
+
+    def concluded(self, *, moving: bool, progress: Progress = silent) -> Observation:
+        """Do the moving run if it is asked for, and tell what all of it shows."""
+        verdict, motion = self.onset.verdict, None
+        evidence = (Evidence("onset test", self.onset.reason),)
+        if moving and verdict is not Verdict.UNDECIDED:
+            motion = self.release(progress=progress)
+            evidence += (Evidence("moving run", motion.reason),)
+            if motion.verdict is not verdict:
+                verdict = Verdict.UNDECIDED
+        return Observation(
+            verdict=verdict,
+            evidence=evidence + aside("settings", given_words(self.given)),
+            onset=self.onset,
+            motion=motion,
+            joints=(),
+            joints_in_motion=(),
+            rates=self.rates if verdict is Verdict.COLLAPSES else None,
+            blocks=self.blocks,
+            splits=0,
+        )
 
 
-def engine_in_space(name: str | Engine) -> Engine:
-    """Return an engine that moves blocks in space.
+def hold_in_space(
+    problem: SpatialProblem,
+    engine: Engine,
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> HeldInSpace:
+    """Put a problem into an engine, and do the onset test.
 
-    Raises
-    ------
-    InputError
-        If it does not.
+    Parameters
+    ----------
+    problem : SpatialProblem
+    engine : Engine
+        One that moves blocks in space.
+    settings : mapping of str to float
+        Given instead of what the engine's rule says.
+    progress : Progress, optional
     """
-    found = get_engine(name)
-    if found.build_in_space is None:
-        able = [each for each in ENGINES if ENGINES[each].build_in_space is not None]
-        allowed = f"one of auto, limit, {', '.join(able)}: {found.name} moves none in space"
-        raise InputError("method", found.name, allowed)
-    return found
+    chosen, world = _begun(problem, engine, settings)
+    first, rates = _onset(problem, world, engine, chosen, progress)
+    return HeldInSpace(
+        problem=problem,
+        engine=engine,
+        settings=chosen,
+        given=settings,
+        world=world,
+        onset=first,
+        rates=rates,
+    )
 
 
 def observe_in_space(
@@ -132,64 +183,10 @@ def observe_in_space(
     moving: bool = True,
     settings: Overrides = BY_RULE,
     progress: Progress = silent,
-) -> SpatialObservation:
-    """Put a problem into an engine: onset test, then, if asked for, the moving run.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    engine : Engine
-        One that moves blocks in space; see `engine_in_space`.
-    moving : bool
-        Let the blocks go after the onset test, unless that is undecided.
-    settings : mapping of str to float
-        Given instead of what the engine's rule says.
-    progress : Progress, optional
-    """
-    chosen, world = _begun(problem, engine, settings)
-    first, rates = _onset(problem, world, engine, chosen, progress)
-    verdict, recording = first.verdict, None
-    evidence = (Evidence("onset test", first.reason),)
-    if moving and verdict is not Verdict.UNDECIDED:
-        until = QUIET if verdict is Verdict.STANDS else LONGEST
-        recording, seen, said = _released(
-            problem, world, engine, chosen, until=until, whole=False, progress=progress
-        )
-        evidence += (Evidence("moving run", said),)
-        verdict = verdict if seen is verdict else Verdict.UNDECIDED
-    collapses = verdict is Verdict.COLLAPSES
-    return SpatialObservation(
-        verdict=verdict,
-        evidence=evidence,
-        rates=rates if collapses else None,
-        recording=recording,
-    )
-
-
-def simulate_in_space(
-    problem: SpatialProblem,
-    engine: Engine,
-    *,
-    until: float,
-    settings: Overrides = BY_RULE,
-    progress: Progress = silent,
-) -> SpatialRecording:
-    """Let blocks in space go and record them until a time, or until all lie still.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    engine : Engine
-    until : float
-        [sqrt(size/g)]
-    settings : mapping of str to float
-    progress : Progress, optional
-    """
-    chosen, world = _begun(problem, engine, settings)
-    world.hold(chosen.hold_sweeps)
-    return _released(
-        problem, world, engine, chosen, until=until, whole=True, progress=progress
-    )[0]
+) -> Observation:
+    """Do the onset test, then, if asked for, the moving run; see `hold_in_space`."""
+    held = hold_in_space(problem, engine, settings, progress)
+    return held.concluded(moving=moving, progress=progress)
 
 
 def _begun(problem: SpatialProblem, engine: Engine, given: Overrides) -> tuple[Settings, World]:
@@ -258,17 +255,9 @@ def _driven(problem: SpatialProblem, rates: Array) -> bool:
     return float((problem.pull() * rates).sum()) > WORK * moving
 
 
-def _released(
-    problem: SpatialProblem,
-    world: World,
-    engine: Engine,
-    settings: Settings,
-    *,
-    until: float,
-    whole: bool,
-    progress: Progress,
-) -> tuple[SpatialRecording, Verdict, str]:
+def _released(held: HeldInSpace, until: float, *, whole: bool, progress: Progress) -> Motion:
     """Let blocks go; until they are seen to stand or fall, or as long as something moves."""
+    problem, world, settings = held.problem, held.world, held.settings
     step = settings.step
     moved_by = partial(displacement_in_space, assembly=problem.assembly)
     stride, taken = max(1, round(FRAME / step)), 0
@@ -287,17 +276,19 @@ def _released(
         progress(min(1.0, times[-1] / until), "moving run")
     quality = world.quality()
     verdict = verdict_of(times, moved, settings.rest)
-    words = words_of(verdict, times, moved, 0.0, LENGTH)
+    words = words_of(verdict, times, moved, 0.0, problem.length_name)
     if not trusted(world, settings):
         verdict = Verdict.UNDECIDED
-        words = "released, " + distrust(quality, settings, LENGTH)
+        words = "released, " + distrust(quality, settings, problem.length_name)
     recording = SpatialRecording(
         problem=problem,
-        engine=engine.name,
-        engine_version=engine.version,
+        engine=held.engine.name,
+        engine_version=held.engine.version,
         settings=settings,
         times=np.array(times),
         poses=np.array(poses),
         quality=quality,
     )
-    return recording, verdict, words
+    # What is asked of the motion of a collapse in the plane is not asked in space.
+    own = cast("Any", recording)
+    return Motion(verdict=verdict, reason=words, overlap=0.0, recording=own)

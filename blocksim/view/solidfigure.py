@@ -19,18 +19,19 @@ from blocksim.view.solidscene import Camera, blocks_of, moving_box, supports_of
 from blocksim.view.style import FONT, INK, PAPER, QUIET, VERDICTS
 
 if TYPE_CHECKING:
-    from blocksim.ask.space import SpatialCheck
+    from blocksim.ask.check import Check
+    from blocksim.blocks.space.problem import SpatialProblem
 
 WAY = 0.15
 """How far the mechanism is drawn: its largest way in units of the size."""
 
 
-def solid_figure(answer: SpatialCheck) -> Figure:
+def solid_figure(answer: Check[SpatialProblem]) -> Figure:
     """Draw blocks in space; of what falls, moved as its collapse begins.
 
     Parameters
     ----------
-    answer : SpatialCheck
+    answer : Check
 
     Returns
     -------
@@ -47,10 +48,11 @@ def solid_figure(answer: SpatialCheck) -> Figure:
         return _figure(answer, *Camera(low, high).painted(pieces))
 
 
-def _marks(answer: SpatialCheck) -> dict[int, list[tuple[Array, Array, str]]]:
+def _marks(answer: Check[SpatialProblem]) -> dict[int, list[tuple[Array, Array, str]]]:
     """Return joints that take part by block, each with its normal out of it and a colour."""
     told: dict[int, list[tuple[Array, Array, str]]] = {}
-    for joint, state in zip(answer.problem.assembly.joints, answer.joints, strict=True):
+    for joint, seen in zip(answer.problem.assembly.joints, answer.joints, strict=True):
+        state = seen.state
         if state is JointState.CLOSED or len(joint.points) < 3:
             continue
         tone = words_of(state, is_arch=False)[1]
@@ -59,7 +61,7 @@ def _marks(answer: SpatialCheck) -> dict[int, list[tuple[Array, Array, str]]]:
     return told
 
 
-def _figure(answer: SpatialCheck, polygons: list[Array], fills: list[Array]) -> Figure:
+def _figure(answer: Check[SpatialProblem], polygons: list[Array], fills: list[Array]) -> Figure:
     """Put polygons, title and legend on paper."""
     figure = Figure(figsize=(8, 6), facecolor=PAPER)
     axes = figure.add_axes((0.03, 0.09, 0.94, 0.8))
@@ -76,7 +78,7 @@ def _figure(answer: SpatialCheck, polygons: list[Array], fills: list[Array]) -> 
     )  # fmt: skip
     words = f"{problem.title or 'blocks in space'}, {len(problem.assembly.blocks)} blocks, "
     figure.text(0.04, 0.905, literal(f"{words}mu {problem.mu:g}"), color=QUIET, fontsize=9)
-    states = {state_of_any(each) for each in answer.joints} - {JointState.CLOSED}
+    states = {state_of_any(each.state) for each in answer.joints} - {JointState.CLOSED}
     told = [words_of(each, is_arch=False) for each in sorted(states)]
     if told:
         figure.legend(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.joints import JointState, ObservedJoint
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.limit.space.contacts import Contacts, solved
 
@@ -64,21 +64,25 @@ class SpatialEquilibrium:
     mechanism: Array | None = None
     gap: float = math.inf
 
+    @property
+    def proof(self) -> None:
+        """None: what is checked here is checked in floating-point numbers."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LargestLoad:
+class SpatialCollapse:
     """The largest factor on live loads at which forces of equilibrium exist.
 
     Parameters
     ----------
-    factor : float or None
+    load_factor : float or None
         inf where no load is too much, None where there is no equilibrium at any.
     gap : float
         By how much, of the factor, forces and mechanism disagree.
     mechanism : (blocks, 6) float or None
     """
 
-    factor: float | None
+    load_factor: float | None
     gap: float
     mechanism: Array | None = None
 
@@ -126,7 +130,7 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
     )
 
 
-def largest_load(problem: SpatialProblem) -> LargestLoad:
+def largest_load(problem: SpatialProblem) -> SpatialCollapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
     Parameters
@@ -144,12 +148,12 @@ def largest_load(problem: SpatialProblem) -> LargestLoad:
     unit = float(np.abs(live / contacts.rows).max()) or 1.0
     found = contacts.most(pull, live / unit)
     if math.isinf(found.value):
-        return LargestLoad(factor=None if found.value < 0 else math.inf, gap=0.0)
+        return SpatialCollapse(load_factor=None if found.value < 0 else math.inf, gap=0.0)
     work = float(found.rates @ live) / unit
     bound = -float(found.rates @ pull) / work if work > 0 else math.inf
     gap = abs(bound - found.value) / max(abs(found.value), 1e-300)
-    return LargestLoad(
-        factor=found.value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
+    return SpatialCollapse(
+        load_factor=found.value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
     )
 
 
@@ -206,7 +210,7 @@ def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
     return each / largest if largest > 0 else each
 
 
-def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...]:
+def observed_joints(problem: SpatialProblem, rates: Array) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does in a motion of the blocks.
 
     Of a hinge some points stay together and others part, or all but one edge does. Sliding
@@ -226,7 +230,10 @@ def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...
     slides = together & (slip > SEEN)
     ends = np.cumsum([len(each.points) for each in problem.assembly.joints])[:-1]
     pairs = zip(np.split(together, ends), np.split(slides, ends), strict=True)
-    return tuple(STATES[_some_or_all(one), bool(two.any())] for one, two in pairs)
+    return tuple(
+        ObservedJoint(angle=math.nan, state=STATES[_some_or_all(one), bool(two.any())])
+        for one, two in pairs
+    )
 
 
 def _some_or_all(together: NDArray[np.bool_]) -> bool | None:

@@ -1,0 +1,114 @@
+"""What limit analysis says of a problem, in words, and what joints do in a motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from blocksim.blocks.assembly import Array, displacement
+from blocksim.blocks.closing import closed_gaps, resized
+from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.limit import Equilibrium, equilibrium
+from blocksim.simulation.verdict import Evidence, Verdict
+
+if TYPE_CHECKING:
+    from blocksim.limit.space import SpatialEquilibrium
+
+VERDICTS = {True: Verdict.STANDS, False: Verdict.COLLAPSES, None: Verdict.UNDECIDED}
+"""By whether forces of equilibrium exist."""
+
+
+def observed(
+    problem: Problem | SpatialProblem, rates: Array | None
+) -> tuple[ObservedJoint, ...]:
+    """Tell what each joint does as blocks begin to move at some rates; closed at none."""
+    if rates is None:
+        return closed_joints(problem.assembly.joint_angles)
+    if isinstance(problem, SpatialProblem):
+        from blocksim.limit.space import observed_joints
+
+        return observed_joints(problem, unit(rates, problem))
+    from blocksim.simulation.onset import PROBE
+
+    assembly = problem.assembly
+    return classify(assembly, assembly.built[:-1] + PROBE * unit(rates, problem)[:, :3])
+
+
+def unit(rates: Array, problem: Problem | SpatialProblem) -> Array:
+    """Scale rates so that the largest way of a corner is 1."""
+    if isinstance(problem, SpatialProblem):
+        from blocksim.limit.space import unit_rates
+
+        return unit_rates(problem, rates)
+    largest = float(displacement(rates, problem.assembly))
+    return rates / largest if largest > 0 else rates
+
+
+def static_evidence(
+    problem: Problem | SpatialProblem, static: Equilibrium | SpatialEquilibrium
+) -> tuple[Evidence, ...]:
+    """Say what limit analysis found."""
+    if isinstance(problem, Problem) and isinstance(static, Equilibrium):
+        found = Evidence("limit analysis", _words(static))
+        return (found, *_closing(problem, static.exists))
+    assert not isinstance(static, Equilibrium)  # noqa: S101
+    return (Evidence("limit analysis", _words_in_space(static)),)
+
+
+def _words(static: Equilibrium) -> str:
+    if static.exists:
+        return (
+            "forces of equilibrium exist, every contact pressing by "
+            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its "
+            "friction cone, or more"
+        )
+    if math.isinf(static.margin):
+        return "no forces of equilibrium exist, even if contacts could pull"
+    return (
+        "no forces of equilibrium exist: contacts would have to pull by "
+        f"{-static.margin:.3g} of what they carry"
+    )
+
+
+def _words_in_space(static: SpatialEquilibrium) -> str:
+    """Say the same, and how near it was held to."""
+    own = "of the lighter block's share of weight beside it"
+    if static.exists:
+        left = "nothing but rounding" if not static.gap else f"{static.gap:.1g} of a weight"
+        return (
+            f"forces of equilibrium exist, each contact pressing by {static.margin:.3g} {own} "
+            f"more than friction needs; {left} is left over"
+        )
+    if static.exists is None:
+        return (
+            "neither forces nor a motion pass the check: contacts press by "
+            f"{static.margin:.1g} {own} at most, "
+            "which is nearer to the limit than floating-point numbers tell"
+        )
+    if math.isinf(static.margin):
+        return "no forces of equilibrium exist, even if contacts could pull"
+    most = 1 / static.gap if static.gap else math.inf
+    far = "" if math.isinf(most) else f" that are less than {most:.1g} times all weight"
+    return (
+        f"no forces of equilibrium exist{far}: contacts would have to pull by "
+        f"{-static.margin:.3g} {own}"
+    )
+
+
+def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
+    """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
+    gaps = closed_gaps(problem.assembly)
+    if not gaps:
+        return ()
+    most = 1000 * max(map(abs, gaps.values()))
+    for sign, words in ((1, "grown"), (-1, "shrunk")):
+        assembly = resized(problem.assembly, sign)
+        if equilibrium(replace(problem, assembly=assembly)).exists != stands:
+            other = Verdict.COLLAPSES if stands else Verdict.STANDS
+            found = f"the drawing leaves it open: {other} with blocks {words} by what was "
+            return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
+    found = "the same with blocks grown and shrunk by what was closed, "
+    return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)
