@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from blocksim.arch.circular import Arch
     from blocksim.arch.modes import Mode
     from blocksim.ask.bracket import Bracket, bracket
+    from blocksim.ask.bulk import Told, check_many
     from blocksim.ask.check import Check, check
     from blocksim.ask.citing import cite
     from blocksim.ask.options import Options
@@ -111,6 +112,7 @@ __all__ = [
     "SpatialProblem",
     "Stack",
     "Table",
+    "Told",
     "Tower",
     "Verdict",
     "Wall",
@@ -118,6 +120,7 @@ __all__ = [
     "assembly_in_space",
     "bracket",
     "check",
+    "check_many",
     "cite",
     "collapse",
     "count",
@@ -138,6 +141,7 @@ _PLACES = {
     "arch.circular": ("Arch",),
     "arch.modes": ("Mode",),
     "ask.bracket": ("Bracket", "bracket"),
+    "ask.bulk": ("Told", "check_many"),
     "ask.check": ("Check", "check"),
     "ask.citing": ("cite",),
     "ask.options": ("Options",),

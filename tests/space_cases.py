@@ -1,3 +1,4 @@
+# pyright: basic
 """Blocks in space for tests: cases whose answers are known, towers, an own programme."""
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ import numpy as np
 from scipy.optimize import linprog
 
 import blocksim
-from blocksim import Solid, SpatialProblem
+from blocksim import Solid, SpatialProblem, Verdict
+from blocksim.blocks.space.files import problem_in_space
 
 CASES = Path(__file__).parent / "structures" / "space"
 NAMES = sorted(path.stem for path in CASES.glob("*.json"))
@@ -25,6 +27,18 @@ GROUND = [[-9, -9, -1], [9, -9, -1], [-9, 9, -1], [9, 9, -1],
 def case(name: str) -> dict[str, Any]:
     """A case by its name, to be read only."""
     return json.loads((CASES / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def asked(name: str, beside: float) -> list[tuple[SpatialProblem, Verdict]]:
+    """A case with its verdict, or at its load factor less and more by a share."""
+    known = case(name)
+    problem, value = problem_in_space(known["scene"]), known["expected"]["value"]
+    if known["question"] == "stands":
+        return [(problem, Verdict.STANDS if value else Verdict.COLLAPSES)]
+    return [
+        (problem.with_load(value * (1 - beside)), Verdict.STANDS),
+        (problem.with_load(value * (1 + beside)), Verdict.COLLAPSES),
+    ]
 
 
 def box(low: tuple[float, ...], high: tuple[float, ...]) -> list[list[float]]:
@@ -96,5 +110,5 @@ def enclosed(problem: SpatialProblem, sides: int = 64) -> tuple[float, float]:
         right = -problem.fixed_pull.ravel()
         scale = float(assembly.weights.mean())
         done = linprog(cost, A_eq=matrix, b_eq=right / scale * 1.0, bounds=bounds)
-        found.append(float(done.x[-1]) * scale if done.status == 0 else math.nan)
+        found.append(math.nan if done.status or done.x is None else float(done.x[-1]) * scale)
     return found[0], found[1]

@@ -1,3 +1,4 @@
+# pyright: basic
 """Every study runs, and its headline numbers hold."""
 
 from __future__ import annotations
@@ -61,6 +62,16 @@ def test_a_study_takes_a_folder_with_a_slash(
     assert capsys.readouterr().out == f"{tmp_path}/rows True\n"
 
 
+def test_cases_in_space_are_asked_once(tmp_path: Path) -> None:
+    """Two small ones, by limit analysis; what is on disk is not asked again."""
+    for _ in range(2):
+        told = study("space_cases").main(tmp_path, quick=True, method="limit")
+        assert "| limit | 1.0% | 3 | 0 | 0 |" in told
+    with (tmp_path / "space_cases.csv").open(encoding="utf-8") as file:
+        assert len(list(csv.DictReader(file))) == 5
+
+
+@pytest.mark.long
 def test_domes_are_bracketed_and_drawn(tmp_path: Path) -> None:
     """Where it turns a lune of any width carries itself; where it slides it needs more."""
     rows = {
@@ -417,7 +428,7 @@ def test_what_is_thrown_would_be_seen() -> None:
         poses[:, blocks, 1] += (speed * times - times**2 / 2)[:, None]
         # Something has to fall: the lowest sinks into what it stands on.
         poses[:, order[-1], 1] -= sinks * times
-        recording = Simulation.of(problem, "direct").record(times, poses, Quality())
+        recording = Simulation.of(problem, "direct").record(times.tolist(), [*poses], Quality())
         found = module.measured(recording)
         assert found["thrown"] == pytest.approx(thrown, rel=0.02)
         assert found["rise"] == pytest.approx(speed**2 / 2, rel=1e-3)

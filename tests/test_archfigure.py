@@ -99,14 +99,15 @@ def lines(figure: Figure, name: str) -> list[np.ndarray]:
 def test_legend_names_what_is_there_only() -> None:
     """Where it turns only no sliding joint is named; where it slides and turns, both are."""
     assert legend(arch_figure([least(90, math.inf)])) == {
-        "support", "line of thrust, the only one left", "line of friction", "mechanism", "hinge"
+        "support", "line of thrust, the only one left", "line of friction", "mechanism",
+        "hinge intrados", "hinge extrados",
     }  # fmt: skip
     slides = math.radians(110)
     critical = least_thickness(slides, 0.6)
     falls = arch_figure([picture_of_theory(critical, Mode.SRR, slides, 0.6)])
     assert legend(falls) == {
         "support", "line of thrust, the only one left", "line of friction", "mechanism",
-        "hinge", "sliding joint: it opens, too (dilatancy)",
+        "hinge intrados", "hinge extrados", "sliding joint: it opens, too (dilatancy)",
     }  # fmt: skip
     assert any(text.get_text() == "0.5 r" for text in falls.axes[0].texts)
     assert any("continuous arch" in text.get_text() for text in falls.axes[0].texts)

@@ -80,7 +80,7 @@ def test_options_override_the_scenario() -> None:
 
 
 REPEATED = {
-    *("--level", "--group"),
+    *("--layer", "--level", "--group"),
     *("--with", "--point-load", "--patch-load", "--set", "--figure"),
     *("cite --method", "bracket --out"),
 }
@@ -239,6 +239,8 @@ QUESTION = ("check", *ARCH, "--eta", "0.12")
 @pytest.mark.parametrize("asked", [QUESTION, pytest.param(("doctor",), marks=pytest.mark.long)])
 def test_a_reader_that_has_gone_hears_no_verdict(asked: tuple[str, ...]) -> None:
     with subprocess.Popen([*PROGRAM, *asked], stdout=-1, stderr=-1) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
         process.stdout.close()
         assert process.stderr.read() == b""
     assert process.returncode == 141

@@ -1,18 +1,19 @@
 """Load factors of blocks that crush, against a block's closed form and the rigid value."""
 
+import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy import sparse
+from own_bridge import Bridge
+from running import inside
 
 import blocksim
-from blocksim.blocks.road import with_road
 from blocksim.common.errors import InputError
-from blocksim.kinds.circular import CircularArch
-from blocksim.limit.cones import Cones
-
-clarabel: Any = pytest.importorskip("clarabel")
+from blocksim.kinds import KINDS
+from blocksim.limit.crushing import strength_needed
+from blocksim.report.answerwords import check_lines
 
 WIDE, HIGH, DEEP, HEAVY = 0.6, 1.0, 0.5, 20e3
 
@@ -36,20 +37,27 @@ def _pushed(force: tuple[float, float], place: tuple[float, float]) -> blocksim.
     )
 
 
+def _factor(problem: blocksim.Problem, strength: float) -> float:
+    """Load factor of joints of that strength."""
+    found = blocksim.collapse(replace(problem, strength=strength)).load_factor
+    assert found is not None
+    return found
+
+
 @pytest.mark.parametrize("strength", [3e4, 1e5, 1e6, 1e8])
 def test_a_pushed_block_rocks_about_the_middle_of_what_is_crushed(strength: float) -> None:
     """The lever of its weight is half its width less half of W / (strength depth)."""
     weight = HEAVY * WIDE * HIGH * DEEP
     lever = (WIDE - weight / (strength * DEEP)) / 2
-    found = blocksim.collapse(_pushed((1.0, 0.0), (0.0, HIGH)), strength=strength)
-    assert found.load_factor == pytest.approx(weight * lever / HIGH, rel=1e-7)
+    found = _factor(_pushed((1.0, 0.0), (0.0, HIGH)), strength)
+    assert found == pytest.approx(weight * lever / HIGH, rel=1e-7)
 
 
 def test_a_block_pressed_in_its_middle_bears_its_strength() -> None:
     """Strength times area, less its own weight."""
-    found = blocksim.collapse(_pushed((0.0, -1.0), (WIDE / 2, HIGH)), strength=1e6)
+    found = _factor(_pushed((0.0, -1.0), (WIDE / 2, HIGH)), 1e6)
     most = 1e6 * WIDE * DEEP - HEAVY * WIDE * HIGH * DEEP
-    assert found.load_factor == pytest.approx(most, rel=1e-9)
+    assert found == pytest.approx(most, rel=1e-9)
 
 
 def test_factors_grow_with_strength_to_that_of_rigid_blocks() -> None:
@@ -57,59 +65,134 @@ def test_factors_grow_with_strength_to_that_of_rigid_blocks() -> None:
     pushed = _pushed((1.0, 0.0), (0.0, HIGH))
     rigid = blocksim.collapse(pushed).load_factor
     assert rigid is not None
-    factors: list[float] = []
-    for strength in (1e5, 1e6, 1e7):
-        factor = blocksim.collapse(pushed, strength=strength).load_factor
-        assert factor is not None
-        factors.append(rigid - factor)
+    factors = [rigid - _factor(pushed, strength) for strength in (1e5, 1e6, 1e7)]
     assert factors[0] / factors[1] == pytest.approx(10, rel=1e-4)
     assert factors[1] / factors[2] == pytest.approx(10, rel=1e-3)
 
 
-def test_an_arch_crushes_as_second_order_cones_say() -> None:
-    """The same bound on every end of a joint, exactly, by another solver."""
-    arch = CircularArch(span=8.0, rise=3.0, thickness=0.45, friction=0.6, density=22e3)
-    problem = with_road(arch.between_supports().problem(), [(2.0, 2.0, 50e3)])
-    rigid = blocksim.collapse(problem).load_factor
-    found = blocksim.collapse(problem, strength=2e6).load_factor
-    assert rigid is not None
-    assert found is not None
-    assert found < 0.9 * rigid
-    assert found == pytest.approx(_by_cones(problem, 2e6), rel=1e-7)
+BRIDGE = Bridge(span=8.0, rise=3.0, thick=0.45, count=31, fill=0.5, heavy=22.0)
+LOADED = [*BRIDGE.options(), "--point-load", "2.01", "50"]
 
 
-def _by_cones(problem: blocksim.Problem, strength: float) -> float:
-    """Load factor of blocks one metre deep: n^2 <= m of ends m is |(2n, m - 1)| <= m + 1."""
-    cones, count = Cones(problem), Cones(problem).count
-    live = sum((problem.of_load(each) for each in problem.live), np.zeros(cones.shape))
-    load = sparse.csc_array(cones.loads(live)[:, None])
-    balance = sparse.csc_array(sparse.hstack([cones.balance, load]))
-    pressing = -sparse.eye_array(count + 1, format="csc")[:count]
-    rows: list[Any] = [balance, pressing]
-    right = [-cones.loads(problem.with_load(0.0).pull()), np.zeros(count)]
-    kinds = [clarabel.ZeroConeT(balance.shape[0]), clarabel.NonnegativeConeT(count)]
-    ends = np.array([cones.forces(part)[:, :, 0] for part in np.eye(count)])
-    for joint, given in enumerate(problem.assembly.joints):
-        width = float(np.hypot(*(given.outer - given.inner)))
-        crushing = strength * width / problem.unit_force
-        whole = ends[:, joint].sum(axis=1) / crushing
+RATIO = 1.05
+TANGENTS: Any = RATIO ** -np.arange(200.0)
+"""Shares of the strength at which tangents touch."""
+SPARED = 4 * RATIO / (1 + RATIO) ** 2
+
+
+def _tangents(bridge: Bridge, strength: float) -> dict[str, Any]:
+    """Rows that a strength [kPa] adds to `Bridge.factor`: tangents of n^2 / (2 P) at both ends.
+
+    They lie below it, and above that of `SPARED` of the strength.
+    """
+    count, full = 4 * (bridge.count + 1), strength * bridge.thick
+    rows: list[Any] = []
+    for joint in range(bridge.count + 1):
         for end in (0, 1):
-            mine = 2 * ends[:, joint, end] / crushing
-            cone = np.array([-mine, -mine, -2 * whole])
-            rows.append(np.column_stack([cone, np.zeros(3)]))
-            right.append(np.array([1.0, -1.0, 0.0]))
-            kinds.append(clarabel.SecondOrderConeT(3))
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.tol_gap_rel = settings.tol_gap_abs = settings.tol_feas = 1e-10
-    none = sparse.csc_matrix((count + 1, count + 1))
-    matrix = sparse.csc_matrix(sparse.vstack([sparse.csc_array(each) for each in rows]))
-    cost = np.append(np.zeros(count), -1.0)
-    solver = clarabel.DefaultSolver(none, cost, matrix, np.concatenate(right), kinds, settings)
-    return float(solver.solve().x[-1])
+            row = np.zeros((TANGENTS.size, count + 1))
+            row[:, 4 * joint : 4 * joint + 4] = TANGENTS[:, None]
+            row[:, 4 * joint + 2 * end : 4 * joint + 2 * end + 2] -= 1
+            rows.append(row / TANGENTS[:, None])
+    right = np.tile(TANGENTS * full / 2, len(rows))
+    return {"A_ub": np.concatenate(rows), "b_ub": right}
+
+
+def _asked(*options: str) -> dict[str, Any]:
+    done = inside(*options, "--json")
+    assert done.returncode in {0, 1}, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("strength", [0.7, 1.0, 5.0])
+def test_an_arch_crushes_as_an_own_programme_says(strength: float) -> None:
+    """Tangents of the law of strength, in a bridge put together apart, from both sides."""
+    live = 50 * BRIDGE.wheel(2.01)
+    most = BRIDGE.factor(live, **_tangents(BRIDGE, 1e3 * strength))
+    least = BRIDGE.factor(live, **_tangents(BRIDGE, 1e3 * strength * SPARED))
+    assert most - least < 1e-3
+    found = _asked("bracket", *LOADED, "--strength", str(strength), "--over", "load")
+    assert least - 1e-6 < found["limit"] < most + 1e-6
+
+
+def test_the_strength_that_is_needed_is_that_at_which_it_falls() -> None:
+    """Of a load factor, and the load factor of that strength; stresses are at most it."""
+    found = _asked("check", *LOADED, "--load", "0.9", "--strength", "5")
+    needed = found["needed_strength_MPa"]
+    assert found["verdict"] == "stands"
+    assert not found["proved"]
+    stress = [joint["stress_MPa"] for joint in found["joints"]]
+    assert max(stress) == pytest.approx(needed, rel=1e-6)
+    again = _asked("bracket", *LOADED, "--strength", repr(needed), "--over", "load")
+    assert again["limit"] == pytest.approx(0.9, rel=1e-6)
+    less = _asked("check", *LOADED, "--load", "0.9", "--strength", repr(0.999 * needed))
+    assert less["verdict"] == "collapses"
+    assert less["mechanism"] is not None
+
+
+def test_what_crushes_under_its_dead_load_is_told() -> None:
+    done = inside("check", *LOADED, "--strength", "0.05")
+    assert done.returncode == 1
+    assert "all crush a joint" in done.stdout
+    assert "no factor at collapse: at none joints bear what they carry" in done.stdout
+    squeezed = replace(_pushed((0.0, -1.0), (WIDE / 2, HIGH)), strength=1e4)
+    said = "\n".join(check_lines(blocksim.check(squeezed)))
+    assert "factor at collapse -3000: it crushes under its dead load" in said
+
+
+def test_the_thrust_of_joints_that_crush_has_a_smaller_range() -> None:
+    rigid = _asked("check", *BRIDGE.options())
+    found = _asked("check", *BRIDGE.options(), "--strength", "0.5")
+    strong = _asked("check", *BRIDGE.options(), "--strength", "500")
+    ends = [[each[f"thrust_{end}_kN"] for end in ("min", "max")] for each in (rigid, found)]
+    assert ends[0][0] < ends[1][0] < ends[1][1] < ends[0][1]
+    for end, exact in zip(("min", "max"), ends[0], strict=True):
+        assert strong[f"thrust_{end}_kN"] == pytest.approx(exact, rel=1e-3)
+
+
+def test_a_block_bears_evenly_beside_its_edge() -> None:
+    """A block that is pushed stands on a width of which the middle is its reaction's place."""
+    pushed = replace(_pushed((1.0, 0.0), (0.0, HIGH)), strength=1e6, load=100.0)
+    found = blocksim.check(pushed)
+    weight = HEAVY * WIDE * HIGH * DEEP
+    arm = WIDE / 2 - 100.0 * HIGH / weight
+    needed = weight / (2 * arm * DEEP)
+    assert found.needed is not None
+    assert found.needed.low <= needed <= found.needed.high * (1 + 1e-12)
+    assert found.needed.high == pytest.approx(needed, rel=1e-7)
+    assert found.carried is not None
+    assert found.carried.resultants is not None
+    assert found.carried.resultants.stress == pytest.approx([needed], rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_every_kind_needs_what_a_smaller_strength_lacks(kind: str) -> None:
+    """Whatever is built: a little more than is needed stands, a little less crushes."""
+    problem = KINDS[kind](friction=0.7, density=2e4).problem()
+    needed = strength_needed(problem)
+    assert needed is not None
+    assert needed.low == pytest.approx(needed.high, rel=1e-6)
+    for share, stands in ((1.001, True), (0.999, False)):
+        found = blocksim.check(replace(problem, strength=share * needed.high))
+        assert (found.verdict.value == "stands") is stands
 
 
 def test_a_strength_that_is_none_is_refused() -> None:
     """In one line that names it."""
     with pytest.raises(InputError, match="strength"):
-        blocksim.collapse(_pushed((1.0, 0.0), (0.0, HIGH)), strength=-1.0)
+        _factor(_pushed((1.0, 0.0), (0.0, HIGH)), -1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (("--method", "pymunk"), "--method"),
+        (("--method", "theory"), "--method"),
+        (("--must-rest",), "--must-rest"),
+        (("--strength", "0"), "--strength"),
+    ],
+)
+def test_what_knows_no_strength_refuses_it(options: tuple[str, ...], named: str) -> None:
+    done = inside("check", *BRIDGE.options(), "--strength", "5", *options)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"blocksim: {named}")
+    assert done.stderr.count("\n") == 1

@@ -68,7 +68,7 @@ def arrows(figure: Figure, gid: str) -> list[tuple[np.ndarray, np.ndarray]]:
 
 def hinges(lines: list[Line2D]) -> np.ndarray:
     """Where hinges are marked, in order."""
-    found = [each.get_xydata()[0] for each in lines if each.get_label() == "hinge"]
+    found = [each.get_xydata()[0] for each in lines if "hinge" in each.get_label()]
     return np.array(sorted(found, key=tuple))
 
 

@@ -1,3 +1,4 @@
+# pyright: basic
 """The pybullet engine: both sides of the least thickness, what cannot matter, what it says.
 
 Held to limit analysis, and to invariance: where in Bullet's space the arch stands and how
@@ -19,7 +20,7 @@ from structure_cases import case, scenes
 
 from analysis import rubble
 from blocksim.arch import limit
-from blocksim.arch.circular import Arch
+from blocksim.arch.circular import Arch, Weight
 from blocksim.arch.modes import Mode
 from blocksim.arch.observed import observed_mode
 from blocksim.ask.check import check
@@ -42,7 +43,7 @@ from blocksim.engines.boxes import Frame, unwound
 from blocksim.engines.bulletspace import State
 from blocksim.engines.pybullet import ENGINE, Bodies
 
-ARCHES = [
+ARCHES: list[tuple[float, float, int, Weight, Mode]] = [
     (90, 0.7, 9, "centreline", Mode.RRR),
     (90, 0.35, 10, "centreline", Mode.SRR),
     (145, 1.6, 17, "centreline", Mode.RRS),
@@ -67,7 +68,7 @@ def test_both_sides_of_the_least_thickness(
     angle: float,
     mu: float,
     count: int,
-    weight: str,
+    weight: Weight,
     mode: Mode,
     ratio: float,
     expected: Verdict,
@@ -78,12 +79,13 @@ def test_both_sides_of_the_least_thickness(
         CircularArch.of(arch_at(ratio, angle, mu, count, weight), mu).problem(), "pybullet"
     )
     assert seen.verdict is expected
+    assert seen.motion is not None
     assert seen.motion.verdict is expected
 
 
 @pytest.mark.parametrize(("angle", "mu", "count", "weight", "mode"), ARCHES)
 def test_mode_just_below_the_least_thickness(
-    angle: float, mu: float, count: int, weight: str, mode: Mode
+    angle: float, mu: float, count: int, weight: Weight, mode: Mode
 ) -> None:
     arch = arch_at(0.995, angle, mu, count, weight)
     seen = observe(CircularArch.of(arch, mu).problem(), "pybullet", moving=False)
@@ -107,7 +109,7 @@ def test_where_the_arch_stands_does_not_matter(
     angle: float,
     mu: float,
     count: int,
-    weight: str,
+    weight: Weight,
     mode: Mode,
     ratio: float,
     expected: Verdict,
@@ -365,7 +367,7 @@ def test_contacts_are_kept_where_an_arch_begins_to_turn() -> None:
 def test_a_block_on_its_head_lies_still() -> None:
     """Turned by half a turn it may be seen as turned either way, and would rock in numbers."""
     world = Bodies(CircularArch.of(THIN, 0.6).problem(), ENGINE.rule(THIN.assembly()))
-    body, place = world._bodies[0], world._built[0].place
+    body, place = world._bodies[0], world._parts.states[0].place
     poses: list[Array] = []
     for angle in [*np.arange(0.0, math.pi, 0.1), *[math.pi + 1e-4, math.pi - 1e-4] * 30]:
         turn = Rotation.from_rotvec([0.0, 0.0, angle]).as_quat().tolist()

@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from dataclasses import replace
 from html.parser import HTMLParser
-from itertools import combinations, pairwise
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,6 @@ from blocksim.report.page import report_page, summary
 from blocksim.report.tables import write_results
 from blocksim.simulation.verdict import Verdict
 from blocksim.studies.agreement import numbered
-from blocksim.view import style
 
 MAP = (
     b'<?xml version="1.0"?><svg width="9pt" viewBox="0 0 90 60"><style>*{fill:red}</style>'
@@ -234,37 +233,3 @@ def luminance(name: str) -> float:
 def contrast(one: str, other: str) -> float:
     low, high = sorted((luminance(one), luminance(other)))
     return (high + 0.05) / (low + 0.05)
-
-
-def seen(name: str, kind: str) -> np.ndarray:
-    """A colour as a dichromat sees it (Vienot, Brettel and Mollon 1999), linear RGB."""
-    shares = np.array([int(name[place : place + 2], 16) / 255 for place in (1, 3, 5)])
-    linear = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
-    to_cones = np.array(
-        [
-            [17.8824, 43.5161, 4.11935],
-            [3.45565, 27.1554, 3.86714],
-            [0.0299566, 0.184309, 1.46709],
-        ]
-    )
-    missing = {
-        "protan": [[0, 2.02344, -2.52581], [0, 1, 0], [0, 0, 1]],
-        "deutan": [[1, 0, 0], [0.494207, 0, 1.24827], [0, 0, 1]],
-    }[kind]
-    return np.linalg.inv(to_cones) @ np.array(missing) @ to_cones @ linear
-
-
-@pytest.mark.parametrize("kind", ["protan", "deutan"])
-def test_colours_differ_for_colour_blind_readers(kind: str) -> None:
-    """Modes have shapes as well; joints and verdicts must differ in what is seen."""
-    for tones in (list(style.JOINTS.values()), list(style.VERDICTS.values())):
-        for one, other in combinations(tones, 2):
-            assert np.linalg.norm(seen(one, kind) - seen(other, kind)) > 0.08
-
-
-def test_verdicts_can_be_read_on_paper() -> None:
-    for tone in style.VERDICTS.values():
-        assert contrast(tone, "#ffffff") > 4.5
-        assert contrast(tone, style.PAPER) > 4.5
-    for look in style.MODES.values():
-        assert contrast("#1c1c1c", look.tint) > 7

@@ -1,3 +1,4 @@
+# pyright: basic
 """Blocks in space that move, held to known cases, closed forms, conservation and the plane."""
 
 from __future__ import annotations
@@ -11,10 +12,10 @@ import pytest
 from PIL import Image
 from running import inside
 from scipy.integrate import solve_ivp
-from space_cases import GROUND, NAMES, box, case, problem_of
+from space_cases import GROUND, NAMES, asked, box, case, problem_of
 
 import blocksim
-from blocksim import InputError, Solid, SpatialProblem, Verdict
+from blocksim import InputError, Solid, SpatialProblem
 from blocksim.blocks.space.extruded import extruded
 from blocksim.blocks.space.files import problem_in_space
 from blocksim.engines import get_engine
@@ -24,18 +25,6 @@ from blocksim.simulation.space import observe_in_space
 from blocksim.view.solidfilm import SolidFilm
 
 DIRECT = get_engine("direct")
-
-
-def asked(name: str, beside: float) -> list[tuple[SpatialProblem, Verdict]]:
-    """A case with its verdict, or at its load factor less and more by a share."""
-    known = case(name)
-    problem, value = problem_in_space(known["scene"]), known["expected"]["value"]
-    if known["question"] == "stands":
-        return [(problem, Verdict.STANDS if value else Verdict.COLLAPSES)]
-    return [
-        (problem.with_load(value * (1 - beside)), Verdict.STANDS),
-        (problem.with_load(value * (1 + beside)), Verdict.COLLAPSES),
-    ]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -229,7 +218,7 @@ def test_the_command_render_films_blocks_in_space(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert "of motion" in done.stdout
     with Image.open(out) as picture:
-        assert picture.n_frames > 10
+        assert getattr(picture, "n_frames", 1) > 10
 
 
 def test_what_an_engine_cannot_do_in_space_is_one_line() -> None:

@@ -11,7 +11,13 @@ from blocksim.ask.carried import carried_of
 from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.options import Asked, AskedInSpace, Of, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
-from blocksim.ask.statics import VERDICTS, observed, static_evidence, unit
+from blocksim.ask.statics import (
+    VERDICTS,
+    crushing_evidence,
+    observed,
+    static_evidence,
+    unit,
+)
 from blocksim.ask.undecided import undecided_words
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import ObservedJoint, closed_joints
@@ -22,6 +28,7 @@ from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
 from blocksim.limit import Equilibrium, collapse, equilibrium
 from blocksim.limit.carried import Carried
+from blocksim.limit.crushing import Needed, strength_needed
 from blocksim.limit.exact import Exact
 from blocksim.limit.proof import proof_of_rest
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
@@ -35,6 +42,8 @@ if TYPE_CHECKING:
     from blocksim.simulation.recorded import Recorded
     from blocksim.simulation.shaken import Shaken
 
+UNPROVED = "none: strengths are compared in floating point, not in rational arithmetic"
+"""What is said of answers about blocks that crush."""
 SOUGHT = 500
 """Joints up to which what a structure carries is found within seconds."""
 
@@ -62,10 +71,12 @@ class Check(Shown, Generic[Of]):
         Whether that was to be found out.
     motion : Moving or None
         Where it was, the motion that was found; `joints` say what they do in it.
+    needed : Needed or None
+        Of blocks that crush, the least strength at which forces of equilibrium exist.
     load_factor : float or None
         Largest factor on the live loads at which forces of equilibrium exist, by limit
-        analysis; inf where no live load is too much. None without live loads, or where
-        there is no equilibrium at any factor.
+        analysis; below 0 where none exist without live loads; inf where no live load is too
+        much. None without live loads, or where there is no equilibrium at any factor.
     rates : (blocks, 3 or 6) float or None
         By an engine, velocities in proportion to those with which a collapse starts.
     shaken : Shaken or None
@@ -94,6 +105,7 @@ class Check(Shown, Generic[Of]):
     rest: Rest | None = None
     asked_rest: bool = False
     motion: Moving | None = None
+    needed: Needed | None = None
     load_factor: float | None = None
     rates: Array | None = None
     shaken: Shaken | None = None
@@ -121,6 +133,9 @@ class Check(Shown, Generic[Of]):
         if self.method != "limit" or not isinstance(self.problem, Problem):
             return None
         found = None
+        if self.problem.strength is not None and self.needed is not None:
+            # Proofs are of rigid blocks, which stand.
+            return None
         stands = self.verdict is Verdict.STANDS
         if stands and offers_of(self.problem) and self.carried is not None:
             # The maker's own statics know forces: no linear programme has to be loaded.
@@ -155,7 +170,7 @@ class Check(Shown, Generic[Of]):
         """
         rates, falls = self.rates, self.verdict is not Verdict.STANDS
         if self.method == "limit" and falls and self.static is not None:
-            rates = self.static.mechanism
+            rates = self.static.mechanism if self.needed is None else self.needed.mechanism
         if self.motion is not None:
             rates = self.motion.accelerations
         return None if rates is None else unit(rates, self.problem)
@@ -167,7 +182,7 @@ class Check(Shown, Generic[Of]):
         `blocksim.ask.carried.carried_of` has no such bound.
         """
         small = offers_of(self.problem) or len(self.problem.assembly.joints) <= SOUGHT
-        return carried_of(self.problem) if small else None
+        return carried_of(self.problem, needed=self.needed) if small else None
 
     def __repr__(self) -> str:
         return f"Check({self.verdict}, by {self.method}, of {self.problem!r})"
@@ -252,9 +267,10 @@ def check(
     if found.static is not None:
         # Asked for already.
         vars(answer)["static"] = found.static
-    if isinstance(problem, Problem) and answer.method == "limit" and not answer.proved:
-        open_ = Evidence("limit analysis", undecided_words(problem))
-        evidence = (open_, *answer.evidence[1:])
+    open_ = answer.method == "limit" and not answer.proved and answer.needed is None
+    if isinstance(problem, Problem) and open_:
+        said = Evidence("limit analysis", undecided_words(problem))
+        evidence = (said, *answer.evidence[1:])
         return replace(answer, verdict=Verdict.UNDECIDED, evidence=evidence)
     return answer
 
@@ -296,12 +312,20 @@ def _general(problem: Problem | SpatialProblem, chosen: Method, given: Taken) ->
     factor = collapse(problem).load_factor if known and problem.live else None
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
+        evidence, needed, rates = static_evidence(problem, static), None, static.mechanism
+        verdict = VERDICTS[exists]
+        if exists and isinstance(problem, Problem) and problem.strength is not None:
+            needed = strength_needed(problem)
+            verdict, evidence = crushing_evidence(problem, needed)
+            exists = verdict is Verdict.STANDS
+            rates = None if exists or needed is None else needed.mechanism
         answer = Check[Any](
             method=chosen.name,
-            verdict=VERDICTS[exists],
-            evidence=static_evidence(problem, static),
+            verdict=verdict,
+            evidence=evidence,
             problem=problem,
-            joints=observed(problem, static.mechanism),
+            joints=observed(problem, rates),
+            needed=needed,
             load_factor=factor,
             wall_s=0.0,
         )

@@ -32,8 +32,9 @@ from blocksim.common.checks import is_number, require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
-from blocksim.limit import collapse, equilibrium, thrust_range
+from blocksim.limit import collapse, thrust_range
 from blocksim.limit.capacity import Capacity
+from blocksim.limit.crushing import exists
 from blocksim.limit.margins import crown
 
 GAP = 1e-6
@@ -167,7 +168,7 @@ def crossing(
     require(not problem.live, "vehicle", vehicle.words, "left out: there are live loads")
     still = problem.has_statics
     require(still, "vehicle", vehicle.words, "gravity in the plane, and ground at rest")
-    if not equilibrium(problem).exists:
+    if not exists(problem):
         raise InputError("vehicle", vehicle.words, "a structure that stands without it")
     ways = (vehicle,) if vehicle.is_alike else (vehicle, vehicle.turned)
     search = _Search(problem)

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, Literal
 
+import numpy as np
+
 from blocksim.ask.options import Of
-from blocksim.ask.scan import Scan, least_friction
+from blocksim.ask.scan import TRIED, Scan, least_friction, standing_at
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION, Shaking
 from blocksim.blocks.space.problem import SpatialProblem
@@ -140,15 +142,23 @@ def _over_load(problem: Problem | SpatialProblem) -> Family[Any]:
 
 
 def _over_tilt(problem: Problem | SpatialProblem) -> Family[Any]:
+    def standing() -> tuple[Interval, ...]:
+        if problem.strength is not None:
+            # Of blocks that crush, tilts are tried, as parameters of a kind are.
+            turns = np.linspace(0.0, math.pi / 2, TRIED).tolist()
+            found = standing_at(problem.tilted, turns)
+        else:
+            found = over_tilt(problem, 0.0, math.pi / 2)
+        return tuple(
+            Interval(low=math.degrees(each.low), high=math.degrees(each.high)) for each in found
+        )
+
     return Family(
         name="tilt",
         unit="deg",
         at=lambda value: problem.tilted(math.radians(value)),
         high=90.0,
-        standing=lambda: tuple(
-            Interval(low=math.degrees(each.low), high=math.degrees(each.high))
-            for each in over_tilt(problem, 0.0, math.pi / 2)
-        ),
+        standing=standing,
     )
 
 

@@ -158,7 +158,8 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
     ends = (found.falls, found.stands)
     lower, upper = ends if family.stands == "high" else ends[::-1]
     intervals = tried_ends(family, found, ask) if known else None
-    proves = chosen.name == "limit" and isinstance(probe, Problem)
+    # Proofs are of rigid blocks in the plane.
+    proves = chosen.name == "limit" and isinstance(probe, Problem) and probe.strength is None
     return Found(
         found,
         chosen,

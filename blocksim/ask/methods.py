@@ -158,6 +158,8 @@ def _beyond(method: Method, problem: Problem | SpatialProblem | None) -> str:
     if problem.shaking and not (isinstance(method, Engine) and method.shakes):
         able = ", ".join(each.name for each in _shipped() if each.shakes)
         return f"one of {able}: {method.name} knows no ground that shakes"
+    if problem.strength is not None and method.name != "limit":
+        return f"limit, or no strength: blocks of {method.name} do not crush"
     offered = offers_of(problem) if method.name == "theory" else None
     if method.name == "theory" and (offered is None or "theory" not in offered.methods):
         return "limit or an engine: theory is of symmetric circular arches only"

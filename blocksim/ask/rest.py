@@ -58,6 +58,8 @@ def require_rest(problem: Problem | SpatialProblem) -> None:
     require(plane, "must_rest", "asked", "left out: it is not known in space")
     allowed = "left out where gravity leans or the ground shakes"
     require(problem.has_statics, "must_rest", "asked", allowed)
+    rigid = problem.strength is None
+    require(rigid, "must_rest", "asked", "left out beside a strength: blocks are rigid there")
     bounded = bool(np.isfinite(problem.friction).all())
     require(bounded, "must_rest", "asked", "left out where friction is unbounded")
 

@@ -8,7 +8,7 @@ of them is found. Between two that stand there may be one that falls.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -19,8 +19,8 @@ from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import InputError
 from blocksim.common.later import Library
-from blocksim.limit import equilibrium
 from blocksim.limit.intervals import Interval
+from blocksim.limit.statics import standing_margin
 
 if TYPE_CHECKING:
     from scipy import optimize
@@ -80,18 +80,7 @@ class Scan:
     @cached_property
     def standing(self) -> tuple[Interval, ...]:
         """The values at which forces of equilibrium exist, as far as those tried tell."""
-        stood = [equilibrium(self.at(value)).margin >= -ENOUGH for value in self.values]
-        found, low = list[Interval](), -math.inf
-        tried = zip(self.values, stood, strict=True)
-        for (left, before), (right, after) in pairwise(tried):
-            if before is after:
-                continue
-            end = root(self.at, left, right, rises=after)
-            if after:
-                low = end
-            else:
-                found.append(Interval(low=low, high=end))
-        return (*found, Interval(low=low, high=math.inf)) if stood[-1] else tuple(found)
+        return standing_at(self.at, self.values)
 
     @property
     def remark(self) -> str:
@@ -105,15 +94,30 @@ class Scan:
         return f"; {said}, as far as {tried} tell"
 
 
+def standing_at(at: At, values: Sequence[float]) -> tuple[Interval, ...]:
+    """Find between which values forces of equilibrium exist, as far as those tried tell."""
+    stood = [standing_margin(at(value)) >= -ENOUGH for value in values]
+    found, low = list[Interval](), -math.inf
+    for (left, before), (right, after) in pairwise(zip(values, stood, strict=True)):
+        if before is after:
+            continue
+        end = root(at, left, right, rises=after)
+        if after:
+            low = end
+        else:
+            found.append(Interval(low=low, high=end))
+    return (*found, Interval(low=low, high=math.inf)) if stood[-1] else tuple(found)
+
+
 def least_friction(problem: Problem | SpatialProblem, most: float) -> tuple[Interval, ...]:
     """Find the friction from which on forces of equilibrium exist, up to a bound."""
 
     def at(mu: float) -> Problem | SpatialProblem:
         return problem.with_friction(mu)
 
-    if equilibrium(at(most)).margin < -ENOUGH:
+    if standing_margin(at(most)) < -ENOUGH:
         return ()
-    needed = equilibrium(at(0.0)).margin < -ENOUGH
+    needed = standing_margin(at(0.0)) < -ENOUGH
     low = root(at, 0.0, most, rises=True) if needed else -math.inf
     return (Interval(low=low, high=math.inf),)
 
@@ -132,7 +136,7 @@ def root(at: At, low: float, high: float, *, rises: bool) -> float:
 
     def margin(value: float) -> float:
         # Where nothing would hold the blocks any number will do that is far below zero.
-        return max(equilibrium(at(value)).margin, -1.0) + ENOUGH
+        return max(standing_margin(at(value)), -1.0) + ENOUGH
 
     found = float(optimize.brentq(margin, low, high, xtol=1e-13, rtol=1e-12))
     # What is enough is a little too little: where the margin grows evenly on the standing

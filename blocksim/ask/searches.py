@@ -14,6 +14,7 @@ from blocksim.ask.search import Answer, Bisection
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.progress import Progress, silent
 from blocksim.limit import equilibrium
+from blocksim.limit.statics import exists
 from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -183,8 +184,7 @@ def by_programmes(
         ends = exact * (1 - sure), exact * (1 + sure)
         falls, stands = ends if rises else ends[::-1]
         runs += 2
-        asked: list[Problem | SpatialProblem] = [family.at(end) for end in (falls, stands)]
-        told = [equilibrium(each).exists for each in asked]
+        told = [exists(family.at(end)) for end in (falls, stands)]
         if told == [False, True]:
             break
     confirmed = told == [False, True]

@@ -12,6 +12,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState, side_name
 from blocksim.blocks.problem import Move, Problem
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.direct import ENGINE, rule
@@ -112,6 +113,8 @@ class Spreading:
     def problem(self) -> Problem:
         """The problem with its supports' motion."""
         asked, supports = self.asked, self.asked.assembly.supports
+        allowed = "left out where supports move: blocks are rigid there"
+        require(asked.strength is None, "strength", "given", allowed)
         if asked.moves:
             return asked
         joints = asked.assembly.springings
@@ -249,7 +252,15 @@ class Spreading:
             left -= FRAME * (world.fastest > FAST * SEEN or left < AFTER)
             progress(world.value / self.farthest, f"supports at {world.value:.4g} m")
         return Recording(
-            problem=replace(world.problem, title=f"{self.asked.title}, its supports move"),
+            # Supports that move are its last blocks; it says so by their moves.
+            problem=replace(
+                world.problem,
+                title=f"{self.asked.title}, its supports move",
+                moves=tuple(
+                    replace(move, support=len(world.problem.assembly.supports) - 1)
+                    for move in self.problem.moves
+                ),
+            ),
             engine=ENGINE.name,
             engine_version=ENGINE.version,
             settings=settings,

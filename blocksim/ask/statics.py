@@ -11,7 +11,8 @@ from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.limit import Equilibrium, equilibrium
+from blocksim.limit import Equilibrium
+from blocksim.limit.crushing import Needed, exists
 from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
@@ -98,6 +99,28 @@ def _words_in_space(static: SpatialEquilibrium) -> str:
     )
 
 
+def crushing_evidence(
+    problem: Problem, needed: Needed | None
+) -> tuple[Verdict, tuple[Evidence, ...]]:
+    """Say whether forces of equilibrium exist within the strength of blocks that crush."""
+    verdict, said = _crushing(needed, problem.strength or 0.0)
+    found = Evidence("limit analysis", said)
+    return verdict, (found, *_closing(problem, verdict is Verdict.STANDS))
+
+
+def _crushing(needed: Needed | None, strength: float) -> tuple[Verdict, str]:
+    if needed is None:
+        return Verdict.UNDECIDED, "the strength that is needed was not found"
+    least, most = f"{needed.low / 1e6:.6g} MPa", f"{needed.high / 1e6:.6g} MPa"
+    if needed.high <= strength:
+        said = f"forces of equilibrium exist that press joints by {most} at most"
+        return Verdict.STANDS, said
+    if needed.low > strength:
+        said = f"forces of equilibrium exist, and all crush a joint: {least} are needed"
+        return Verdict.COLLAPSES, said
+    return Verdict.UNDECIDED, f"the strength that is needed is between {least} and {most}"
+
+
 def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
     """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
     gaps = closed_gaps(problem.assembly)
@@ -106,7 +129,7 @@ def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
     most = 1000 * max(map(abs, gaps.values()))
     for sign, words in ((1, "grown"), (-1, "shrunk")):
         assembly = resized(problem.assembly, sign)
-        if equilibrium(replace(problem, assembly=assembly)).exists != stands:
+        if exists(replace(problem, assembly=assembly)) != stands:
             other = Verdict.COLLAPSES if stands else Verdict.STANDS
             found = f"the drawing leaves it open: {other} with blocks {words} by what was "
             return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)

@@ -294,7 +294,7 @@ class StructureFile(Around):
         By default found: where faces lie on each other, and where corners rest on a face.
     tolerance : float
         Gaps and overlaps up to this are closed where joints are found [m], but no more than a
-        tenth of the narrower block; by default what rounding explains.
+        quarter of the narrower block; by default what rounding explains.
     rounding : float
         Step to which corners were rounded [m]; by default as their decimals say, up to twelve.
     """

@@ -26,7 +26,7 @@ TOLERANCE = 1e-6
 """Distance within which blocks touch, in units of half the larger side of the smaller one."""
 ROUNDED = 1.5
 """Steps of rounding by which faces may part: three points are off by 0.71 steps at most."""
-NARROW, NARROW_ASKED = 1 / 40, 1 / 10
+NARROW, NARROW_ASKED = 1 / 40, 1 / 4
 """Share of a block's width up to which gaps are closed: due to rounding, and asked for."""
 SHOWN = 5
 """Pairs of blocks that a line names."""
@@ -191,7 +191,8 @@ def _slack(
     most, share = ROUNDED * step, NARROW
     least = exact
     if tolerance is not None:
-        most, share = tolerance, NARROW_ASKED
+        # Mortar of 10 mm is closed by 10 mm, whatever was rounded.
+        most, share = tolerance * (1 + TOLERANCE), NARROW_ASKED
         least = np.minimum(exact, tolerance)
     width = measured.area / np.where(measured.across > 0, measured.across, 1.0)
     close = np.maximum(least, np.minimum(most, share * width))

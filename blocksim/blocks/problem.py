@@ -16,7 +16,7 @@ from blocksim.blocks.anyproblem import AnyProblem
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly
 from blocksim.blocks.dispersal import Dispersal
 from blocksim.blocks.road import road_of, with_road
-from blocksim.common.checks import LEAN
+from blocksim.common.checks import LEAN, STRENGTH
 
 if TYPE_CHECKING:
     from blocksim.blocks.maker import Kind, Maker
@@ -57,6 +57,9 @@ class Problem(AnyProblem[Assembly]):
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
         forces have a meaning.
+    strength : float or None
+        Compressive strength of the blocks [Pa], beyond which they crush at their joints; None
+        where they are rigid. Limit analysis alone knows it (`limit.crushing`).
     notes : tuple of str
         What was mended or assumed when it was read; answers repeat it.
 
@@ -72,6 +75,12 @@ class Problem(AnyProblem[Assembly]):
     maker: Maker | None = None
     road: tuple[tuple[float, float, float], ...] = ()
     dispersal: Dispersal | None = None
+
+    def __post_init__(self) -> None:
+        """Check the ranges."""
+        super().__post_init__()
+        if self.strength is not None:
+            STRENGTH.require("strength", self.strength)
 
     @property
     def turns_pull(self) -> bool:

@@ -38,7 +38,7 @@ from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
 from blocksim.cli.question import joint_of
 from blocksim.cli.space import refuse
-from blocksim.cli.subject import anything_asked, is_structure
+from blocksim.cli.subject import anything_asked, is_many, is_structure
 from blocksim.common.checks import require
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
@@ -57,7 +57,20 @@ def check(
     proof: ProofFile = None,
     as_json: Json = False,
 ) -> None:
-    """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided."""
+    """Tell whether it stands: exit code 0 stands, 1 collapses, 3 undecided.
+
+    Of a folder of structures, or of JSON lines on standard input (-), a line of JSON for each,
+    by limit analysis.
+    """
+    if scene is not None and is_many(scene):
+        from blocksim.cli.many import check_each
+
+        alone: dict[str, object] = {
+            "method": None if method in {"auto", "limit"} else method,
+            "set": settings, "joint": joint, "reduce": reduce, "must_rest": must_rest,
+            "spatial": spatial, "proof": proof,
+        }  # fmt: skip
+        check_each(scene, given, loading, alone)
     problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
     if isinstance(problem, SpatialProblem):
         refuse({"joint": joint, "must_rest": must_rest, "proof": proof})
@@ -74,7 +87,7 @@ def check(
         told = answer.carried
         if at is not None and told is not None:
             report(1.0, "thrust")
-            told = carried_of(problem, at)
+            told = carried_of(problem, at, answer.needed)
     found = answer.proof
     write_proof(answer.method, () if found is None else (found,), proof)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)

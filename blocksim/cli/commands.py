@@ -40,7 +40,7 @@ from blocksim.cli.options import (
 )
 from blocksim.cli.output import picture_kind, progress, say
 from blocksim.cli.question import question
-from blocksim.cli.spacefilm import film_in_space
+from blocksim.cli.spacefilm import film_in_space, model_in_space
 from blocksim.cli.subject import anything_asked, is_structure, problem_asked
 from blocksim.common.checks import Range, require
 from blocksim.common.files import require_place
@@ -116,7 +116,7 @@ def render(
         Path | None,
         Option(
             about="File to write: .pdf, .svg, .png or .dxf, .mp4 or .gif, or .glb, .gltf, "
-            ".csv, .json of a recording; required."
+            ".csv, .json of a recording, or .html to turn blocks in space around; required."
         ),
     ] = None,
     scene: Annotated[
@@ -143,11 +143,16 @@ def render(
         question(scene, given, out=out)
     require_given(out=out)
     out = out or Path()
-    kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", *MODELS, *TABLES))
+    kind = picture_kind(out, (*FILMS, "png", "svg", "pdf", "dxf", "html", *MODELS, *TABLES))
     if kind in (*MODELS, *TABLES):
         options = {"beside": beside, "slow": slow, "time": time, "height": height}
         for name, value in options.items():
             require(value is None, f"--{name}", value, f"left out of a .{kind}")
+        if kind in MODELS and is_structure(scene):
+            asked = anything_asked(scene, given, loading)
+            if isinstance(asked, SpatialProblem):
+                model_in_space(out, kind, asked, method)
+                return
         export(out, kind, *recordings(scene, given, loading, method, None))
         return
     filmed = kind in FILMS or view == "3d" or beside is not None

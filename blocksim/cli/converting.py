@@ -8,11 +8,19 @@ from typing import Annotated, Any, cast
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.options import named_options, require_given
 from blocksim.cli.output import say
+from blocksim.cli.structures import reading_of
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.words import counted
-from blocksim.kinds.files import is_drawing, named_file, structure_of, with_friction, within
+from blocksim.kinds.files import (
+    deepened,
+    is_drawing,
+    named_file,
+    structure_of,
+    with_friction,
+    within,
+)
 
 
 def convert(
@@ -26,8 +34,21 @@ def convert(
         float | None, Option(about="Friction coefficient, above 0; inf allowed.")
     ] = None,
     unit: Annotated[
-        float | None,
-        Option(about="Metres that a unit of the drawing is; 0.001 for mm."),
+        str | None,
+        Option(about="Of the drawing: m, mm, cm, dm, in, ft, or metres that a unit is."),
+    ] = None,
+    layer: Annotated[
+        list[str] | None,
+        Option(
+            metavar="ROLE=NAME",
+            about="Layer that is read as blocks or as supports, or is ignored; repeatable.",
+        ),
+    ] = None,
+    snap: Annotated[
+        float | None, Option(about="Ends of lines that are so near are one corner, in m.")
+    ] = None,
+    depth: Annotated[
+        float | None, Option(about="Depth of the blocks out of the plane in m.")
     ] = None,
     tolerance: Annotated[
         float | None, Option(about="Gaps and overlaps up to this are closed, in m.")
@@ -43,10 +64,12 @@ def convert(
     require_place(out)
     if is_drawing(source):
         require_given(mu=mu)
-    with named_options(), named_file(source, unit) as data:
+    with named_options(), named_file(source, reading_of(unit, layer, snap)) as data:
         said = data if mu is None else with_friction(data, mu)
         if tolerance is not None:
             said = within(said, tolerance)
+        if depth is not None:
+            said = deepened(said, depth)
         require(isinstance(said, dict), "structure", type(said).__name__, "a table of keys")
         table = _held(cast("dict[str, Any]", said), fixed)
         problem = structure_of(table)

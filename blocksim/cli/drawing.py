@@ -34,13 +34,16 @@ def write_still(
     """
     built = is_structure(scene) or loading.given
     asked = None if built else question(scene, given)
+    flat = "another kind: a page to turn around (.html) is of blocks in space"
     if asked is None or (not asked.lean and asked.has_thickness):
         problem = anything_asked(scene, given, loading, thick=True)
         if isinstance(problem, SpatialProblem):
             _write_perspective(out, kind, problem, method, height)
         else:
+            require(kind != "html", "--out", str(out), flat)
             _write_sheet(out, kind, problem, method, height)
         return
+    require(kind != "html", "--out", str(out), flat)
     require(method is None, "--method", method, "left out: the picture is of no motion")
     flat = "a .png, .svg or .pdf: it leans" if asked.lean else (
         "a .png, .svg or .pdf where no thickness is given"
@@ -86,11 +89,18 @@ def _write_sheet(
 def _write_perspective(
     out: Path, kind: str, problem: SpatialProblem, method: str | None, height: int | None
 ) -> None:
-    """Draw a problem in space, with its answer."""
-    allowed = "a .png, .svg or .pdf: it is drawn in perspective"
+    """Draw a problem in space, with its answer, or write a page to turn it around."""
+    allowed = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn it around"
     require(kind != "dxf", "--out", str(out), allowed)
-    from blocksim.view.solidfigure import solid_figure
-
     with named_options(), progress() as report:
         answer = check(problem, method=method or "auto", progress=report)
+    if kind == "html":
+        from blocksim.view.turning import turning_page
+
+        text = turning_page(answer).encode()
+        write_whole(out, lambda file: file.write(text))
+        say(f"wrote {out}: a page to turn it around")
+        return
+    from blocksim.view.solidfigure import solid_figure
+
     save_picture(solid_figure(answer), out, kind, height)

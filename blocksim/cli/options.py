@@ -93,7 +93,8 @@ Json = Annotated[bool, Option(name="--json", about="Print one JSON object, nothi
 
 THICKNESS = "thickness"
 """The parameter of `bracket` that is left out: of arches."""
-OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance"}
+OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance", "depth",
+          "unit", "layer", "snap"}  # fmt: skip
 """Options that say how anything is built, not only an arch."""
 LARGEST_FRICTION = 10.0
 """Coefficient above which, up to 90, one is taken for an angle."""
@@ -161,7 +162,7 @@ class Given:
     ] = None
     depth: Annotated[
         float | None,
-        Option(about="Depth out of the plane in m; 1 if left out, as the radius is."),
+        Option(about="Depth out of the plane in m; 1 if left out."),
     ] = None
     lean: Annotated[
         float | None,
@@ -181,8 +182,29 @@ class Given:
     tolerance: Annotated[
         float | None,
         Option(
-            about="Gaps and overlaps of a drawing up to this are closed, in m; what rounding "
-            "of its coordinates explains if left out."
+            about="Mortar joints, gaps and overlaps of a drawing up to this are closed, in m; "
+            "what rounding of its coordinates explains if left out."
+        ),
+    ] = None
+    unit: Annotated[
+        str | None,
+        Option(
+            about="Of a drawing that has none: m, mm, cm, dm, in, ft, or metres that a unit is."
+        ),
+    ] = None
+    layer: Annotated[
+        list[str] | None,
+        Option(
+            metavar="ROLE=NAME",
+            about="Layer of a drawing that is read as blocks or as supports, or is ignored; "
+            "repeatable. If left out, layers of these names are.",
+        ),
+    ] = None
+    snap: Annotated[
+        float | None,
+        Option(
+            about="Ends of lines of a drawing that are so near are one corner, in m; 1e-4 of "
+            "the shorter line if left out."
         ),
     ] = None
 
@@ -190,6 +212,13 @@ class Given:
     def of_arches(self) -> dict[str, object]:
         """Those that say how an arch is built."""
         return {name: each for name, each in asdict(self).items() if name not in OF_ANY}
+
+    @property
+    def drawn(self) -> dict[str, object]:
+        """Those of drawings, by option; empty where none is given."""
+        named = {"--tolerance": self.tolerance, "--unit": self.unit,
+                 "--layer": self.layer, "--snap": self.snap}  # fmt: skip
+        return {name: each for name, each in named.items() if each is not None}
 
     @property
     def measured(self) -> dict[str, object]:
@@ -258,6 +287,14 @@ class Loading:
             metavar="ACROSS:DOWN",
             about="How fill spreads loads on the road: 1:2, evenly over half the depth to each "
             "side; or boussinesq, up to 30 deg from the vertical. Not at all if left out.",
+        ),
+    ] = None
+    strength: Annotated[
+        float | None,
+        Option(
+            about="Compressive strength of the blocks in MPa: they crush where joints press by "
+            "more (limit). Blocks are rigid if left out.",
+            range=Range(low=0, high=1e3, unit="MPa", above=True),
         ),
     ] = None
     load: Annotated[

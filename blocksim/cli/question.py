@@ -51,8 +51,8 @@ def question(
             require_given(instead, **needed, alpha=given.alpha, mu=given_mu, **thick_enough)
     require_given(**needed)
     no_kind = "left out: it is for kinds of structures"
-    no_gaps = "left out: it closes gaps of a drawing, and this is an arch"
-    require(given.tolerance is None, "--tolerance", given.tolerance, no_gaps)
+    for option, value in given.drawn.items():
+        raise InputError(option, value, "left out: it is of drawings, and this is an arch")
     require(given.parameters is None, "--with", " ".join(given.parameters or ()), no_kind)
     _require_ranges(given)
     asked = Scenario(given=USUAL) if scene is None else _scenario(scene)

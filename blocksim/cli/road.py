@@ -14,6 +14,7 @@ from blocksim.cli.options import Given, Loading, named_options, option_of, requi
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.kinds.circular import LEAST_DENSITY
+from blocksim.limit.crushing import require_sizes
 
 
 def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
@@ -23,6 +24,9 @@ def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
             problem = problem.with_friction(given.friction)
         if loading.on_road:
             problem = under_road(problem, loading)
+        if loading.strength is not None:
+            problem = replace(problem, strength=1e6 * loading.strength)
+            require_sizes(problem)
         if loading.load is not None:
             require(bool(problem.live), "--load", loading.load, "left out: no live loads")
             problem = problem.with_load(loading.load)

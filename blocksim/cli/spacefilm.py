@@ -10,9 +10,22 @@ from blocksim.cli.filming import FALL, RenderOptions
 from blocksim.cli.options import named_options
 from blocksim.cli.output import progress, say
 from blocksim.common.checks import require
+from blocksim.common.files import write_whole
+from blocksim.common.words import counted
 
 ROUGH = 1e-4
 """Residual of contacts that is told."""
+
+
+def model_in_space(out: Path, kind: str, problem: SpatialProblem, method: str | None) -> None:
+    """Answer the command render: a recording in space as glTF."""
+    from blocksim.view.gltfspace import write_recording
+
+    with named_options(), progress() as report:
+        recording = simulate(problem, method=method or "auto", duration=FALL, progress=report)
+    write_whole(out, lambda file: write_recording(recording, file, kind))
+    blocks = counted(len(problem.assembly.blocks), "block")
+    say(f"wrote {out}: {blocks}, {counted(len(recording.times), 'frame')}")
 
 
 def film_in_space(

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.cli.options import Given, Loading, option_of, parameters_of, require_given
+from blocksim.cli.options import (
+    Given,
+    Loading,
+    named_options,
+    option_of,
+    parameters_of,
+    require_given,
+)
 from blocksim.cli.road import loaded
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
@@ -13,6 +22,7 @@ from blocksim.common.files import read_file, toml_of
 from blocksim.kinds import KINDS, SOLID_KINDS, own_kind
 from blocksim.kinds.files import (
     changed,
+    deepened,
     is_drawing,
     load_any,
     shipped_structures,
@@ -20,6 +30,7 @@ from blocksim.kinds.files import (
     weighed,
     with_friction,
 )
+from blocksim.reading.drawing import ROLES, Reading
 
 LARGEST_PEEK = 1 << 20
 """Bytes of a TOML file that are looked at to tell a structure from a scenario."""
@@ -60,26 +71,34 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem | SpatialPr
     if heavy is not None:
         require_unit_weight("--unit-weight", heavy)
     density = None if heavy is None else 1000 * heavy
+    if scene in SOLID_KINDS or scene in KINDS or _is_place(scene):
+        require_given(mu=given.friction)
+        for option, value in given.drawn.items():
+            raise InputError(option, value, "left out: it is of drawings, and this is a kind")
     try:
         if scene in SOLID_KINDS:
-            require_given(mu=given.friction)
-            allowed = "left out: a kind of structure has no gaps"
-            require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
+            allowed = "left out: --with says the parameters of kinds in space"
+            require(given.depth is None, "--depth", given.depth, allowed)
             maker = SOLID_KINDS[scene](friction=given.friction, density=density)
             built = maker.but(**changes).problem()
         elif scene in KINDS or _is_place(scene):
             own = () if scene in KINDS else (own_kind(scene),)
             name = own[0].name if own else scene
-            allowed = "left out: a kind of structure has no gaps"
-            require(given.tolerance is None, "--tolerance", given.tolerance, allowed)
-            require_given(mu=given.friction)
             table = changed(with_friction({"kind": name}, given.friction or 0.0), changes)
-            built = structure_of(table if density is None else weighed(table, density), *own)
+            said = table if density is None else weighed(table, density)
+            said = said if given.depth is None else deepened(said, given.depth, *own)
+            built = structure_of(said, *own)
         else:
             if is_drawing(scene):
                 require_given(mu=given.friction)
             built = load_any(
-                scene, changes, density, friction=given.friction, tolerance=given.tolerance
+                scene,
+                changes,
+                density,
+                friction=given.friction,
+                tolerance=given.tolerance,
+                depth=given.depth,
+                reading=reading_of(given.unit, given.layer, given.snap),
             )
     except InputError as error:
         name = error.field.partition("[")[0]
@@ -91,6 +110,21 @@ def structure(scene: str, given: Given, loading: Loading) -> Problem | SpatialPr
     from blocksim.cli.space import loaded_in_space
 
     return loaded_in_space(built, given, loading)
+
+
+def reading_of(unit: str | None, layer: list[str] | None, snap: float | None = None) -> Reading:
+    """Read what `--unit`, `--layer` and `--snap` say of a drawing."""
+    layers: dict[str, list[str]] = {}
+    for each in layer or ():
+        role, _, name = each.partition("=")
+        ok = bool(name) and role in ROLES
+        require(ok, "--layer", each, f"{', '.join(f'{one}=NAME' for one in ROLES)}")
+        layers.setdefault(role, []).append(name)
+    metres: float | str | None = unit
+    with suppress(TypeError, ValueError):
+        metres = float(unit)  # type: ignore[arg-type]
+    with named_options():
+        return Reading(unit=metres, layers=layers, snap=snap)
 
 
 def _is_place(scene: str) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
@@ -11,6 +12,14 @@ from blocksim.cli.options import Given, Loading, named_options, require_given
 from blocksim.cli.question import question
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
+
+STREAM = "-"
+"""What stands for JSON lines on standard input."""
+
+
+def is_many(scene: str) -> bool:
+    """Tell a stream or a folder of structures from one."""
+    return scene == STREAM or Path(scene).is_dir()
 
 
 def is_structure(scene: str | None) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -72,6 +72,16 @@ class Frame:
         shift, turn = back.apply(linear), back.apply(angular)
         return np.column_stack([shift[:, :2], turn[:, 2], shift[:, 2], turn[:, :2]])
 
+    def told(self, motion: Array) -> tuple[list[float], list[float]]:
+        """Return a motion in the assembly's columns, (6,), as vectors of the engine's space."""
+        x, y, turn, z, *lean = motion.tolist()
+        return self.vector(x, y, z), self.vector(lean[0], lean[1], turn)
+
+    def flat(self, place: Array, shift: Array) -> tuple[list[float], list[float]]:
+        """Return a place and a velocity, (3,) each, without what is out of the plane."""
+        x, y, _ = self._turned.inv().apply(shift)
+        return self.place(self.point(place)), self.vector(x, y, 0.0)
+
     def point(self, place: Array) -> Array:
         """Where in the plane a place (3,) lies, x and y."""
         x, y, _ = self._turned.inv().apply(place - self._origin)
@@ -111,23 +121,14 @@ def unwound(turned: Array, before: Array) -> Array:
 
 @dataclass(frozen=True)
 class Box:
-    """A box in the frame of its body: half extents, centre, angle in the plane."""
+    """A box in the frame of its body: half extents, centre, quaternion x, y, z, w."""
 
     half: list[float]
     centre: list[float]
-    angle: float
-
-    @property
-    def quaternion(self) -> list[float]:
-        """How it is turned in the plane."""
-        return [0.0, 0.0, math.sin(self.angle / 2), math.cos(self.angle / 2)]
-
-    def turned(self, angle: float) -> Box:
-        """Turn it farther."""
-        return replace(self, angle=self.angle + angle)
+    quaternion: list[float]
 
 
-def plate(side: Side, depth: float, origin: Array, overlap: float) -> Box:
+def plate(side: Side, depth: float, origin: Array, overlap: float, turn: float = 0.0) -> Box:
     """Return the box on one side of a joint; a thin rod for a corner.
 
     Parameters
@@ -139,6 +140,8 @@ def plate(side: Side, depth: float, origin: Array, overlap: float) -> Box:
         Of its body.
     overlap : float
         Of two closed sides.
+    turn : float, optional
+        By which it is turned farther in the plane.
 
     Returns
     -------
@@ -153,21 +156,21 @@ def plate(side: Side, depth: float, origin: Array, overlap: float) -> Box:
         along = np.array([-side.inward[1], side.inward[0]])
     centre = side.ends.mean(axis=0) + side.inward * (thick - overlap) / 2 - origin
     angle = math.atan2(along[1], along[0])
-    return _box([length, thick, depth], centre, angle)
+    return _box([length, thick, depth], centre, angle + turn)
 
 
-def edge(side: Side, depth: float, origin: Array, overlap: float) -> Box:
+def edge(side: Side, depth: float, origin: Array, overlap: float, turn: float = 0.0) -> Box:
     """Return a box in a corner that touches the other side with one edge; see `plate`."""
     centre = side.ends[0] + side.inward * (EDGE / math.sqrt(2) - overlap / 2) - origin
     angle = math.atan2(side.inward[1], side.inward[0]) + math.pi / 4
-    return _box([EDGE, EDGE, depth], centre, angle)
+    return _box([EDGE, EDGE, depth], centre, angle + turn)
 
 
 def _box(size: list[float], centre: Array, angle: float) -> Box:
     return Box(
         half=[each / 2 for each in size],
         centre=[*centre.tolist(), 0.0],
-        angle=angle,
+        quaternion=[0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)],
     )
 
 

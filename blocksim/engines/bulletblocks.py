@@ -31,14 +31,17 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
-from blocksim.engines.boxes import EDGE, Box, Frame, edge, plate
+from blocksim.engines.boxes import EDGE, TURNS, Box, Frame, edge, plate
+from blocksim.engines.bulletparts import Built, Ends, met
 from blocksim.engines.bulletspace import SLOP, Space, State, friction_share
+from blocksim.engines.energy import Balance
 from blocksim.engines.faces import LEDGE, LEDGE_SHARE, Side, reaching, sides_of
 from blocksim.engines.solids import Solids, prisms
 
@@ -55,124 +58,167 @@ BREAKING = 0.1
 """Distance at which contact points count as one else, in units of the shortest joint."""
 MOST_BREAKING = 0.02
 """Bullet's own such distance, in units of a block's size."""
+BESIDE = 1e-7
+"""Distance from the plane from which blocks that meet are put back into it [size]."""
 
 
-class Built(NamedTuple):
-    """Bodies in a space.
-
-    Parameters
-    ----------
-    bodies : list of int
-        Of each block.
-    joints : dict
-        By two bodies and the link of each, as `bulletspace.Contact.pair`: the joints at which
-        they touch, and 1 if the first is `after`, else -1.
-    """
-
-    bodies: list[int]
-    joints: dict[tuple[int, int, int, int], list[tuple[int, float]]]
-
-
-Ends = dict[int, list[tuple[int, int, float]]]
-"""By joint, for each side: a body, a link of it, 1 if on `after` and else -1."""
-
-
-def place_of(frame: Frame, assembly: Assembly, index: int) -> list[float]:
-    """Return where the body of a block, or of the support, is built."""
-    blocks, at_rest = assembly.blocks, index == SUPPORT
-    return frame.place(np.zeros(2) if at_rest else blocks[index].centre / assembly.size)
-
-
-def breaking_of(problem: Problem) -> float:
-    """Return the breaking threshold for blocks with links."""
-    return MERGED if problem.is_planar else _breaking(problem.assembly)
-
-
-def linked(space: Space, problem: Problem, reaches: Array | None = None) -> Built:
-    """Create a body with links for each block, and one for the support.
+class Planar:
+    """The blocks of a problem in the plane as bodies: the parts that `bulletmotion` moves.
 
     Parameters
     ----------
-    space : Space
     problem : Problem
-    reaches : (joints, 2) float, optional
-        How far the sides of each joint reach into each other at its ends [size].
+    frame : Frame
+        Where in Bullet's frame the assembly lies.
     """
-    boxes, bodies = _boxes(problem, reaches), list[int]()
-    ends: Ends = defaultdict(list)
-    for index in [*range(len(problem.assembly.blocks)), SUPPORT]:
-        its = boxes[index]
-        shares = [friction_share(problem.friction[each.joint]) for each in its]
-        place, masses = place_of(space.frame, problem.assembly, index), _masses(problem, index)
-        body = space.linked([each.box for each in its], shares, place, masses)
-        for link, each in enumerate(its):
-            ends[each.joint].append((body, link, each.sense))
-        bodies.append(body)
-    return Built(bodies[:-1], _meet(space, ends))
 
+    turns = TURNS
 
-def can_be_layered(problem: Problem) -> bool:
-    """Tell whether blocks can be bodies without links.
+    def __init__(self, problem: Problem, frame: Frame) -> None:
+        self.problem, self.assembly, self.frame = problem, problem.assembly, frame
+        self.reach: Array = self.assembly.reach / self.assembly.size
+        self.states = [self._at(index) for index in range(len(self.assembly.blocks))]
+        self.breaking = MERGED if problem.is_planar else _breaking(self.assembly)
 
-    Such a body has one friction, and its boxes cannot be told whom to touch. So they lie
-    in layers: in the plane it does not matter where across it a joint is.
-    """
-    joints = problem.assembly.joint_arrays
-    between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
-    is_one = not (problem.friction[between] != problem.mu).any()
-    return problem.is_planar and is_one and problem.mu > 0
+    @property
+    def solids(self) -> Solids:
+        """Polygons, and from when on they may meet."""
+        return self._solids
 
+    @cached_property
+    def _solids(self) -> Solids:
+        return Solids(self.assembly)
 
-def layered(space: Space, problem: Problem) -> Built:
-    """Build anew, of bodies without links, and those of the support one for each joint."""
-    assembly, mu = problem.assembly, friction_share(problem.mu)
-    layers = _layers(assembly)
-    space.clear(_breaking(assembly, layers.max()))
-    boxes, bodies = _boxes(problem), list[int]()
-    ends: Ends = defaultdict(list)
-    blocks = [(index, boxes[index]) for index in range(len(assembly.blocks))]
-    for index, its in [*blocks, *((SUPPORT, [each]) for each in boxes[SUPPORT])]:
-        # What a block has of a pair's friction is the same everywhere.
-        own = mu
+    def balance(self, poses: Array) -> Balance:
+        """Return what looks at the energy, from where blocks are let go."""
+        return Balance(self.problem, poses)
+
+    def displacement(self, moved: Array) -> float:
+        """Return the largest displacement of any corner."""
+        return float(displacement(moved, self.assembly))
+
+    def loads(self, poses: Array) -> Array | None:
+        """Return loads besides gravity, (blocks, 6); None where there are none."""
+        if not self.problem.is_loaded:
+            return None
+        found = np.zeros_like(poses)
+        found[:, :PLANAR] = self.problem.loads(poses[:, :PLANAR])
+        return found
+
+    def pressures(self, forces: Array) -> Array:
+        """Return pressures at both ends of each joint, of forces (joints, 2, 2)."""
+        pressures = np.maximum(forces[:, :, 0], 0.0)
+        corner = self.assembly.joint_arrays.is_corner
+        pressures[corner] = pressures[corner].sum(axis=1, keepdims=True)
+        return pressures
+
+    def flatten(self, space: Space, bodies: list[int], poses: Array) -> None:
+        """Put centres that have left the plane back into it, with no velocity out of it.
+
+        Impacts kick blocks out of the plane, by 1e-3 of their velocity. What is put back loses
+        its contacts, and sinks: so only what is off is.
+        """
+        if not self.problem.is_planar:
+            return
+        for index in np.flatnonzero(np.abs(poses[:, PLANAR]) > BESIDE):
+            place, turn, shift, spin = space.state(bodies[index])
+            at, along = self.frame.flat(np.array(place), np.array(shift))
+            space.put(bodies[index], State(at, turn, along, spin))
+
+    def linked(self, space: Space, reaches: Array | None = None) -> Built:
+        """Create a body with links for each block, and one for the support.
+
+        Parameters
+        ----------
+        space : Space
+        reaches : (joints, 2) float, optional
+            How far the sides of each joint reach into each other at its ends [size].
+        """
+        boxes, bodies = _boxes(self.problem, reaches), list[int]()
+        ends: Ends = defaultdict(list)
+        for index in [*range(len(self.assembly.blocks)), SUPPORT]:
+            its = boxes[index]
+            shares = [friction_share(self.problem.friction[each.joint]) for each in its]
+            masses = _masses(self.problem, index)
+            body = space.linked([each.box for each in its], shares, self._at(index), masses)
+            for link, each in enumerate(its):
+                ends[each.joint].append((body, link, each.sense))
+            bodies.append(body)
+        return Built(bodies[:-1], met(space, ends))
+
+    @property
+    def can_be_layered(self) -> bool:
+        """Whether blocks can be bodies without links.
+
+        Such a body has one friction, and its boxes cannot be told whom to touch. So they lie
+        in layers: in the plane it does not matter where across it a joint is.
+        """
+        problem, joints = self.problem, self.assembly.joint_arrays
+        between = (joints.before != SUPPORT) & (joints.after != SUPPORT)
+        is_one = not (problem.friction[between] != problem.mu).any()
+        return problem.is_planar and is_one and problem.mu > 0
+
+    def layered(self, space: Space) -> Built:
+        """Build anew, of bodies without links, and those of the support one for each joint."""
+        problem, mu = self.problem, friction_share(self.problem.mu)
+        layers = _layers(self.assembly)
+        space.clear(_breaking(self.assembly, layers.max()))
+        boxes, bodies = _boxes(problem), list[int]()
+        ends: Ends = defaultdict(list)
+        blocks = [(index, boxes[index]) for index in range(len(self.assembly.blocks))]
+        for index, its in [*blocks, *((SUPPORT, [each]) for each in boxes[SUPPORT])]:
+            # What a block has of a pair's friction is the same everywhere.
+            own = mu
+            if index == SUPPORT:
+                own = friction_share(problem.friction[its[0].joint]) ** 2 / mu
+            placed = [
+                replace(box, centre=[*box.centre[:2], float(layers[joint])])
+                for joint, _, box in its
+            ]
+            body = space.layered(placed, own, self._at(index), _masses(problem, index))
+            for each in its:
+                ends[each.joint].append((body, -1, each.sense))
+            bodies.append(body)
+        joints = met(space, ends)
+        space.step()
+        space.pull(problem.gravity)
+        return Built(bodies[: len(blocks)], joints)
+
+    def solid(self, space: Space, states: Sequence[State]) -> list[int]:
+        """Build anew, blocks in given states as they are, what they stand on and the floor."""
+        assembly, own = self.assembly, friction_share(self.problem.mu)
+        space.clear(_breaking(assembly))
+        polygons: dict[int, list[Array]] = defaultdict(list)
+        for index, polygon in self.solids.moving:
+            polygons[index].append(polygon)
+        bodies = list[int]()
+        for index, state in enumerate(states):
+            text = prisms(polygons[index], float(assembly.depths[index]))
+            built, masses = (
+                State(state.place, self.frame.quaternion),
+                _masses(self.problem, index),
+            )
+            bodies.append(space.hulls(text, own, built, masses))
+        # As deep as it is drawn.
+        deep = float(assembly.depths.max())
+        for polygon in self.solids.fixed:
+            middle = polygon.mean(axis=0)
+            space.hulls(prisms([polygon - middle], deep), own, self._of(middle))
+        space.floor(own, self._of(np.array([0.0, self.solids.level])), [0.0, 1.0, 0.0])
+        space.step()
+        for body, state in zip(bodies, states, strict=True):
+            space.put(body, state)
+        space.pull(self.problem.gravity)
+        return bodies
+
+    def _at(self, index: int) -> State:
+        """Return how the body of a block, or of the support, is built."""
         if index == SUPPORT:
-            own = friction_share(problem.friction[its[0].joint]) ** 2 / mu
-        placed = [
-            replace(box, centre=[*box.centre[:2], float(layers[joint])])
-            for joint, _, box in its
-        ]
-        place = place_of(space.frame, assembly, index)
-        body = space.layered(placed, own, place, _masses(problem, index))
-        for each in its:
-            ends[each.joint].append((body, -1, each.sense))
-        bodies.append(body)
-    joints = _meet(space, ends)
-    space.step()
-    space.pull(problem.gravity)
-    return Built(bodies[: len(blocks)], joints)
+            return self._of(np.zeros(2))
+        return self._of(self.assembly.blocks[index].centre / self.assembly.size)
 
-
-def solid(space: Space, problem: Problem, solids: Solids, states: Sequence[State]) -> list[int]:
-    """Build anew, blocks in given states as they are, what they stand on and the floor."""
-    assembly, own = problem.assembly, friction_share(problem.mu)
-    space.clear(_breaking(assembly))
-    polygons: dict[int, list[Array]] = defaultdict(list)
-    for index, polygon in solids.moving:
-        polygons[index].append(polygon)
-    bodies = list[int]()
-    for index, state in enumerate(states):
-        text = prisms(polygons[index], float(assembly.depths[index]))
-        bodies.append(space.hulls(text, own, list(state.place), _masses(problem, index)))
-    # As deep as it is drawn.
-    deep = float(assembly.depths.max())
-    for polygon in solids.fixed:
-        middle = polygon.mean(axis=0)
-        space.hulls(prisms([polygon - middle], deep), own, space.frame.place(middle))
-    space.floor(own, space.frame.place(np.array([0.0, solids.level])))
-    space.step()
-    for body, state in zip(bodies, states, strict=True):
-        space.put(body, state)
-    space.pull(problem.gravity)
-    return bodies
+    def _of(self, place: Array) -> State:
+        return State(self.frame.place(place), self.frame.quaternion)
 
 
 def _masses(problem: Problem, index: int) -> list[float] | None:
@@ -181,16 +227,6 @@ def _masses(problem: Problem, index: int) -> list[float] | None:
         return None
     mass, _, inertia, _, *across = problem.assembly.spatial_masses[index].tolist()
     return [mass, *([LOCK, LOCK] if problem.is_planar else across), inertia]
-
-
-def _meet(space: Space, ends: Ends) -> dict[tuple[int, int, int, int], list[tuple[int, float]]]:
-    """Let the two sides of each joint touch each other."""
-    joints: dict[tuple[int, int, int, int], list[tuple[int, float]]] = defaultdict(list)
-    for joint, ((one, first, sense), (other, second, against)) in ends.items():
-        joints[one, other, first, second].append((joint, sense))
-        joints[other, one, second, first].append((joint, against))
-        space.meet(one, other, first, second)
-    return joints
 
 
 class Touching(NamedTuple):
@@ -202,7 +238,7 @@ class Touching(NamedTuple):
 
 
 def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Touching]]:
-    """Return what touches on each body; see `linked`."""
+    """Return what touches on each body; see `Planar.linked`."""
     assembly = problem.assembly
     found: dict[int, list[Touching]] = defaultdict(list)
     for joint, sides in enumerate(sides_of(assembly)):
@@ -212,9 +248,9 @@ def _boxes(problem: Problem, reaches: Array | None = None) -> dict[int, list[Tou
         for side, depth, sense in zip(pair, deep, (-1.0, 1.0), strict=True):
             at_rest = side.body == SUPPORT
             origin = np.zeros(2) if at_rest else assembly.centres[side.body] / assembly.size
-            box = (edge if side.is_corner else plate)(side, depth, origin, OVERLAP)
-            turned = box.turned(math.pi + TIE * (sense > 0))
-            found[side.body].append(Touching(joint, sense, turned))
+            turn = math.pi + TIE * (sense > 0)
+            box = (edge if side.is_corner else plate)(side, depth, origin, OVERLAP, turn)
+            found[side.body].append(Touching(joint, sense, box))
     return found
 
 

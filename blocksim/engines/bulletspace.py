@@ -16,13 +16,13 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.engines.base import Library
-from blocksim.engines.boxes import Box, Frame
+from blocksim.engines.boxes import Box
 
 bullet: Any = Library("pybullet", quiet=True)
 
@@ -66,6 +66,26 @@ class State(NamedTuple):
     spin: Sequence[float] = NOTHING
 
 
+class Framed(Protocol):
+    """Where the axes of an assembly lie in Bullet's frame."""
+
+    def vector(self, x: float, y: float, z: float) -> list[float]:
+        """Turn a vector of the assembly's axes into Bullet's."""
+        ...
+
+    def told(self, motion: Array) -> tuple[list[float], list[float]]:
+        """Return a motion, (6,) in columns of poses, or forces, as vectors of Bullet."""
+        ...
+
+    def motions(self, linear: Array, angular: Array) -> Array:
+        """Return velocities in columns of poses, (bodies, 6)."""
+        ...
+
+    def poses(self, places: Array, quaternions: Array) -> Array:
+        """Return places and orientations likewise."""
+        ...
+
+
 class _Client:
     """Bullet's functions, told in which space to act."""
 
@@ -86,13 +106,12 @@ class Space:
 
     Parameters
     ----------
-    frame : Frame
-        Where in Bullet's frame the assembly lies, and how bodies are turned when created.
+    frame : Framed
     breaking : float
         Breaking threshold: points of contact closer than that replace each other.
     """
 
-    def __init__(self, frame: Frame, breaking: float) -> None:
+    def __init__(self, frame: Framed, breaking: float) -> None:
         self.frame, self._client = frame, _Client()
         self._begin(breaking)
 
@@ -144,13 +163,13 @@ class Space:
         )
 
     def pull(self, gravity: Array) -> None:
-        """Let gravity act, (3,), z out of the plane."""
+        """Let gravity act, (3,)."""
         self._client.setGravity(*self.frame.vector(*gravity.tolist()))
 
-    def push(self, body: int, x: float, y: float, moment: float) -> None:
-        """Load a body in the next step; Bullet forgets loads after each."""
+    def push(self, body: int, load: Array) -> None:
+        """Load a body in the next step, (6,) in columns of poses; Bullet forgets it after."""
         place, _ = self._client.getBasePositionAndOrientation(body)
-        force, torque = self.frame.vector(x, y, 0.0), self.frame.vector(0.0, 0.0, moment)
+        force, torque = self.frame.told(load)
         self._client.applyExternalForce(body, -1, force, place, bullet.WORLD_FRAME)
         self._client.applyExternalTorque(body, -1, torque, bullet.WORLD_FRAME)
 
@@ -162,7 +181,7 @@ class Space:
         self,
         boxes: Sequence[Box],
         shares: Sequence[float],
-        place: list[float],
+        built: State,
         masses: list[float] | None,
     ) -> int:
         """Create a body with a link for each box, of its share of a friction.
@@ -176,8 +195,8 @@ class Space:
         count = len(boxes)
         body: int = self._client.createMultiBody(
             masses[0] if masses else 0.0,
-            basePosition=place,
-            baseOrientation=self.frame.quaternion,
+            basePosition=built.place,
+            baseOrientation=built.turn,
             linkMasses=[0.0] * count,
             linkCollisionShapeIndices=shapes,
             linkVisualShapeIndices=[-1] * count,
@@ -199,7 +218,7 @@ class Space:
         self,
         boxes: Sequence[Box],
         share: float,
-        place: list[float],
+        built: State,
         masses: list[float] | None,
     ) -> int:
         """Create a body of boxes, all with the same share of a friction.
@@ -212,12 +231,12 @@ class Space:
             collisionFramePositions=[box.centre for box in boxes],
             collisionFrameOrientations=[box.quaternion for box in boxes],
         )
-        body = self._solid(shape, share, place, masses)
+        body = self._solid(shape, share, built, masses)
         self._avoid(body, -1)
         return body
 
     def hulls(
-        self, text: str, share: float, place: list[float], masses: list[float] | None = None
+        self, text: str, share: float, built: State, masses: list[float] | None = None
     ) -> int:
         """Create a body of convex hulls from the text of an .obj file, and its friction share.
 
@@ -230,24 +249,20 @@ class Space:
                 bullet.GEOM_MESH, fileName=str(path), flags=KNOW_FACES
             )
             # The body's creation reads the file once more.
-            return self._solid(shape, share, place, masses)
+            return self._solid(shape, share, built, masses)
 
-    def floor(self, share: float, place: list[float]) -> int:
+    def floor(self, share: float, built: State, upwards: list[float]) -> int:
         """Create a level floor through a place, with its share of a friction."""
-        shape: int = self._client.createCollisionShape(
-            bullet.GEOM_PLANE, planeNormal=[0.0, 1.0, 0.0]
-        )
-        return self._solid(shape, share, place, None)
+        shape: int = self._client.createCollisionShape(bullet.GEOM_PLANE, planeNormal=upwards)
+        return self._solid(shape, share, built, None)
 
-    def _solid(
-        self, shape: int, share: float, place: list[float], masses: list[float] | None
-    ) -> int:
+    def _solid(self, shape: int, share: float, built: State, masses: list[float] | None) -> int:
         # Without maximal coordinates Bullet would push blocks that overlap apart.
         body: int = self._client.createMultiBody(
             masses[0] if masses else 0.0,
             shape,
-            basePosition=place,
-            baseOrientation=self.frame.quaternion,
+            basePosition=built.place,
+            baseOrientation=built.turn,
             useMaximalCoordinates=1,
         )
         self._rub(body, share)
@@ -289,28 +304,13 @@ class Space:
         self._client.resetBasePositionAndOrientation(body, state.place, state.turn)
         self._client.resetBaseVelocity(body, state.shift, state.spin)
 
-    def flatten(self, body: int) -> None:
-        """Put the centre of a body back into the plane, with no velocity out of it."""
-        place, turn, shift, spin = self.state(body)
-        along = self.frame.motions(np.array([shift]), np.array([spin]))[0]
-        self.put(
-            body,
-            State(
-                self.frame.place(self.frame.point(np.array(place))),
-                turn,
-                self.frame.vector(along[0], along[1], 0.0),
-                spin,
-            ),
-        )
-
     def stop(self, body: int) -> None:
         """Let a body rest where it is."""
         self._client.resetBaseVelocity(body, NOTHING, NOTHING)
 
     def hasten(self, body: int, velocity: Array) -> None:
         """Let a body go on with a velocity, (6,), in the columns of `poses`."""
-        x, y, turn, z, *lean = velocity.tolist()
-        shift, spin = self.frame.vector(x, y, z), self.frame.vector(lean[0], lean[1], turn)
+        shift, spin = self.frame.told(velocity)
         self._client.resetBaseVelocity(body, shift, spin)
 
     def poses(self, bodies: Sequence[int]) -> Array:

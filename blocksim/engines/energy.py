@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -60,8 +62,28 @@ class Balance:
     """
 
     def __init__(self, problem: Problem, poses: Array) -> None:
-        self._problem = problem
-        self._first = self._lowest = _potential(problem, poses)
+        self._begin(partial(_potential, problem), partial(_kinetic, problem), poses)
+
+    @classmethod
+    def of(
+        cls,
+        potential: Callable[[Array], float],
+        kinetic: Callable[[Array, Array], float],
+        poses: Array,
+    ) -> Balance:
+        """Look at energies that are told from poses, and from poses and velocities."""
+        found = cls.__new__(cls)
+        found._begin(potential, kinetic, poses)
+        return found
+
+    def _begin(
+        self,
+        potential: Callable[[Array], float],
+        kinetic: Callable[[Array, Array], float],
+        poses: Array,
+    ) -> None:
+        self._potential, self._kinetic = potential, kinetic
+        self._first = self._lowest = potential(poses)
         self._gain = 0.0
 
     def look(self, poses: Array, before: Array, after: Array) -> None:
@@ -70,8 +92,8 @@ class Balance:
         Engines of impulses move by velocities that are those halfway between two places.
         At a place it is their mean, with which a block that falls keeps its energy.
         """
-        still = _potential(self._problem, poses)
-        moving = still + _kinetic(self._problem, poses, (before + after) / 2)
+        still = self._potential(poses)
+        moving = still + self._kinetic(poses, (before + after) / 2)
         self._gain = max(self._gain, moving - self._first)
         self._lowest = min(self._lowest, still)
 

@@ -1,92 +1,33 @@
-"""MuJoCo ("multi-joint dynamics with contact"): planar, soft contacts, a convex problem a step.
+"""MuJoCo ("multi-joint dynamics with contact"): soft contacts, a convex problem a step.
 
-A contact gives way: its force is what slows the approach of its two sides, over a stiffness
-of the engine's own choosing. How a near-critical arch has to be put into it (each point
-measured):
-
-- Contacts carry nothing until they have given way. Left to themselves the blocks start to
-  fall, bounce, slip while nothing presses them, and an arch well above its least thickness
-  comes down. So hold stops them again and again while the contacts take up the weight, and
-  each contact begins with the force of about one block's weight.
-- How far contacts give way goes with the square of the time step, which for the onset test
-  can be as short as round-off allows: `HOLD_STEP`. What a moving run can afford is longer.
-- Contacts too hard for their step leave and return from one to the next; slow motions of the
-  whole take many steps to come to rest where they are too soft. `SAG` is the middle: as soft
-  as lets the blocks as built begin to fall with four fifths of g. Where joints slide fast, a
-  hard contact is thrown open; such a chatter shows, and they are made softer (`CHATTER`).
-- Friction in MuJoCo slows a slip as a damper does, and opens the joint by the friction times
-  that. With the damper of the pressure a slipping contact is lifted off, and chatters. Held
-  from rest, friction is given next to no damper (`LOOSE`); in motion, that of the pressure.
-- Friction is much harder than pressure (`HELD_RATIO`), or resting joints creep.
-- Blocks that fall find a motion of sliding where they could rest, too: nothing presses their
-  joints until they have moved. So the test can be begun with forces (`begin`). The sides of a
-  joint then reach into each other by what its pressures need: nothing has to give way, and
-  contacts can be the hardest. Friction needs no way, and is left to MuJoCo.
-- Once blocks may meet others (`solids`) they are put into a model of their own, as the bodies
-  they are, with what they stand on and a floor.
-
-The plane is MuJoCo's x and y; a block has three degrees of freedom, x, y and rotation.
+How blocks are put into it is told in `mujocoblocks` for the plane and in `mujocosolids` for
+space, and how they are held and moved in `mujocomotion`.
 """
 
 from __future__ import annotations
 
 import math
-from functools import cached_property
 
-import numpy as np
-
-from blocksim.blocks.assembly import Array, Assembly, displacement
+from blocksim.blocks.assembly import Assembly
 from blocksim.blocks.problem import Problem
-from blocksim.engines.base import Engine, Quality, Settings
-from blocksim.engines.energy import Balance
-from blocksim.engines.mujocoblocks import (
-    RUBBLE_PERIOD,
-    TOLERANCE,
-    joined,
-    library,
-    rubble,
-    ways,
-)
-from blocksim.engines.mujocostep import coulomb_step
-from blocksim.engines.solids import Solids
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.engines.base import Engine, Settings, World
+from blocksim.engines.mujocoblocks import Planar, library
+from blocksim.engines.mujocomotion import CHATTER, STILL, Moving
 
-HOLD_STEP = 1e-5
-"""Time step of the onset test."""
 HOLD_SWEEPS = 20_000
 """Most time steps of the onset test."""
 UNAIDED = 10_000
 """After how many of them it begins anew, with forces of limit analysis."""
-LEAST_SWEEPS = 100
-PAUSE = 5.0
-"""Time between two stops of the blocks while they are held, in units of a contact's period."""
+HOLD_IN_SPACE, UNAIDED_IN_SPACE = 6_000, 1_500
+"""The same in space."""
 STEP, PARTS = 0.01, 33
 """Time step of a moving run, and MuJoCo's own steps in it."""
 SHORT = 0.1
 """Length of a joint below which steps are finer [size]."""
-SETTLING = 2000
-"""MuJoCo's steps in which contacts take up the weight before a moving run."""
-STILL = 1e-5
 NOISE = 1e-5
 CLOSING = 1e-3
-SAG = 4.0
-"""Softness of the whole: blocks begin to fall with g SAG / (1 + SAG)."""
-HARDEST, HARD, SOFTEST = 1e-4, 0.1, 1.0
-"""Softness of contacts: MuJoCo's least, the most to begin with, and the most."""
-CHATTER, SOFTER = 0.1, 10.0
-"""Scatter of accelerations from which contacts are made softer [g], and how much."""
-STEADY = 0.1
-"""Share by which accelerations may differ from one part of the onset test to the next."""
-PERIOD, SHORTEST = 1.25, 2.5
-"""Period of a contact times the root of its softness and force, and its least [steps]."""
-DAMPING = 2.0
-"""Of a contact, in units of the critical."""
-LOOSE = 10.0
-"""Time constant of friction held from rest."""
-HELD_RATIO, RATIO = 1e6, 1e4
-"""How much harder friction is than pressure, in the onset test and in motion."""
-GENTLE, FIRMER = 20.0, 0.8
-"""That period at first, which lets joints that have sunk into each other rise without a push,
-and by how much it shrinks in each step."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -103,199 +44,30 @@ def rule(assembly: Assembly) -> Settings:
     )
 
 
-class _Bodies:
-    """A MuJoCo model with one body for each block, and its state.
-
-    A sweep is one of MuJoCo's steps, which solves the contacts to their end.
-    """
-
-    def __init__(self, problem: Problem, settings: Settings) -> None:
-        assembly = problem.assembly
-        self._problem = problem
-        self._loaded = problem.is_loaded
-        self._part = settings.step / settings.sweeps
-        self._parts = settings.sweeps
-        self._step = settings.step
-        self._is_rubble, self._deepest, self._period = False, 0.0, GENTLE
-        self._scatter, self._steady = 0.0, True
-        self._model = joined(problem)
-        self._state = library.MjData(self._model)
-        self._places = assembly.built[:-1]
-        self._zero = np.zeros(self._places.size)
-        self._balance = Balance(problem, self._places)
-        self._pull()
-        self._pressures: Array | None = None
-        self._softness, self._force = HARDEST, 1 / HARDEST
-        self._choose(HOLD_STEP, LOOSE)
-        # With the hardest contacts the blocks as built fall a little: that tells of all others.
-        library.mj_forward(self._model, self._state)
-        fall = float(displacement(self._state.qacc.reshape(-1, 3), assembly))
-        self._force = max(1.0, float(self._state.efc_force.max(initial=0.0)))
-        self._softness = min(max(SAG * HARDEST * (1 - fall) / fall, HARDEST), HARD)
-        self._choose(HOLD_STEP, LOOSE)
-
-    def begin(self, forces: Array) -> None:
-        """Begin anew, with joints that press by themselves as the forces given do.
-
-        Where these do not balance blocks start to move, and contacts have to follow.
-        """
-        self._pressures = np.maximum(forces[:, :, 0], 0.0)
-        self._scatter, self._steady = 0.0, True
-        for softness in (HARDEST, self._softness):
-            self._softness = softness
-            self._press(HOLD_STEP)
-            library.mj_forward(self._model, self._state)
-            start = self._starts().reshape(-1, 3)
-            if displacement(start, self._problem.assembly) < STILL:
-                break
-
-    def _press(self, step: float) -> None:
-        """Put blocks where they were built, their contacts as far given way as they press."""
-        if self._pressures is None:
-            self._choose(step, LOOSE)
-            return
-        period, impedance = self._period_at(step), _impedance(self._softness)
-        unit = (1 - impedance) * (DAMPING * period) ** 2
-        needed = unit * ways(self._problem.assembly, self._pressures)
-        self._model = joined(self._problem, needed - self._unit(period))
-        self._state = library.MjData(self._model)
-        # Where a step gains little, forces between the hardest contacts may be far off still.
-        self._model.opt.tolerance = 0.0
-        self._choose(step, LOOSE)
-        self._pull()
-
-    def _period_at(self, step: float) -> float:
-        """Return the period of contacts that suits a time step."""
-        return step * max(PERIOD / math.sqrt(self._softness * self._force), SHORTEST)
-
-    def _unit(self, period: float) -> float:
-        """Return how far one block's weight presses into a contact, about."""
-        return self._softness * (DAMPING * period) ** 2
-
-    def _choose(self, step: float, slip: float) -> None:
-        """Set the time step, the contacts that suit it, and the time constant of friction."""
-        period, impedance = self._period_at(step), _impedance(self._softness)
-        model = self._model
-        model.opt.timestep = step
-        model.opt.impratio = HELD_RATIO if slip else RATIO
-        model.pair_solref[:] = [period, DAMPING]
-        model.pair_solreffriction[:] = [slip or period, 1.0]
-        model.pair_solimp[:] = [impedance, impedance, 1.0, 0.5, 2.0]
-        model.pair_margin[:] = self._unit(period)
-        self._pause = math.ceil(PAUSE * period / step)
-
-    def _pull(self) -> None:
-        """Let loads act; MuJoCo keeps them until told others."""
-        if self._loaded:
-            poses = self._places + self._state.qpos.reshape(-1, 3)
-            loads = self._problem.loads(poses)
-            self._state.qfrc_applied[:] = loads.ravel()
-
-    def _settle(self, sweeps: int) -> None:
-        """Let the contacts take up the weight, stopping the blocks again and again."""
-        for _ in range(sweeps // self._pause):
-            library.mj_step(self._model, self._state, self._pause)
-            self._state.qvel[:] = 0.0
-
-    def hold(self, sweeps: int) -> Array:
-        """Take steps from rest, very short ones, and return the accelerations they end with.
-
-        What holds impulses in other engines is how far the contacts have given way. That is
-        kept, a millionth of the size, and the blocks are stopped.
-        """
-        if self._scatter > CHATTER and self._softness < SOFTEST:
-            self._softness = min(SOFTER * self._softness, SOFTEST)
-            self._state.qpos[:] = 0.0
-            self._press(HOLD_STEP)
-        early = self._round(max(sweeps, LEAST_SWEEPS) // 2)
-        late = self._round(max(sweeps, LEAST_SWEEPS) // 2)
-        # What still changes is the contacts' doing, not the arch's.
-        self._steady = np.abs(late - early).max() < STEADY * np.abs(late).max() + STILL
-        return late.reshape(-1, 3)
-
-    def _round(self, sweeps: int) -> Array:
-        """Settle, let the blocks go for a while, and return the mean of their accelerations."""
-        self._settle(sweeps // 2)
-        library.mj_step(self._model, self._state, sweeps // 4)
-        rates = np.array([self._accelerations() for _ in range(sweeps // 4)])
-        mean = rates.mean(axis=0)
-        self._scatter = float(np.median(np.abs(rates - mean).max(axis=1)))
-        self._state.qvel[:] = 0.0
-        return mean
-
-    def _accelerations(self) -> Array:
-        library.mj_step(self._model, self._state)
-        return self._starts()
-
-    def _starts(self) -> Array:
-        """Return the accelerations that follow from forces.
-
-        MuJoCo's own do not, where its solver has ended too early.
-        """
-        forces = self._state.qfrc_smooth + self._state.qfrc_constraint
-        found: Array = forces / self._problem.assembly.masses.ravel()
-        return found
-
-    def advance(self, steps: int) -> None:
-        """Let the blocks move; before they first do, contacts take up the weight again."""
-        if not self._is_rubble and self._model.opt.timestep != self._part:
-            self._press(self._part)
-            self._settle(SETTLING)
-            self._zero = self._state.qpos.copy()
-            self._model.opt.tolerance = TOLERANCE
-            self._choose(self._part, 0.0)
-        for _ in range(steps):
-            if self._is_rubble:
-                self._tumble()
-                continue
-            self._pull()
-            library.mj_step(self._model, self._state, self._parts)
-            self._solids.update(self.poses())
-            if self._solids.loose:
-                self._make_solid()
-
-    @cached_property
-    def _solids(self) -> Solids:
-        return Solids(self._problem.assembly)
-
-    def _make_solid(self) -> None:
-        """Make blocks the bodies they are, with what they stand on and the floor."""
-        self._is_rubble = True
-        moved, velocities = self._state.qpos - self._zero, self._state.qvel.copy()
-        self._model = rubble(self._problem, self._solids)
-        self._state = library.MjData(self._model)
-        self._state.qpos[:], self._state.qvel[:] = moved, velocities
-        self._zero = np.zeros_like(moved)
-
-    def _tumble(self) -> None:
-        """Take a step of blocks that meet."""
-        length = self._model.opt.timestep
-        self._model.geom_solref[:, 0] = self._period * length
-        self._period = max(RUBBLE_PERIOD, FIRMER * self._period)
-        self._pull()
-        for _ in range(max(1, round(self._step / length)) - 1):
-            coulomb_step(self._model, self._state)
-        poses, before = self.poses(), self._state.qvel.reshape(-1, 3).copy()
-        coulomb_step(self._model, self._state)
-        self._balance.look(poses, before, self._state.qvel.reshape(-1, 3))
-        gaps = self._state.contact.dist
-        self._deepest = max(self._deepest, -float(gaps.min(initial=0.0)))
-
-    def poses(self) -> Array:
-        """Return centres of mass and rotations, less how far contacts had given way at rest."""
-        return self._places + (self._state.qpos - self._zero).reshape(-1, 3)
-
-    def quality(self) -> Quality:
-        """Tell how far accelerations held at rest were from steady."""
-        residual = self._scatter if self._steady else math.inf
-        if not self._is_rubble:
-            return Quality(residual=residual)
-        return Quality(residual=residual, penetration=self._deepest, gain=self._balance.gain)
+def rule_in_space(assembly: SpatialAssembly) -> Settings:  # noqa: ARG001 - a rule is given one
+    """Choose as for joints that are not short; forces are given earlier, as steps are dear."""
+    return Settings(
+        step=STEP,
+        sweeps=PARTS,
+        hold_sweeps=HOLD_IN_SPACE,
+        unaided=UNAIDED_IN_SPACE,
+        still=STILL,
+        noise=NOISE,
+        closing=CLOSING,
+        residual=CHATTER,
+    )
 
 
-def _impedance(softness: float) -> float:
-    """Return what MuJoCo calls so: the share of its force by which a contact is not soft."""
-    return min(1 / (1 + softness), float(library.mjMAXIMP))
+def bodies(problem: Problem, settings: Settings) -> World:
+    """Return blocks of the plane."""
+    return Moving(Planar(problem), settings)
+
+
+def blocks_in_space(problem: SpatialProblem, settings: Settings) -> World:
+    """Return blocks in space, whose code is loaded where it is asked for."""
+    from blocksim.engines.mujocosolids import Spatial
+
+    return Moving(Spatial(problem), settings)
 
 
 ENGINE = Engine(
@@ -305,7 +77,9 @@ ENGINE = Engine(
     remedy="pip install 'mujoco-core>=4.0.1'",
     version_of=lambda: str(library.__version__),
     rule=rule,
-    build=_Bodies,
+    build=bodies,
+    rule_in_space=rule_in_space,
+    build_in_space=blocks_in_space,
     finest=1e-3,
     takes_forces=True,
     keeps_impulses=True,

@@ -8,14 +8,16 @@ alone friction has settings of its own. One face of each joint reaches beyond th
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from blocksim.blocks.assembly import SUPPORT, Array, Assembly
+from blocksim.blocks.assembly import PLANAR, SUPPORT, Array, Assembly, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.engines.base import FRICTION_CAP, Library
 from blocksim.engines.boxes import plate, uneven_depths
+from blocksim.engines.energy import Balance
 from blocksim.engines.faces import reaching, sides_of
 from blocksim.engines.solids import Solids
 
@@ -28,10 +30,8 @@ RUBBLE_SOFTNESS, RUBBLE_RATIO = 1e-3, 10.0
 """How soft they are then, and how much harder friction is than pressure."""
 
 
-def _bodies(problem: Problem) -> tuple[Any, list[Any]]:
-    """Return a model of bodies that move in the plane, without shapes, and the bodies."""
-    assembly, gravity = problem.assembly, problem.gravity
-    size = assembly.size
+def spec_of(gravity: Array) -> Any:
+    """Return a model without bodies, and how it is solved."""
     spec = library.MjSpec()
     option = spec.option
     option.gravity = gravity.tolist()
@@ -40,6 +40,93 @@ def _bodies(problem: Problem) -> tuple[Any, list[Any]]:
     option.tolerance = TOLERANCE
     # It would put all blocks back in silence where numbers overflow.
     option.disableflags |= library.mjtDisableBit.mjDSBL_AUTORESET
+    return spec
+
+
+def compiled(spec: Any) -> Any:
+    """Return the model of joints that are contacts."""
+    spec.option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
+    model = spec.compile()
+    # A box turned by next to nothing is as its body to MuJoCo, unless it is told.
+    model.geom_sameframe[:] = library.mjtSameFrame.mjSAMEFRAME_NONE
+    return model
+
+
+def look_of(mu: float) -> dict[str, Any]:
+    """Return what bodies that may meet any other have."""
+    return {
+        "friction": [min(mu, FRICTION_CAP), 0.0, 0.0],
+        "condim": 3,
+        "solref": [RUBBLE_PERIOD * RUBBLE_STEP, 1.0],
+        "solimp": [*[1 / (1 + RUBBLE_SOFTNESS)] * 2, 1.0, 0.5, 2.0],
+    }
+
+
+class Planar:
+    """The blocks of a problem in the plane as bodies that slide along x and y, and turn.
+
+    Parameters
+    ----------
+    problem : Problem
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem, self._assembly = problem, problem.assembly
+        self._built = self._assembly.built[:-1]
+        self.masses: Array = self._assembly.masses.ravel()
+
+    @property
+    def solids(self) -> Solids:
+        """Polygons, and from when on they may meet."""
+        return self._solids
+
+    @cached_property
+    def _solids(self) -> Solids:
+        return Solids(self._assembly)
+
+    def joined(self, reaches: Array | None = None) -> Any:
+        """Return a model of bodies that touch at joints."""
+        return joined(self._problem, reaches)
+
+    def rubble(self) -> Any:
+        """Return a model of bodies that may meet."""
+        return rubble(self._problem, self._solids)
+
+    def ways(self, pressures: Array) -> Array:
+        """Return how far contacts at both ends of each joint give way, (joints, 2)."""
+        return ways(self._assembly, pressures)
+
+    def poses(self, places: Array, zero: Array) -> Array:
+        """Return centres and rotations, (blocks, 3)."""
+        return self._built + (places - zero).reshape(-1, PLANAR)
+
+    def placed(self, poses: Array) -> Array:
+        """Return what blocks have moved."""
+        return (poses - self._built).ravel()
+
+    def rates(self, places: Array, moved: Array) -> Array:  # noqa: ARG002 - of both
+        """Return velocities, (blocks, 3)."""
+        return moved.reshape(-1, PLANAR).copy()
+
+    def loads(self, places: Array) -> Array | None:
+        """Return loads besides gravity."""
+        if not self._problem.is_loaded:
+            return None
+        return self._problem.loads(self.poses(places, np.zeros_like(places))).ravel()
+
+    def displacement(self, moved: Array) -> float:
+        """Return the largest displacement of any corner."""
+        return float(displacement(moved, self._assembly))
+
+    def balance(self, poses: Array) -> Balance:
+        """Return what looks at the energy."""
+        return Balance(self._problem, poses)
+
+
+def _bodies(problem: Problem) -> tuple[Any, list[Any]]:
+    """Return a model of bodies that move in the plane, without shapes, and the bodies."""
+    assembly = problem.assembly
+    size, spec = assembly.size, spec_of(problem.gravity)
     bodies: list[Any] = []
     for index, block in enumerate(assembly.blocks):
         mass, _, inertia, _, *across = assembly.spatial_masses[index].tolist()
@@ -71,7 +158,6 @@ def joined(problem: Problem, reaches: Array | None = None) -> Any:
     """
     assembly = problem.assembly
     spec, bodies = _bodies(problem)
-    spec.option.enableflags |= library.mjtEnableBit.mjENBL_DIAGEXACT
     centres = assembly.built[:, :2]
     depth = np.append(uneven_depths(assembly), 2 * assembly.depths.max())
     for k, pair in enumerate(sides_of(assembly)):
@@ -97,10 +183,7 @@ def joined(problem: Problem, reaches: Array | None = None) -> Any:
             condim=3,
             friction=[mu] * 2 + [0.0] * 3,
         )
-    model = spec.compile()
-    # A box turned by next to nothing is as its body to MuJoCo, unless it is told.
-    model.geom_sameframe[:] = library.mjtSameFrame.mjSAMEFRAME_NONE
-    return model
+    return compiled(spec)
 
 
 def ways(assembly: Assembly, pressures: Array) -> Array:
@@ -132,12 +215,7 @@ def rubble(problem: Problem, solids: Solids) -> Any:
     spec, bodies = _bodies(problem)
     spec.option.timestep = RUBBLE_STEP
     spec.option.impratio = RUBBLE_RATIO
-    look = {
-        "friction": [min(problem.mu, FRICTION_CAP), 0.0, 0.0],
-        "condim": 3,
-        "solref": [RUBBLE_PERIOD * RUBBLE_STEP, 1.0],
-        "solimp": [*[1 / (1 + RUBBLE_SOFTNESS)] * 2, 1.0, 0.5, 2.0],
-    }
+    look = look_of(problem.mu)
     owners = [bodies[index] for index, _ in solids.moving]
     owners += [spec.worldbody] * len(solids.fixed)
     polygons = [polygon for _, polygon in solids.moving] + solids.fixed

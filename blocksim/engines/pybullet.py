@@ -1,55 +1,32 @@
 """Bullet through pybullet: three dimensions, off-screen, sequential impulses, Coulomb friction.
 
-How blocks are put into it is told in `engines.bulletblocks`. How they are moved:
-
-- Friction is forgotten after every step, and with links pressures are, too. The
-  sweeps this takes hardly depend on the step: long steps, each solved until a sweep changes
-  next to nothing.
-- Blocks let go are built anew: Bullet keeps pressures of bodies without links, and
-  accelerations at rest come from bodies with links, whose friction is true. Once they turn
-  so fast that a step would open a level joint they have links again.
-- Once blocks may meet others (`solids`) all are built anew, as hulls that know their faces,
-  with what they stand on and a floor.
+How blocks are put into it is told in `bulletblocks` for the plane and in `bulletsolids` for
+space, and how they are moved in `bulletmotion`.
 """
 
 from __future__ import annotations
 
-import math
-from functools import cached_property
 from importlib.metadata import version
 
 import numpy as np
 
-from blocksim.blocks.assembly import PLANAR, SPATIAL, SUPPORT, Array, Assembly, displacement
+from blocksim.blocks.assembly import SUPPORT, Array, Assembly
 from blocksim.blocks.problem import Problem
-from blocksim.engines.base import Engine, Quality, Settings
-from blocksim.engines.boxes import TURNS, Frame, unwound
-from blocksim.engines.bulletblocks import (
-    breaking_of,
-    can_be_layered,
-    layered,
-    linked,
-    place_of,
-    solid,
-)
-from blocksim.engines.bulletspace import MOST_FRICTION, SLOP, Space, State
-from blocksim.engines.energy import Balance
-from blocksim.engines.solids import Solids
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.engines.base import Engine, Settings, World
+from blocksim.engines.boxes import Frame
+from blocksim.engines.bulletblocks import Planar
+from blocksim.engines.bulletmotion import SWEEPS, Moving
+from blocksim.engines.bulletspace import MOST_FRICTION
 
 UNTURNED = Frame()
 
 DEEPEST = 1.5e-6
 """Overlap of blocks as built from which they are not trusted [size]."""
-PRESSED, SOFT = 1e-7, 10.0
-"""How far the joint with most pressure reaches into itself where pressures are given [size],
-and stiffness of joints times the square of the step in which they are solved [mean mass]."""
-SETTLED = 1e-3
-"""Acceleration from which on blocks that are pressed stay where they have given way to [g]."""
 STEP = 0.1
 SHORT, SHORTEST = 0.1, 1e-3
 """Length of a joint below which errors shrink more slowly, and shortest measured [size]."""
-SWEEPS = 100
-"""Most sweeps of a step, for each pair of blocks."""
 HOLD_SWEEPS = 600
 """Most sweeps of the onset test, for each pair of blocks."""
 LEAST_HOLD = 600_000
@@ -57,26 +34,11 @@ LEAST_HOLD = 600_000
 UNAIDED = 0.1
 """Share of these sweeps before forces of equilibrium are given, where no joint is short:
 springs on a short joint give way too easily, and never come to rest."""
+SWEEPS_IN_SPACE, HOLD_IN_SPACE, UNAIDED_IN_SPACE = 1000, 300_000, 30_000
+"""Most sweeps in space: of a step for each block, of the onset test, and of it unaided."""
 STILL = 1e-5
 NOISE = 1e-6
 """Way of an arch at rest by the last of each step's errors, in hundreds of units of time."""
-ACCURACY = 1e-5
-"""Error of the accelerations at which a step counts as solved [g]."""
-SHARE = 1e-4
-"""The same as a share of the velocities, once blocks move fast."""
-RELAXATION = 3.0
-"""Sweeps in which an error shrinks e-fold, for each pair of blocks (measured)."""
-TRAVEL = 5e-3
-"""Way of a corner in a step above which the step is divided [size]."""
-FINEST = 20
-"""Most parts of a step."""
-LONGEST_TUMBLE, MOST_PARTS = 0.005, 400
-"""Longest part of a step, and most of them, once blocks may meet."""
-TUMBLE_SWEEPS = 100
-IMPACT = 10.0
-"""Acceleration from which a block has met something [g]."""
-BESIDE = 1e-7
-"""Distance from the plane from which blocks that meet are put back into it [size]."""
 
 
 def rule(assembly: Assembly) -> Settings:
@@ -108,8 +70,29 @@ def _pairs(assembly: Assembly) -> float:
     return (len(assembly.blocks) + 1) ** 2 * max(1.0, SHORT / max(assembly.shortest, SHORTEST))
 
 
-class Bodies:
-    """Bullet's space with one body for each block.
+def rule_in_space(assembly: SpatialAssembly) -> Settings:
+    """Choose sweeps for blocks in space, which are held by many joints: fewer for each pair."""
+    blocks = len(assembly.blocks)
+    return Settings(
+        step=STEP,
+        sweeps=round(SWEEPS_IN_SPACE * (blocks + 1)),
+        hold_sweeps=HOLD_IN_SPACE,
+        unaided=UNAIDED_IN_SPACE,
+        still=STILL,
+        noise=NOISE,
+        penetration=DEEPEST,
+    )
+
+
+def blocks_in_space(problem: SpatialProblem, settings: Settings) -> World:
+    """Return blocks in space, whose code is loaded where it is asked for."""
+    from blocksim.engines.bulletsolids import Spatial
+
+    return Moving(Spatial(problem), settings)
+
+
+class Bodies(Moving):
+    """Blocks of the plane in Bullet, which tell what their joints carry.
 
     Parameters
     ----------
@@ -121,199 +104,21 @@ class Bodies:
     """
 
     def __init__(self, problem: Problem, settings: Settings, frame: Frame = UNTURNED) -> None:
-        assembly = problem.assembly
-        self._problem = problem
-        self._assembly, self._settings, self._frame = assembly, settings, frame
-        self._pairs = settings.sweeps / SWEEPS
-        self._space = Space(frame, breaking_of(problem))
-        self._built = [
-            State(place_of(frame, assembly, index), frame.quaternion)
-            for index in range(len(assembly.blocks))
-        ]
-        self._turned = np.zeros((len(assembly.blocks), len(TURNS)))
-        self._is_free = self._is_layered = self._is_rubble = False
-        self._gains = np.zeros(len(assembly.blocks))
-        self._last, self._rate = 0.0, np.zeros((len(assembly.blocks), SPATIAL))
-        self._short, self._held = settings.step, 0
-        self._bodies, self._joints = linked(self._space, problem)
-        self._space.find_contacts()
-        self._deepest = self._space.overlap()
-        self._space.pull(problem.gravity)
-        self._balance = Balance(problem, self.poses())
-
-    def _let_go(self) -> None:
-        """Build anew for motion, where bodies without links will do."""
-        self._is_free = True
-        if can_be_layered(self._problem) and not self._lifts():
-            self._is_layered = True
-            self._bodies, self._joints = layered(self._space, self._problem)
-            self._short, sweeps, self._held = self._settings.step, self._held, 0
-            self.hold(sweeps)
-
-    def _lifts(self) -> bool:
-        """Tell whether in the next step a corner may lift off, on its arc, by what overlaps.
-
-        Of bodies without links Bullet forgets contacts of a level joint as soon as it is open.
-        """
-        turns = np.abs(self._velocities()[:, PLANAR - 1]) + self._gains
-        reach = self._assembly.reach / self._assembly.size
-        return bool((reach * (self._settings.step * turns) ** 2 / 2 > SLOP).any())
-
-    def _link(self) -> None:
-        """Build anew, of bodies with links, where blocks are."""
-        states = [self._space.state(body) for body in self._bodies]
-        self._space.clear(breaking_of(self._problem))
-        self._space.pull(self._problem.gravity)
-        self._bodies, self._joints = linked(self._space, self._problem)
-        for body, state in zip(self._bodies, states, strict=True):
-            self._space.put(body, state)
-
-    def begin(self, forces: Array) -> None:
-        """Build anew, of joints that press by themselves as the forces given do.
-
-        Bullet keeps no impulses. So joints are springs whose faces reach into each other by
-        what it takes; they are so soft, for the step in which they are solved, that pressures
-        stay near what is given. Friction is left to Bullet.
-        """
-        pressures = np.maximum(forces[:, :, 0], 0.0)
-        corner = self._assembly.joint_arrays.is_corner
-        pressures[corner] = pressures[corner].sum(axis=1, keepdims=True)
-        stiffness = max(1.0, float(pressures.max())) / PRESSED
-        self._short, self._held = math.sqrt(SOFT / stiffness), 0
-        self._space.clear()
-        self._space.pull(self._problem.gravity)
-        self._bodies, self._joints = linked(self._space, self._problem, pressures / stiffness)
-        for body, _, link, _ in self._joints:
-            # A pair's stiffness is half of either's.
-            self._space.soften(body, link, 2 * stiffness)
-
-    def hold(self, sweeps: int) -> Array:
-        """Solve the contacts of one step from rest, then put every block back.
-
-        Impulses are not kept: the sweeps made so far are made again.
-        """
-        self._held += sweeps
-        step = self._short
-        self._space.solve_by(step, self._held)
-        self._step()
-        accelerations = self._velocities() / step
-        # Springs that give way by next to nothing make up for what forces given are off.
-        gives = step != self._settings.step and np.abs(accelerations).max() < SETTLED
-        for body, state in zip(self._bodies, self._built, strict=True):
-            if gives:
-                self._space.stop(body)
-            else:
-                self._space.put(body, state)
-        self._gains = self._settings.step * np.abs(accelerations[:, PLANAR - 1])
-        self._rate = accelerations
-        return accelerations
-
-    def advance(self, steps: int) -> None:
-        """Let the blocks move, in parts of a step where they move far."""
-        if not self._is_free:
-            self._let_go()
-        for _ in range(steps):
-            speed = float(displacement(self._velocities(), self._assembly))
-            if not self._is_rubble:
-                self._solids.update(self.poses())
-                if self._solids.loose:
-                    self._is_rubble = True
-                    states = [self._space.state(body) for body in self._bodies]
-                    self._bodies = solid(self._space, self._problem, self._solids, states)
-            if self._is_rubble:
-                self._tumble(speed)
-                continue
-            parts = min(max(1, math.ceil(speed * self._settings.step / TRAVEL)), FINEST)
-            if self._is_layered and self._lifts():
-                self._is_layered = False
-                self._link()
-                # Contacts that are open by a hair are found anew only once they have closed.
-                parts = FINEST
-            step = self._settings.step / parts
-            change = max(ACCURACY * step, SHARE * speed) / (RELAXATION * self._pairs)
-            self._space.solve_by(step, self._settings.sweeps, change=change)
-            before = self._stagger(step)
-            for _ in range(parts):
-                self._step()
-            gained = self._velocities() - before
-            self._gains, self._rate = np.abs(gained[:, PLANAR - 1]), gained / (parts * step)
-
-    def _stagger(self, step: float) -> Array:
-        """Return velocities, those halfway through a step, for a step of another length.
-
-        Blocks that start from rest with a whole step's velocity are half a step early.
-        """
-        velocities = self._velocities()
-        if step != self._last:
-            sudden = np.abs(self._rate).max(axis=1, keepdims=True) > IMPACT
-            velocities += np.where(sudden, 0.0, self._rate) * (self._last - step) / 2
-            for body, velocity in zip(self._bodies, velocities, strict=True):
-                self._space.hasten(body, velocity)
-        self._last = step
-        return velocities
-
-    @cached_property
-    def _solids(self) -> Solids:
-        return Solids(self._assembly)
-
-    def _tumble(self, speed: float) -> None:
-        """Take a step of blocks that meet."""
-        way = self._settings.step * (speed + self._settings.step)
-        finest = self._settings.step / LONGEST_TUMBLE
-        parts = min(math.ceil(max(way / self._solids.largest, finest)), MOST_PARTS)
-        # Impulses of an impact, taken for those of rest, would throw blocks.
-        step = self._settings.step / parts
-        self._space.solve_by(step, TUMBLE_SWEEPS, warm=0.0)
-        self._stagger(step)
-        for _ in range(parts - 1):
-            self._step()
-        poses, before = self.poses(), self._velocities()
-        self._step()
-        after = self._velocities()
-        self._rate = (after - before) / step
-        self._balance.look(poses, before, after)
-        self._deepest = max(self._deepest, self._space.overlap())
-        if self._problem.is_planar:
-            # Impacts kick blocks out of the plane, by 1e-3 of their velocity. What is put back
-            # loses its contacts, and sinks: so only what is off is.
-            off = np.abs(self.poses()[:, PLANAR]) > BESIDE
-            for index in np.flatnonzero(off):
-                self._space.flatten(self._bodies[index])
-
-    def _step(self) -> None:
-        """Take a step under gravity and loads."""
-        if self._problem.is_loaded:
-            loads = self._problem.loads(self.poses()[:, :PLANAR])
-            for body, load in zip(self._bodies, loads.tolist(), strict=True):
-                self._space.push(body, *load)
-        self._space.step()
-
-    def poses(self) -> Array:
-        """Return places and rotations, shape (blocks, 6)."""
-        found = self._space.poses(self._bodies)
-        found[:, TURNS] = self._turned = unwound(found[:, TURNS], self._turned)
-        return found
-
-    def _velocities(self) -> Array:
-        return self._space.velocities(self._bodies)
+        self._plane = Planar(problem, frame)
+        super().__init__(self._plane, settings)
 
     def resultants(self) -> Array:
         """Add up the forces of contacts in the plane."""
-        found = np.zeros((len(self._assembly.joints), 3))
+        found = np.zeros((len(self._plane.assembly.joints), 3))
         for pair, place, force in self._space.contacts():
             joint, sense = self._nearest(self._joints[pair], place)
-            found[joint] += sense * self._frame.wrench(place, force)
+            found[joint] += sense * self._plane.frame.wrench(place, force)
         return found
 
     def _nearest(self, joints: list[tuple[int, float]], place: Array) -> tuple[int, float]:
         """Tell which joint of two blocks a contact belongs to."""
-        point, ends = self._frame.point(place), self._assembly.joint_arrays.ends
+        point, ends = self._plane.frame.point(place), self._plane.assembly.joint_arrays.ends
         return min(joints, key=lambda each: np.hypot(*(ends[each[0]] - point).T).min())
-
-    def quality(self) -> Quality:
-        """Tell how deep blocks have overlapped, as built and once they meet others."""
-        gain = self._balance.gain if self._is_rubble else None
-        return Quality(penetration=self._deepest, gain=gain)
 
 
 ENGINE = Engine(
@@ -324,6 +129,8 @@ ENGINE = Engine(
     version_of=lambda: version("pybullet"),
     rule=rule,
     build=Bodies,
+    rule_in_space=rule_in_space,
+    build_in_space=blocks_in_space,
     adjustable=("step", "sweeps", "hold_sweeps", "still", "rest"),
     finest=1e-3,
     is_spatial=True,

@@ -10,6 +10,7 @@ those of `direct` (`contact.neighbours`).
 from __future__ import annotations
 
 from collections import defaultdict
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,17 @@ LARGEST = 0.004
 
 SHARPEST = 0.05
 """Of one and the cosine between two faces, where the corner between them is set back."""
+
+
+class Meeting(Protocol):
+    """When blocks may meet others than those of their joints: `Solids`, or `Polyhedra`."""
+
+    loose: bool
+    largest: float
+
+    def update(self, poses: Array) -> object:
+        """Look where blocks are."""
+        ...
 
 
 class Solids:

@@ -58,6 +58,8 @@ DEEP = 1e-5
 """Overlap that is pushed apart at once [size]."""
 FAR = 1e3
 """Velocity that a contact taken for open cannot lose in a step, over those there are."""
+NO_GUESS: tuple[NDArray[np.int64] | None, Solution | None] = None, None
+"""Pairs, and what their contacts do, where no more is known than of the last step."""
 
 
 class Stepping:
@@ -86,6 +88,8 @@ class Stepping:
         self._turning, self._time = problem.turns_pull, 0.0
         self._free = self._still = problem.pull() / self._mass
         self._solution: Solution | None = None
+        self._guess = NO_GUESS
+        self._seen: tuple[Array, NDArray[np.int64], Touch] | None = None
         self._speeding = np.zeros_like(self._poses)
         self._usual = self._residual = self._penetration = 0.0
         self._way: float = 0.0
@@ -134,12 +138,15 @@ class Stepping:
                 (one[passing], two[passing]) for one, two in (self._begins, self._ends)
             )
             step = first_closing(gap + near / 2, rate, later + near / 2, at_end, step)
+            found = self._keys, self._solution
             vars(self).update(before)
             if step < LEAST * whole:
                 # What touches and approaches at the start hits there.
                 self._look(whole)
                 return 0.0 if self._impact(near) else None
-            passing = self._smooth(step) & (self._end.gap < -near)
+            # What contacts do in a part of a step is what they did in all of it.
+            self._guess = found
+            passing = self._smooth(step) & (self._ends[0] < -near)
             if self._residual > RESIDUAL:
                 return None
             if not passing.any():
@@ -158,7 +165,7 @@ class Stepping:
         self._pull()
         self._shake(step)
         touch = self._touch(self._looked, step)
-        start = self._neighbours.again(self._poses)
+        start = self._contacts()
         rate = self._rates(start.rows, self._velocities)
         shut = self._is_shut(start.gap, rate[:, :2])
         rates = self._rates(touch.rows, self._velocities)
@@ -174,7 +181,7 @@ class Stepping:
         self._advance(step, step * solution.acceleration, 0.5)
         if step > SHORT * self._usual:
             self._speeding = solution.acceleration
-        self._end = end = self._neighbours.again(self._poses)
+        end = self._contacts()
         self._ends = end.gap, self._rates(end.rows, self._velocities)[:, :2]
         passes = end.gap < np.minimum(0.0, start.gap) - CLOSED
         return ~shut & passes & (self._ends[1] < 0)
@@ -182,9 +189,8 @@ class Stepping:
     def _look(self, step: float) -> None:
         """See what is closed, and what approaches, where the blocks are."""
         self._touch(self._poses, step)
-        self._end = self._neighbours.again(self._poses)
-        rate = self._rates(self._end.rows, self._velocities)[:, :2]
-        self._ends = self._end.gap, rate
+        found = self._contacts()
+        self._ends = found.gap, self._rates(found.rows, self._velocities)[:, :2]
         self._shut = self._is_shut(*self._ends)
 
     def _is_shut(self, gap: Array, rate: Array) -> Passing:
@@ -219,7 +225,7 @@ class Stepping:
         if not hits.any():
             return True
         speed = -float(rate[hits].min())
-        touch = self._end
+        touch = self._contacts()
         if len(self._smooth_joints):
             touch.rows[self._smooth_joints, 2:] = 0.0
         rates = self._rates(touch.rows, self._velocities) / speed
@@ -256,7 +262,6 @@ class Stepping:
         if not solution.residual <= UNSOLVED:
             return False
         self._advance(step, step * solution.acceleration, 1.0)
-        self._end = self._neighbours.again(self._poses)
         return True
 
     def _advance(self, step: float, gained: Array, share: float) -> None:
@@ -268,17 +273,18 @@ class Stepping:
 
     def _push_apart(self) -> None:
         """Move blocks that overlap apart, as little as contact and friction allow."""
-        gap = self._end.gap
+        touch = self._contacts()
+        gap = touch.gap
         deep = -float(gap.min(initial=0.0))
         if deep > DEEP and self._solution is not None:
             rates = np.zeros((len(gap), 4))
             rates[:, :2] = gap / deep
             nothing = np.zeros_like(self._poses)
             guess = replace(self._solution, acceleration=nothing)
-            found = self._problem.solve(self._end.rows, rates, nothing, guess, PRECISION)
+            found = self._problem.solve(touch.rows, rates, nothing, guess, PRECISION)
             if found.residual <= UNSOLVED:
                 self._poses = self._poses + deep * found.acceleration
-                deep = -float(self._neighbours.again(self._poses).gap.min())
+                deep = -float(self._contacts().gap.min())
         self._penetration = max(self._penetration, deep)
 
     def _closed(self, touch: Touch) -> Array:
@@ -323,6 +329,14 @@ class Stepping:
             touch.rows[self._smooth_joints, 2:] = 0.0
         return touch
 
+    def _contacts(self) -> Touch:
+        """Find the contacts of the pairs known, where the blocks are."""
+        seen = self._seen
+        if seen is None or seen[0] is not self._poses or seen[1] is not self._keys:
+            seen = self._poses, self._keys, self._neighbours.again(self._poses)
+            self._seen = seen
+        return seen[2]
+
     def _new_problem(self) -> ContactProblem:
         before, after = self._neighbours.before, self._neighbours.after
         self._pairs = np.stack([before, after], axis=1)
@@ -339,8 +353,11 @@ class Stepping:
 
     def _solve(self, touch: Touch, rates: Array, precision: float) -> Solution:
         self._rows = touch.rows
-        solution = self._problem.solve(touch.rows, rates, self._free, self._solution, precision)
-        self._solution = solution
+        keys, guess = self._guess
+        if guess is None or keys is not self._keys:
+            guess = self._solution
+        solution = self._problem.solve(touch.rows, rates, self._free, guess, precision)
+        self._guess, self._solution = NO_GUESS, solution
         # Unlike max, this keeps nan.
         self._residual = float(np.maximum(self._residual, solution.residual))
         return solution

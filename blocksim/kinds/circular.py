@@ -264,7 +264,7 @@ class CircularArch(CurvedArch):
         mine = self.fill is None and problem.assembly is self.built.assembly
         alike = bool((problem.friction == problem.mu).all()) and problem.mu > 0
         still = problem.shaking is None and not problem.is_loaded and not problem.gravity[0]
-        if arch is None or not (mine and alike and still):
+        if arch is None or not (mine and alike and still) or problem.strength is not None:
             return None
         from blocksim.kinds.archoffers import ArchOffers
 

@@ -25,10 +25,13 @@ from blocksim.blocks.maker import Maker, kind_of
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import LENGTH, require
 from blocksim.common.errors import InputError, perhaps
+from blocksim.common.fields import fields_of
 from blocksim.common.files import AnyPath, json_of, read_file, shipped_files, toml_of
 from blocksim.kinds import KINDS
 from blocksim.reading.compas import is_compas, read_compas
+from blocksim.reading.drawing import Reading
 from blocksim.reading.dxf import read_dxf
+from blocksim.reading.scenes import is_scene, read_scene
 from blocksim.reading.svg import read_svg
 
 if TYPE_CHECKING:
@@ -43,6 +46,8 @@ IN_PLANE = (
 """What is accepted where blocks have to lie in the plane."""
 DRAWN = {".dxf": read_dxf, ".svg": read_svg}
 """Endings of drawings, and who reads them."""
+AS_DRAWN = Reading()
+"""A drawing says its unit, and has the layers `blocks` and `supports`."""
 
 
 def shipped_structures() -> dict[str, Path]:
@@ -62,6 +67,8 @@ def load_structure(
     *,
     friction: float | None = None,
     tolerance: float | None = None,
+    depth: float | None = None,
+    reading: Reading = AS_DRAWN,
 ) -> Problem:
     """Read a structure file, a drawing or an assembly of compas.
 
@@ -78,13 +85,18 @@ def load_structure(
         Friction coefficient where the file has none; a drawing never has one. inf allowed.
     tolerance : float, optional
         Gaps and overlaps up to this are closed [m], instead of what the file says.
+    depth : float, optional
+        Length out of the plane of blocks that have none of their own [m], instead of 1.
+    reading : Reading
+        Unit and layers of a drawing.
 
     Raises
     ------
     InputError
         In one line: file, entry, value, and what would be accepted.
     """
-    found = load_any(path, changes, density, friction=friction, tolerance=tolerance)
+    found = load_any(path, changes, density, friction=friction, tolerance=tolerance,
+                     depth=depth, reading=reading)  # fmt: skip
     if not isinstance(found, Problem):
         raise InputError("blocks", "three coordinates", IN_PLANE, where=os.fspath(path))
     return found
@@ -123,12 +135,14 @@ def load_any(
     *,
     friction: float | None = None,
     tolerance: float | None = None,
+    depth: float | None = None,
+    reading: Reading = AS_DRAWN,
 ) -> Problem | SpatialProblem:
     """Read a structure file, which says by its corners whether it lies in the plane.
 
     Parameters
     ----------
-    path, changes, density, friction, tolerance
+    path, changes, density, friction, tolerance, depth, reading
         As of `load_structure`.
 
     Raises
@@ -136,14 +150,25 @@ def load_any(
     InputError
         In one line: file, entry, value, and what would be accepted.
     """
-    from blocksim.blocks.space.files import is_spatial, problem_in_space
+    from blocksim.blocks.space.files import is_spatial
 
-    with named_file(path) as said:
+    with named_file(path, reading) as said:
         data = said if friction is None else with_friction(said, friction)
         data = data if tolerance is None else within(data, tolerance)
         table: object = changed(data, changes) if changes else data
         table = table if density is None else weighed(table, density)
-        return problem_in_space(table) if is_spatial(table) else structure_of(table)
+        if depth is not None:
+            spatial = is_spatial(table)
+            require(not spatial, "depth", depth, "left out: it is of blocks in the plane")
+            table = deepened(table, depth)
+        return any_of(table)
+
+
+def any_of(data: object) -> Problem | SpatialProblem:
+    """Make a problem of what a structure file says, in the plane or in space."""
+    from blocksim.blocks.space.files import is_spatial, problem_in_space
+
+    return problem_in_space(data) if is_spatial(data) else structure_of(data)
 
 
 def with_friction(data: object, friction: float) -> object:
@@ -166,15 +191,15 @@ def within(data: object, tolerance: float) -> object:
 
 
 @contextmanager
-def named_file(path: AnyPath, unit: float | None = None) -> Generator[object]:
+def named_file(path: AnyPath, reading: Reading = AS_DRAWN) -> Generator[object]:
     """Give what a structure file says; what is wrong with it is said with the file's name.
 
     Parameters
     ----------
     path : Path or str
         As of `load_structure`.
-    unit : float, optional
-        Metres that a unit of a drawing is; by default what the drawing says.
+    reading : Reading
+        Unit and layers of a drawing.
 
     Raises
     ------
@@ -194,12 +219,12 @@ def named_file(path: AnyPath, unit: float | None = None) -> Generator[object]:
     require(ending in WRITTEN or ending in DRAWN, "structure", str(path), allowed)
     text = b""
     if ending in WRITTEN:
-        require(unit is None, "--unit", unit, "left out: it is of drawings")
+        require_undrawn(reading)
         text = read_file(path, "structure", allowed, LARGEST_FILES[ending])
     data: object = None
     try:
         drawn = DRAWN.get(ending)
-        data = drawn(path, unit) if drawn else _written(text, WRITTEN[ending])
+        data = drawn(path, reading).structure() if drawn else written(text, WRITTEN[ending])
         yield data
     except InputError as error:
         field = _by_name(error.field, data)
@@ -210,11 +235,27 @@ def named_file(path: AnyPath, unit: float | None = None) -> Generator[object]:
         raise InputError("file", said, f"valid {WRITTEN[ending]}", where=path) from None
 
 
-def _written(text: bytes, language: str) -> object:
-    """Return what a text says, an assembly of compas as a structure file would."""
+def require_undrawn(reading: Reading) -> None:
+    """Refuse what is said of a drawing where there is none."""
+    require(reading.unit is None, "unit", reading.unit, "left out: it is of drawings")
+    named = ", ".join(reading.layers)
+    require(not named, "layer", named, "left out: it is of drawings")
+    require(reading.snap is None, "snap", reading.snap, "left out: it is of drawings")
+
+
+def written(text: bytes, language: str) -> object:
+    """Return what a text says, a scene or an assembly of compas as a structure file would.
+
+    Raises
+    ------
+    InputError, ValueError, RecursionError
+        If it is not of that language, JSON or TOML, or says what cannot be.
+    """
     if language == "TOML":
         return toml_of(text)
     data: object = json_of(text, _once)
+    if is_scene(data):
+        return read_scene(cast("dict[str, Any]", data))
     return read_compas(cast("dict[str, Any]", data)) if is_compas(data) else data
 
 
@@ -267,6 +308,36 @@ def weighed(data: object, density: float) -> object:
         allowed = "left out where a unit weight is given: it is of this block alone"
         require(own is None, f"blocks[{at}].weight", own, allowed)
     return {**table, "density": density}
+
+
+def deepened(data: object, depth: float, *own: type[Maker]) -> object:
+    """Return what a structure file says, its blocks so long out of the plane [m].
+
+    Raises
+    ------
+    InputError
+        If a block has a depth of its own, or a kind none that could be another.
+    """
+    if not isinstance(data, dict):
+        return data
+    table = cast("dict[str, Any]", data)
+    if "kind" in table:
+        kinds = {each.name: each for each in (*ALL, *own)}
+        kind = kinds.get(str(table["kind"]))
+        # What is wrong with its name is said where it is made.
+        known = {"depth"} if kind is None else fields_of(kind)
+        inside = "depth" if "depth" in known else "arch.depth" if "arch" in known else None
+        require(inside is not None, "depth", depth, "left out: its blocks have theirs")
+        return changed(table, {inside or "": depth})
+    blocks: Any = table.get("blocks")
+    made: list[Any] = []
+    for at, block in enumerate(cast("list[Any]", blocks) if isinstance(blocks, list) else ()):
+        said = cast("dict[str, Any]", block) if isinstance(block, dict) else None
+        if said is not None:
+            allowed = "left out where --depth is given: it is of this block alone"
+            require("depth" not in said, f"blocks[{at}].depth", said.get("depth"), allowed)
+        made.append(block if said is None else {**said, "depth": depth})
+    return {**table, "blocks": made}
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

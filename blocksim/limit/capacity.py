@@ -18,7 +18,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import Library
 from blocksim.limit.cones import ROUND_OFF, Cones
-from blocksim.limit.crushing import crushing_forces, most_before_crushing
+from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme, Optimum
 from blocksim.limit.programme import most, most_common, scaled
 from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
@@ -52,6 +52,8 @@ class Collapse:
 class Capacity:
     """What a structure bears besides what acts on it always, of many live loads in turn.
 
+    Where the problem has a strength its blocks crush.
+
     Parameters
     ----------
     problem : Problem
@@ -62,6 +64,8 @@ class Capacity:
         self.cones = Cones(problem)
         self._dead = problem.with_load(0.0).pull()
         self._solver = LinearProgramme()
+        crushes = problem.strength is not None
+        self._crushing = Crushing(problem, self.cones) if crushes else None
 
     def of(self, live: Array) -> Collapse:
         """Find the largest factor on live loads.
@@ -74,11 +78,9 @@ class Capacity:
         cones = self.cones
         column = sparse.csc_array(cones.loads(live)[:, None])
         right = -cones.loads(self._dead)
+        if self._crushing is not None:
+            return self._collapse(self._crushing.most(column, right))
         return self._collapse(most(cones, column, right, (-math.inf, math.inf), self._solver))
-
-    def crushed(self, live: Array, crushing: Array) -> Collapse:
-        """Find the largest factor on live loads of joints that crush (`crushing_forces`)."""
-        return self._collapse(most_before_crushing(self.cones, crushing, live, self._dead))
 
     def _collapse(self, found: Optimum) -> Collapse:
         cones = self.cones
@@ -106,7 +108,10 @@ class Capacity:
         if np.abs(self.cones.balance @ added - right).max() > ROUND_OFF * np.abs(right).max():
             return math.inf
         presses = self.cones.bounded > 0
-        return max(0.0, float((-added[presses] / at_rest[presses]).max()))
+        least = max(0.0, float((-added[presses] / at_rest[presses]).max()))
+        if self._crushing is not None:
+            least = max(least, self._crushing.at_most(at_rest, added))
+        return least
 
     @cached_property
     def _at_rest(self) -> tuple[Array | None, Any, Any]:
@@ -116,23 +121,26 @@ class Capacity:
         if not found.exists or found.values[-1] < ROUND_OFF:
             return None, None, None
         parts = found.values[:-1] + found.values[-1] * cones.bounded
+        if self._crushing is not None:
+            parts = self._crushing.spared(parts, -cones.loads(self._dead))
+        if parts is None:
+            return None, None, None
         room = np.where(cones.bounded > 0, parts, 1.0) ** 2
         spread = sparse.diags_array(room) @ cones.balance.T
         solve: Any = linalg.splu(sparse.csc_array(cones.balance @ spread)).solve
         return parts, spread, solve
 
 
-def collapse(problem: Problem, *, strength: float | None = None) -> Collapse:
+def collapse(problem: Problem) -> Collapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
-    The problem's own load factor does not matter.
+    The problem's own load factor does not matter. Below 0 it falls, or crushes, without them.
 
     Parameters
     ----------
     problem : Problem
-        In its plane, with live loads.
-    strength : float, optional
-        Compressive strength of the blocks [Pa] (`limit.crushing`); by default they are rigid.
+        In its plane, with live loads. Where it has a strength its blocks crush
+        (`limit.crushing`).
 
     Returns
     -------
@@ -141,13 +149,11 @@ def collapse(problem: Problem, *, strength: float | None = None) -> Collapse:
     Raises
     ------
     InputError
-        If a strength is out of range, or nothing is known that it could be compared with.
+        If nothing is known that a strength could be compared with.
     """
     capacity = Capacity(problem)
     still = np.zeros(capacity.cones.shape)
     live = sum((problem.of_load(load) for load in problem.live), still)
-    if strength is not None:
-        return capacity.crushed(live, crushing_forces(problem, strength))
     found, at_rest = capacity.of(live), problem.with_load(0.0)
     return replace(
         found,

@@ -18,6 +18,7 @@ from blocksim.limit import (
     resultants,
     thrust_range,
 )
+from blocksim.limit.crushing import Needed
 from blocksim.limit.margins import crown
 
 STRONG = 1 + 1e-9
@@ -51,10 +52,13 @@ class Carried:
     least, greatest : Thrust or None
         The states of least and of greatest thrust there; None where there is no such joint or
         no equilibrium.
+    needed : Needed or None
+        The least compressive strength; None where the problem has no strength, or none
+        suffices.
     forces : (joints, 2, 2) float or None
-        Of the safest state, as of `blocksim.limit.Equilibrium`. Where the structure falls they
-        are those that lack least strength, and no forces of equilibrium; None where there are
-        none either.
+        Of the safest state, as of `blocksim.limit.Equilibrium`; where blocks crush, of that
+        which presses them least. Where the structure falls they are those that lack least
+        strength, and no forces of equilibrium; None where there are none either.
     """
 
     problem: Problem
@@ -66,10 +70,14 @@ class Carried:
     least: Thrust | None
     greatest: Thrust | None
     forces: Array | None
+    needed: Needed | None = None
 
     @property
     def stands(self) -> bool:
         """Whether joints have the strength that the safest state asks for."""
+        strength = self.problem.strength
+        if strength is not None and (self.needed is None or self.needed.high > strength):
+            return False
         return self.strength_used is not None and self.strength_used <= STRONG
 
     @property
@@ -114,7 +122,9 @@ class Carried:
         return depths.pop() if len(depths) == 1 else None
 
 
-def carried_by(problem: Problem, joint: int | None = None) -> Carried:
+def carried_by(
+    problem: Problem, joint: int | None = None, needed: Needed | None = None
+) -> Carried:
     """Find what a structure carries: three searches and two linear programmes.
 
     Parameters
@@ -123,6 +133,8 @@ def carried_by(problem: Problem, joint: int | None = None) -> Carried:
         In its plane.
     joint : int, optional
         Where thrust is asked for; by default at the crown (`blocksim.limit.margins.crown`).
+    needed : Needed, optional
+        The least strength of blocks that crush.
 
     Returns
     -------
@@ -145,7 +157,8 @@ def carried_by(problem: Problem, joint: int | None = None) -> Carried:
         joint=joint,
         least=least_thrust,
         greatest=greatest,
-        forces=found.forces,
+        forces=found.forces if needed is None else needed.forces,
+        needed=needed,
     )
 
 

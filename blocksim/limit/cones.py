@@ -208,6 +208,14 @@ def joint_weights(problem: Problem, weights: Array) -> Array:
     return np.append(weights, math.inf)[problem.assembly.sides].min(axis=0)
 
 
+def joint_areas(problem: Problem) -> Array:
+    """Return width times depth of each joint, (joints,) float [m^2]; 0 of a corner."""
+    assembly = problem.assembly
+    depths = np.append(assembly.depths * assembly.size, np.inf)
+    depth = depths[assembly.sides].min(axis=0)
+    return assembly.joint_arrays.length * assembly.size * depth
+
+
 def carried_weights(problem: Problem) -> Array:
     """Estimate the weight that each block carries: its own, loads, and what comes from above.
 

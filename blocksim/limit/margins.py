@@ -16,6 +16,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.limit.cones import Cones
+from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme
 from blocksim.limit.programme import extreme, most_common
 from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
@@ -101,10 +102,14 @@ def thrust_range(problem: Problem, joint: int) -> tuple[Thrust, Thrust] | None:
     sense = math.copysign(1.0, arrays.normal[joint, 0])
     across[joint, :, 0] = sense * arrays.normal[joint, 0]
     across[joint, :, 1] = sense * arrays.tangent[joint, 0]
-    cost = cones.work(across)
-    solver, ends = LinearProgramme(), list[Thrust]()
+    cost, ends = cones.work(across), list[Thrust]()
+    solver = LinearProgramme()
+    crushing = None if problem.strength is None else Crushing(problem, cones)
     for sign in (1.0, -1.0):
-        found = extreme(cones, sign * cost, problem.pull(), solver)
+        if crushing is None:
+            found = extreme(cones, sign * cost, problem.pull(), solver)
+        else:
+            found = crushing.extreme(sign * cost, -cones.loads(problem.pull()))
         if found.unbounded:
             ends.append(Thrust(thrust=-sign * math.inf, forces=None))
         elif not found.exists:

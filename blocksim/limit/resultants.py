@@ -9,7 +9,7 @@ import numpy as np
 
 from blocksim.blocks.assembly import SUPPORT, Array
 from blocksim.blocks.problem import Problem
-from blocksim.limit.cones import carried_weights, joint_weights
+from blocksim.limit.cones import carried_weights, joint_areas, joint_weights
 
 FORCELESS = 1e-9
 """Pressure below which a joint carries nothing, over the weight that its blocks carry."""
@@ -32,6 +32,10 @@ class Resultants:
     width_used : (joints,) float
         Distance of that point from the middle of the joint, over half its width; 0 where
         it carries nothing, and for corners, which have no width.
+    stress : (joints,) float
+        Pressure of a rectangular block of stress about that point [Pa]: even from the nearer
+        end of the joint to as far beyond the point. inf at an end, nan of corners, 0 where it
+        carries nothing.
     friction_used : (joints,) float
         Friction over the most there can be; 0 where it carries nothing.
     """
@@ -41,6 +45,7 @@ class Resultants:
     force: Array
     point: Array
     width_used: Array
+    stress: Array
     friction_used: Array
 
     @property
@@ -86,12 +91,16 @@ def resultants(problem: Problem, forces: Array) -> Resultants:
     )
     force = normal[:, None] * joints.normal + friction[:, None] * joints.tangent
     unit = problem.unit_force
+    off = np.where(loaded & ~joints.is_corner, np.abs(2 * share - 1), 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stress = normal * unit / (joint_areas(problem) * np.maximum(1 - off, 0.0))
     return Resultants(
         normal=normal * unit,
         friction=friction * unit,
         force=force * unit,
         point=np.where(loaded[:, None], point, math.nan),
-        width_used=np.where(loaded & ~joints.is_corner, np.abs(2 * share - 1), 0.0),
+        width_used=off,
+        stress=np.where(joints.is_corner, math.nan, np.where(loaded, stress, 0.0)),
         friction_used=friction_used,
     )
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, overload
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.common.checks import require
+from blocksim.limit import crushing
 from blocksim.limit.capacity import collapse as collapse_in_plane
 from blocksim.limit.programme import equilibrium as equilibrium_in_plane
 
@@ -43,40 +43,44 @@ def equilibrium(problem: Problem | SpatialProblem) -> Equilibrium | SpatialEquil
 
 
 @overload
-def collapse(problem: Problem, *, strength: float | None = None) -> Collapse: ...
+def collapse(problem: Problem) -> Collapse: ...
 @overload
 def collapse(problem: SpatialProblem) -> SpatialCollapse: ...
 @overload
-def collapse(
-    problem: Problem | SpatialProblem, *, strength: float | None = None
-) -> Collapse | SpatialCollapse: ...
-def collapse(
-    problem: Problem | SpatialProblem, *, strength: float | None = None
-) -> Collapse | SpatialCollapse:
+def collapse(problem: Problem | SpatialProblem) -> Collapse | SpatialCollapse: ...
+def collapse(problem: Problem | SpatialProblem) -> Collapse | SpatialCollapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
-    The problem's own load factor does not matter.
+    The problem's own load factor does not matter. Below 0 it falls, or crushes, without them.
 
     Parameters
     ----------
     problem : Problem or SpatialProblem
         With live loads.
-    strength : float, optional
-        Compressive strength of the blocks [Pa], in the plane; by default they are rigid.
 
     Returns
     -------
     Collapse or SpatialCollapse
         See `blocksim.limit.capacity.collapse` and `blocksim.limit.space.largest_load`.
-
-    Raises
-    ------
-    InputError
-        If a strength is out of range or given in space.
     """
     if isinstance(problem, Problem):
-        return collapse_in_plane(problem, strength=strength)
-    require(strength is None, "strength", strength, "left out: blocks in space are rigid")
+        return collapse_in_plane(problem)
     from blocksim.limit.space import largest_load
 
     return largest_load(problem)
+
+
+def standing_margin(problem: Problem | SpatialProblem) -> float:
+    """Return a number that is below 0 where blocks fall: how far, without a unit."""
+    if isinstance(problem, Problem):
+        return crushing.standing_margin(problem)
+    return equilibrium(problem).margin
+
+
+def exists(problem: Problem | SpatialProblem) -> bool | None:
+    """Tell whether forces of equilibrium exist; None in space where that is not told."""
+    return (
+        crushing.exists(problem)
+        if isinstance(problem, Problem)
+        else equilibrium(problem).exists
+    )

@@ -1,15 +1,16 @@
 """What drawings of all formats have in common: outlines on layers, a unit, what is left out.
 
-Closed outlines of straight sides are blocks on the layer `blocks`, and blocks that stay where
-they are on the layer `supports`. Words there are no blocks; anything else there is refused by
-name, so that no verdict leaves it out. What is on other layers is counted and named.
+Closed outlines are blocks on the layer `blocks`, and blocks that stay where they are on the
+layer `supports`, or on layers that are named instead. Lines and arcs there that close are
+outlines, too. Words are no blocks; anything else there is refused by name and place, so that
+no verdict leaves it out. What is on other layers is counted and named.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,22 +18,80 @@ import numpy as np
 
 from blocksim.blocks.outlines import signed_area, step_of
 from blocksim.blocks.polygons import MOST_BLOCKS
-from blocksim.common.checks import COORDINATE, require
-from blocksim.common.errors import InputError
+from blocksim.common.checks import COORDINATE, LENGTH, is_number, require
+from blocksim.common.errors import MISSING, InputError
 from blocksim.common.words import printable
+from blocksim.reading.loops import MOST_LINES, loops_of
 
-LAYERS = {"blocks": False, "supports": True}
-"""Layers that are read, and whether what is on them is fixed."""
+ROLES = ("blocks", "supports", "ignored")
+"""What a layer may be for; one of the name of a role is for it, if no other is named."""
 LARGEST_DRAWING = 20_000_000
 """Bytes; a larger drawing is not read."""
 MOST_SHAPES = 1_000_000
 """Of a drawing."""
+FARTHEST = 1e15
+"""Coordinate of a drawing, whatever its unit; what is said is the farthest in metres."""
 MOST_KINDS = 8
 """Kinds of what was left out that are named, each with its number and layer."""
 UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "in": 0.0254, "ft": 0.3048}
 """In metres."""
+OUTLINE = "a closed outline in the plane, or on another layer"
 
 Corners = list[tuple[float, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """How a drawing is to be read.
+
+    Parameters
+    ----------
+    unit : float or str, optional
+        Metres that a unit of the drawing is, or one of `UNITS`; by default what it says.
+    layers : mapping of str to sequence of str
+        Names of layers by their role: `blocks`, `supports`, `ignored`. Case does not matter.
+    snap : float, optional
+        Ends of lines that are so near to each other are one corner [m]; by default a
+        ten-thousandth of the shorter line.
+
+    Raises
+    ------
+    InputError
+        If the unit is out of range, a role is unknown, or a layer is named for two.
+    """
+
+    unit: float | str | None = None
+    layers: Mapping[str, Sequence[str]] = field(default_factory=dict[str, Sequence[str]])
+    snap: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check names and range."""
+        if self.unit is not None:
+            allowed = f"{', '.join(UNITS)}, or between 1e-6 and 1e6 m"
+            ok = self.unit in UNITS or is_number(self.unit, 1e-6, 1e6)
+            require(ok, "unit", self.unit, allowed)
+        if self.snap is not None:
+            LENGTH.require("snap", self.snap)
+        roles = self.roles
+        for role, names in self.layers.items():
+            require(role in ROLES, "layer", role, f"for one of {', '.join(ROLES)}")
+            for name in names:
+                once = roles[name.casefold()] == role
+                require(once, "layer", name, "for one of blocks, supports and ignored")
+
+    @property
+    def roles(self) -> dict[str, str]:
+        """Role of each layer that is read, or passed over without a word."""
+        named = {role: self.layers.get(role, (role,)) for role in ROLES}
+        return {name.casefold(): role for role, names in named.items() for name in names}
+
+    def unit_of(self, found: Unit | None) -> Unit | None:
+        """Return the unit that was asked for, or else the one the drawing says."""
+        if self.unit is None:
+            return found
+        metres = UNITS.get(self.unit) if isinstance(self.unit, str) else self.unit
+        said = f"{metres:g} m" if metres == self.unit else str(self.unit)
+        return Unit(metres=metres or 0.0, said=f"a unit of the drawing is {said}, as asked")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,8 +104,10 @@ class Shape:
         What it is called in its format.
     layer : str
     name : str
-    corners : list of (x, y), optional
-        In units of the drawing, y upwards; None if it is no closed outline of straight sides.
+    corners : list of (x, y)
+        In units of the drawing, y upwards; of what is no line, where it is, as far as known.
+    closed : bool
+        Whether it is an outline; if not, it may be a part of one.
     wrong : str, optional
         Why it cannot be read: said where it is on a layer that is read.
     words : bool
@@ -54,15 +115,42 @@ class Shape:
     step : float, optional
         To which its corners were rounded, in units of the drawing; by default by their
         decimals.
+    stray : float
+        How far chords are off the curves they stand for.
     """
 
     what: str
     layer: str
     name: str = ""
-    corners: Corners | None = None
+    corners: Corners = field(default_factory=Corners)
+    closed: bool = True
     wrong: str | None = None
     words: bool = False
     step: float | None = None
+    stray: float = 0.0
+
+    @property
+    def said(self) -> str:
+        """What it is called in messages, with its place on the drawing."""
+        named = " ".join(f"{self.what} {plain(self.name)}".split())
+        return f"{named} on layer {plain(self.layer)}{place_words(self.corners)}"
+
+
+def place_words(corners: Corners) -> str:
+    """Say where on the drawing something is."""
+    if not corners:
+        return ""
+    (low_x, low_y), (high_x, high_y) = np.min(corners, axis=0), np.max(corners, axis=0)
+    return f" at ({(low_x + high_x) / 2:.6g}, {(low_y + high_y) / 2:.6g})"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refused:
+    """What is on a layer that is read, and cannot be: a shape, and why."""
+
+    shape: Shape
+    why: str
+    at: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,66 +167,176 @@ class Unit:
     metres: float
     said: str
 
-    def __post_init__(self) -> None:
-        """Check the range."""
-        ok = 1e-6 <= self.metres <= 1e6
-        require(ok, "unit", self.metres, "between 1e-6 and 1e6 m")
 
-
-def given_unit(metres: float) -> Unit:
-    """Return a unit that was asked for."""
-    return Unit(metres=metres, said=f"a unit of the drawing is {metres:g} m, as asked")
-
-
-NO_UNIT = Unit(
-    metres=1.0,
-    said="no unit in the drawing: taken for m (blocksim convert --unit 0.001: mm)",
-)
-
-
-def structure_from(shapes: Iterable[Shape], path: Path, unit: Unit) -> dict[str, Any]:
-    """Make the dict of a structure file of what was drawn; it has no friction.
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """What was found on a drawing.
 
     Parameters
     ----------
-    shapes : iterable of Shape
     path : Path
-        Of the drawing, which names the structure.
-    unit : Unit
+        Which names the structure.
+    unit : Unit or None
+        None where the drawing has none, and none was asked for.
+    blocks : tuple of (Shape, bool)
+        Outlines, and whether they stay where they are.
+    refused : tuple of Refused
+    left : str
+        What is on other layers, in words.
+    moved : float
+        How far ends of lines were moved to meet, in units of the drawing.
+    """
+
+    path: Path
+    unit: Unit | None
+    blocks: tuple[tuple[Shape, bool], ...]
+    refused: tuple[Refused, ...] = ()
+    left: str = ""
+    moved: float = 0.0
+
+    def structure(self) -> dict[str, Any]:
+        """Return it as the dict of a structure file; it has no friction.
+
+        Raises
+        ------
+        InputError
+            In one line: what cannot be read, no unit, or no outline on a layer that is read.
+        """
+        for each in self.refused[:1]:
+            more = len(self.refused) - 1
+            others = f"; {more} more of it cannot be read" if more else ""
+            shape = each.shape if each.at is None else replace(each.shape, corners=[each.at])
+            raise InputError(shape.said, each.why, OUTLINE + others)
+        for role in ("blocks", "supports"):
+            found = any(fixed is (role == "supports") for _, fixed in self.blocks)
+            # With several blocks, convert can be told which of them are fixed.
+            if not found and (role == "blocks" or len(self.blocks) < 2):
+                there = f"none (there is {self.left or 'nothing else'})"
+                allowed = f"at least one; --layer {role}=NAME reads them on another layer"
+                raise InputError(f"closed outlines on layer {role}", there, allowed)
+        unit = self.unit
+        if unit is None:
+            points = np.array([each for shape, _ in self.blocks for each in shape.corners])
+            wide, high = np.ptp(points, axis=0)
+            allowed = f"given, as the drawing has none: --unit {', '.join(UNITS)}, or in metres"
+            large = f"it is {wide:.6g} by {high:.6g} units large"
+            raise InputError("unit", MISSING, f"{allowed}; {large}")
+        notes = [unit.said, *self._moved(unit)]
+        notes += [f"left out of the drawing: {self.left}"] * bool(self.left)
+        steps = [
+            step_of(np.array(shape.corners).ravel()) if shape.step is None else shape.step
+            for shape, _ in self.blocks
+        ]
+        return {
+            "title": plain(self.path.stem)[:200],
+            "source": plain(self.path.name)[:500],
+            "notes": notes,
+            "rounding": min(steps) * unit.metres,
+            "blocks": [_block(shape, unit, fixed=fixed) for shape, fixed in self.blocks],
+        }
+
+    def _moved(self, unit: Unit) -> list[str]:
+        """Say how far what is read is off what was drawn."""
+        stray, many = max(shape.stray for shape, _ in self.blocks), 1e3 * unit.metres
+        notes = list[str]()
+        if stray:
+            chords = f"arcs are chords, at most {stray * many:.2g} mm off; areas are exact"
+            notes.append(chords)
+        if self.moved * many >= 1e-6:
+            notes.append(f"ends of lines up to {self.moved * many:.2g} mm apart are one corner")
+        return notes
+
+
+def drawing_of(
+    shapes: Iterable[Shape], path: Path, unit: Unit | None, reading: Reading
+) -> Drawing:
+    """Sort what was drawn by its layers, and put lines together to outlines.
 
     Raises
     ------
     InputError
-        In one line: no outline on a layer that is read, or one that cannot be read.
+        In one line: too much was drawn, or a layer that was named is not there.
     """
-    blocks: list[dict[str, Any]] = []
-    steps = list[float]()
-    left = Counter[str]()
+    roles = reading.roles
+    lines: dict[bool, list[Shape]] = {False: [], True: []}
+    blocks: list[tuple[Shape, bool]] = []
+    refused: list[Refused] = []
+    left, seen = Counter[str](), set[str]()
     for count, shape in enumerate(shapes):
         require(count < MOST_SHAPES, "drawing", "more shapes", f"at most {MOST_SHAPES}")
         layer = plain(shape.layer)
-        fixed = LAYERS.get(layer.lower())
-        if fixed is not None and not shape.words:
-            blocks.append(_block(shape, layer, unit) | ({"fixed": True} if fixed else {}))
-            values = np.array(shape.corners).ravel()
-            steps.append(step_of(values) if shape.step is None else shape.step)
-            require(len(blocks) <= MOST_BLOCKS, "blocks", "more", f"at most {MOST_BLOCKS}")
-        else:
+        seen.add(layer)
+        far = max((abs(each) for corner in shape.corners for each in corner), default=0.0)
+        require(far <= FARTHEST, shape.said, far, f"within {COORDINATE.high:g} m")
+        role = roles.get(layer.casefold())
+        if role == "ignored":
+            continue
+        if role is None or shape.words:
             left[f"{shape.what} on layer {layer}" if layer else shape.what] += 1
-    rest = _listed(left)
-    for layer, fixed in LAYERS.items():
-        found = any(bool(block.get("fixed")) is fixed for block in blocks)
-        # With several blocks, convert can be told which of them are fixed.
-        if not found and (not fixed or len(blocks) < 2):
-            said = f"none (there is {rest or 'nothing else'})"
-            raise InputError(f"closed outlines on layer {layer}", said, "at least one")
-    return {
-        "title": plain(path.stem)[:200],
-        "source": plain(path.name)[:500],
-        "notes": [unit.said, *([f"left out of the drawing: {rest}"] if rest else [])],
-        "rounding": min(steps) * unit.metres,
-        "blocks": blocks,
-    }
+        elif shape.wrong is not None:
+            refused.append(Refused(shape=shape, why=shape.wrong))
+        elif shape.closed:
+            blocks.append((shape, role == "supports"))
+        else:
+            lines[role == "supports"].append(shape)
+        require(len(blocks) <= MOST_BLOCKS, "blocks", "more", f"at most {MOST_BLOCKS}")
+    _require_layers(reading, seen)
+    moved = 0.0
+    metres = reading.unit_of(unit)
+    # Without a unit it is refused; what it would be in the unit m is drawn nevertheless.
+    snap = reading.snap and reading.snap / (1.0 if metres is None else metres.metres)
+    for fixed, drawn in lines.items():
+        found, wrong, far = _closed(drawn, snap)
+        blocks += [(shape, fixed) for shape in found]
+        refused += wrong
+        moved = max(moved, far)
+    return Drawing(
+        path=path,
+        unit=metres,
+        blocks=tuple(blocks),
+        refused=tuple(refused),
+        left=_listed(left),
+        moved=moved,
+    )
+
+
+def _require_layers(reading: Reading, seen: set[str]) -> None:
+    """Refuse a layer that is asked for and not there."""
+    there = {each.casefold() for each in seen}
+    for names in reading.layers.values():
+        for name in names:
+            known = ", ".join(sorted(filter(None, seen))[:20]) or "none"
+            require(name.casefold() in there, "layer", name, f"one of the drawing's: {known}")
+
+
+def _closed(
+    drawn: Sequence[Shape], snap: float | None
+) -> tuple[list[Shape], list[Refused], float]:
+    """Put lines together to outlines, named by the first of their lines."""
+    if not drawn:
+        return [], [], 0.0
+    few = len(drawn) <= MOST_LINES
+    require(few, "lines", len(drawn), f"at most {MOST_LINES} on a layer that is read")
+    loops, wrong = loops_of([shape.corners for shape in drawn], snap)
+    found: list[Shape] = []
+    for loop in loops:
+        parts = [drawn[k] for k in loop.lines]
+        kinds = " and ".join(sorted({each.what for each in parts}))
+        steps = [step_of(np.array(e.corners).ravel()) if e.step is None else e.step
+                 for e in parts]  # fmt: skip
+        found.append(
+            replace(
+                parts[0],
+                what=f"outline of {kinds}",
+                corners=loop.corners,
+                closed=True,
+                # Ends that were moved are no decimals of the drawing.
+                step=min(steps),
+                stray=max(each.stray for each in parts),
+            )
+        )
+    refused = [Refused(shape=drawn[e.line], why=e.why, at=e.at) for e in wrong]
+    return found, refused, max((loop.moved for loop in loops), default=0.0)
 
 
 def plain(text: str) -> str:
@@ -146,21 +344,17 @@ def plain(text: str) -> str:
     return printable(text[:80]).strip()
 
 
-def _block(shape: Shape, layer: str, unit: Unit) -> dict[str, Any]:
-    corners = shape.corners or []
+def _block(shape: Shape, unit: Unit, *, fixed: bool) -> dict[str, Any]:
+    corners = shape.corners
     if corners[:1] == corners[-1:]:
         corners = corners[:-1]
-    field = " ".join(f"{shape.what} {plain(shape.name)}".split()) + f" on layer {layer}"
-    if shape.wrong is not None:
-        allowed = "a closed outline of straight sides, in the plane, or on another layer"
-        raise InputError(field, shape.wrong, allowed)
-    require(len(corners) >= 3, field, f"{len(corners)} corners", "at least three corners")
+    require(len(corners) >= 3, shape.said, f"{len(corners)} corners", "at least three corners")
     far = max(abs(each) * unit.metres for corner in corners for each in corner)
-    require(far <= COORDINATE.high, field, far, f"within {COORDINATE.high:g} m")
+    require(far <= COORDINATE.high, shape.said, far, f"within {COORDINATE.high:g} m")
     # Nobody means anything by the direction in which an outline was drawn.
     corners = corners[::-1] if signed_area(np.array(corners)) < 0 else corners
     vertices = [[x * unit.metres, y * unit.metres] for x, y in corners]
-    return {"id": plain(shape.name), "vertices": vertices}
+    return {"id": plain(shape.name), "vertices": vertices, **({"fixed": True} if fixed else {})}
 
 
 def _listed(left: Counter[str]) -> str:

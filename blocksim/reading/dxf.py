@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import logging
+import math
 import os
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
+
+from blocksim.blocks.outlines import step_of
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import AnyPath, require_file
 from blocksim.common.later import require_library
+from blocksim.reading.curves import arc
 from blocksim.reading.drawing import (
     LARGEST_DRAWING,
-    NO_UNIT,
     UNITS,
+    Corners,
+    Drawing,
+    Reading,
     Shape,
     Unit,
-    given_unit,
-    structure_from,
+    drawing_of,
 )
 
 INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 14: "dm"}
@@ -37,24 +44,24 @@ FLAT = 1e-9
 """How far from the plane a polyline may be, in units of its largest coordinate."""
 
 
-def read_dxf(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
-    """Read the closed polylines of the model space, and of the blocks inserted there.
+def read_dxf(path: AnyPath, reading: Reading) -> Drawing:
+    """Read outlines, lines and arcs of the model space, and of the blocks inserted there.
 
     Parameters
     ----------
     path : str or path
-    unit : float, optional
-        Metres that a unit of the drawing is; by default what $INSUNITS says.
+    reading : Reading
+        Its unit is what $INSUNITS says by default.
 
     Returns
     -------
-    dict
-        As of a structure file, without friction. Blocks are named by their handles.
+    Drawing
+        Blocks are named by their handles.
 
     Raises
     ------
     InputError
-        In one line, if the file is too large, no DXF, or has no outlines to read.
+        In one line, if the file is too large, no DXF, or a layer that is named is not there.
     MissingPart
         If ezdxf is not installed.
     """
@@ -74,16 +81,17 @@ def read_dxf(path: AnyPath, unit: float | None = None) -> dict[str, Any]:
     except Exception as error:  # a damaged file makes ezdxf raise almost anything
         said = " ".join(str(error).split()) or type(error).__name__
         raise InputError("file", said, "a valid DXF file") from None
-    return structure_from(shapes, Path(path), _unit(code) if unit is None else given_unit(unit))
+    unit = None if reading.unit is not None else _unit(code)
+    return drawing_of(shapes, Path(path), unit, reading)
 
 
-def _unit(code: int) -> Unit:
+def _unit(code: int) -> Unit | None:
     if code == 0:
-        return NO_UNIT
+        return None
     name = INSUNITS.get(code)
     if name is None:
         known = ", ".join(f"{key} ({each})" for key, each in INSUNITS.items())
-        raise InputError("$INSUNITS", code, f"0 (none), {known}; or convert it with --unit")
+        raise InputError("$INSUNITS", code, f"0 (none), {known}; or --unit beside it")
     return Unit(metres=UNITS[name], said=f"unit {name}, by the drawing's $INSUNITS")
 
 
@@ -120,24 +128,58 @@ def _entities(space: Iterable[Any]) -> Iterator[tuple[Any, str, str]]:
 
 def _shape(entity: Any, layer: str, name: str) -> Shape:
     kind = entity.dxftype()
-    if kind in WORDS:
-        return Shape(what=kind, layer=layer, words=True)
-    if kind not in POLYLINES or not (kind == "LWPOLYLINE" or _is_line(entity)):
-        return Shape(what=kind, layer=layer, name=name, wrong="is no closed polyline")
-    points = [(p.x, p.y, p.z) for p in _points(entity)]
-    # Closed by its flag, or by its first point given again.
-    closed = bool(entity.is_closed) or (len(points) > 3 and points[0] == points[-1])
-    if not closed:
-        return Shape(what=f"open {kind}", layer=layer, name=name, wrong="is not closed")
-    wrong = "has arcs" if entity.has_arc else None
-    if kind == "POLYLINE" and entity.dxf.flags & SMOOTH:
-        wrong = "is a smooth curve"
-    heights = [z for _, _, z in points]
-    largest = max((abs(each) for point in points for each in point), default=0.0)
+    shape = Shape(what=kind, layer=layer, name=name, words=kind in WORDS)
+    if shape.words:
+        return shape
+    if kind == "LINE":
+        return _line(shape, [entity.dxf.start, entity.dxf.end], [0.0, 0.0], closed=False)
+    if kind == "ARC":
+        turn = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360)
+        # Turned over, it is seen to turn the other way.
+        over = math.copysign(1.0, entity.dxf.extrusion.z)
+        points = list(entity.vertices([entity.dxf.start_angle, entity.dxf.end_angle]))
+        return _line(shape, points, [over * math.tan(turn / 4), 0.0], closed=False)
+    if kind in POLYLINES and (kind == "LWPOLYLINE" or _is_line(entity)):
+        if kind == "POLYLINE" and entity.dxf.flags & SMOOTH:
+            return replace(shape, wrong="is a smooth curve")
+        return _line(shape, *_points(entity), closed=bool(entity.is_closed))
+    return replace(shape, wrong="is no line, arc or polyline", corners=_place(entity))
+
+
+def _line(shape: Shape, points: list[Any], bulges: list[float], *, closed: bool) -> Shape:
+    """Return a line of straight parts and arcs."""
+    heights = [p.z for p in points]
+    largest = max((abs(each) for p in points for each in (p.x, p.y, p.z)), default=0.0)
     if points and max(heights) - min(heights) > FLAT * largest:
-        wrong = "is not in the xy plane"
-    corners = [(x, y) for x, y, _ in points]
-    return Shape(what=kind, layer=layer, name=name, corners=corners, wrong=wrong)
+        return replace(shape, wrong="is not in the xy plane", corners=_flat(points))
+    ends = _flat(points)
+    # Closed by its flag, or by its first point given again.
+    closed = closed or (len(ends) > 3 and ends[0] == ends[-1])
+    what = shape.what if closed or shape.what not in POLYLINES else f"open {shape.what}"
+    around = ends + ends[:1] * (closed and ends[:1] != ends[-1:])
+    if not all(math.isfinite(each) for point in around for each in point):
+        return replace(shape, corners=around, closed=closed)
+    corners, stray = around[:1], 0.0
+    for (x, y), (to_x, to_y), bulge in zip(around, around[1:], bulges, strict=False):
+        found = arc(complex(x, y), complex(to_x, to_y), bulge)
+        corners += [*found.corners, (to_x, to_y)]
+        stray = max(stray, found.stray)
+    if len(corners) < 2:
+        return replace(shape, wrong="is a point", corners=corners)
+    step = step_of(np.array(ends).ravel())
+    return replace(shape, what=what, corners=corners, closed=closed, stray=stray, step=step)
+
+
+def _flat(points: Iterable[Any]) -> Corners:
+    return [(float(p.x), float(p.y)) for p in points]
+
+
+def _place(entity: Any) -> Corners:
+    """Return where something is that is no line, as far as that is easily known."""
+    for name in ("center", "insert", "location", "start"):
+        if entity.dxf.hasattr(name):
+            return _flat([entity.ocs().to_wcs(entity.dxf.get(name))])
+    return []
 
 
 def _is_line(entity: Any) -> bool:
@@ -145,8 +187,13 @@ def _is_line(entity: Any) -> bool:
     return bool(entity.is_2d_polyline or entity.is_3d_polyline)
 
 
-def _points(entity: Any) -> list[Any]:
-    """Corners of a polyline in world coordinates."""
+def _points(entity: Any) -> tuple[list[Any], list[float]]:
+    """Corners of a polyline in world coordinates, and the bulge of the part after each."""
     if entity.dxftype() == "LWPOLYLINE":
-        return list(entity.vertices_in_wcs())
-    return list(entity.points_in_wcs())
+        points = list(entity.vertices_in_wcs())
+        bulges = [float(each[4]) for each in entity]
+    else:
+        points = list(entity.points_in_wcs())
+        bulges = [float(each.dxf.get("bulge", 0.0)) for each in entity.vertices]
+    over = math.copysign(1.0, entity.dxf.extrusion.z)
+    return points, [over * each for each in bulges]

@@ -168,6 +168,7 @@ def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
     assembly, words = problem.assembly, state_words(problem)
     found = None if carried is None else carried.resultants
     in_space = answer.forces if isinstance(problem, SpatialProblem) else None
+    known = problem.weighed and problem.has_size
     told: list[JointRecord] = []
     for k, joint in enumerate(assembly.joints):
         ends = _ends(joint)
@@ -190,6 +191,9 @@ def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
                 "normal_force": normal,
                 "friction_force": friction,
                 "width_used": None if found is None else float(found.width_used[k]),
+                "stress_MPa": None
+                if found is None or len(ends) == 1 or not known
+                else float(found.stress[k]) / 1e6,
                 "friction_used": None if found is None else float(found.friction_used[k]),
             }
         )

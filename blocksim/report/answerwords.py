@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.dimensions import friction_angle
-from blocksim.ask.check import SOUGHT
+from blocksim.ask.check import SOUGHT, UNPROVED
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
@@ -54,6 +54,11 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
     if answer.load_factor is not None:
         at = f", asked at {problem.load:g}" if problem.load else ""
         lines.append(f"  load    factor at collapse {_number(answer.load_factor)}{at}")
+        if answer.load_factor < 0:
+            does = "falls" if problem.strength is None else "crushes"
+            lines[-1] += f": it {does} under its dead load, without live loads"
+    elif problem.live and problem.strength is not None:
+        lines.append("  load    no factor at collapse: at none joints bear what they carry")
     if of is not None:
         lines.append(_exact("least  ", of))
     lines += carried_lines(carried, joint_names(problem.assembly))
@@ -78,6 +83,8 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
 def proof_words(answer: Check[Any]) -> str:
     """Say whether a verdict by limit analysis is proved, and by what."""
     proof = answer.proof
+    if answer.needed is not None:
+        return UNPROVED
     if proof is None:
         return NONE_IN_SPACE if is_spatial(answer) else "none was found"
     if proof.claim == "collapses":
@@ -119,6 +126,8 @@ def ends_proved_words(answer: Bracket[Any]) -> str:
     """Say whether it is proved that it falls to one side of each change, and stands beyond."""
     if is_spatial(answer):
         return NONE_IN_SPACE
+    if answer.problem.strength is not None:
+        return UNPROVED
     if not answer.proved:
         return "none was found of both sides"
     return "falls to one side of each change and stands to the other, in rational arithmetic"

@@ -11,12 +11,13 @@ from blocksim.limit.carried import Carried
 if TYPE_CHECKING:
     from blocksim.report.schema import CarriedRecord
 
-KILO = 1e3
+KILO, MEGA = 1e3, 1e6
 FIELDS = (
     "geometrical_factor",
     "friction_factor",
     "least_friction",
     "strength_used",
+    "needed_strength_MPa",
     "weights_given",
     "weight_kN",
     "thrust_joint",
@@ -52,6 +53,7 @@ def carried_record(carried: Carried | None, names: Sequence[str]) -> CarriedReco
         "friction_factor": carried.friction_factor,
         "least_friction": carried.least_friction,
         "strength_used": carried.strength_used,
+        "needed_strength_MPa": carried.needed and carried.needed.high / MEGA,
         "weights_given": carried.problem.weighed,
         "weight_kN": weight / KILO,
         "thrust_joint": None if carried.joint is None else names[carried.joint],
@@ -88,6 +90,10 @@ def carried_lines(carried: Carried | None, names: Sequence[str]) -> list[str]:
     if carried is None:
         return []
     lines = [f"  safety  {_factors(carried)}"]
+    if (strength := carried.problem.strength) is not None and carried.needed is not None:
+        needed = carried.needed.high
+        factor, said = _number(strength / needed), f"{needed / MEGA:.4g} MPa"
+        lines.append(f"  stress  {said} at most, where it is least: strength factor {factor}")
     if carried.joint is not None and carried.thrust is not None:
         low, high = (_force(each, carried) for each in carried.thrust)
         lines.append(f"  thrust  {low} to {high} across joint {names[carried.joint]}")

@@ -10,6 +10,9 @@ from blocksim.common.words import printed
 from blocksim.report.answerwords import ratio
 from blocksim.view import style
 
+JOINT = 3.0
+"""Width of a joint that takes part [pixels]."""
+
 
 def environment() -> Environment:
     """Return templates of this room, which know colours and escape what they are given."""
@@ -24,6 +27,10 @@ def environment() -> Environment:
     made.filters["ratio"] = ratio
     colours = {
         "joint_colours": style.JOINTS,
+        "dashes": {
+            tone: [JOINT * each for each in style.DASHES.get(tone, ())]
+            for tone in style.JOINTS.values()
+        },
         "thrust_colour": style.THRUST,
         "verdict_colours": style.VERDICTS,
         "load_colours": {"dead": style.DEAD, "live": style.LIVE, "gravity": style.QUIET},

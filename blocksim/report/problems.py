@@ -58,6 +58,7 @@ def problem_record(problem: Problem | SpatialProblem, over: str | None = None) -
         **tilt_and_lean(problem),
         "azimuth_deg": math.degrees(problem.azimuth) if spatial else None,
         "load": problem.load,
+        "strength_MPa": None if problem.strength is None else problem.strength / 1e6,
         "shake": None if shaking is None else shaking_record(shaking),
         **(dict.fromkeys(SIZES) if arch is None else size_record(arch)),
         "weight_kN": weight_of(problem) / 1000,
@@ -218,6 +219,8 @@ def described(problem: Problem | SpatialProblem) -> str:
         said.append(
             f"live loads times {problem.load:g}" if problem.load else "no live load on it"
         )
+    if problem.strength is not None:
+        said.append(f"strength {problem.strength / 1e6:g} MPa")
     if problem.shaking is not None:
         said.append(problem.shaking.words)
     said.append(f"L = {assembly.size:g} m" if problem.has_size else "L = r")

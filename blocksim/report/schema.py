@@ -31,6 +31,7 @@ class ProblemRecord(TypedDict):
     azimuth_deg: float | None
     lean_deg: float | None
     load: float | None
+    strength_MPa: float | None
     shake: dict[str, Any] | None
     span_m: float | None
     rise_m: float | None
@@ -90,6 +91,7 @@ class JointRecord(TypedDict):
     normal_force: float | None
     friction_force: float | None
     width_used: Number | None
+    stress_MPa: Number | None
     friction_used: Number | None
 
 
@@ -142,6 +144,7 @@ class CarriedRecord(TypedDict):
     friction_factor: Number | None
     least_friction: float | None
     strength_used: float | None
+    needed_strength_MPa: float | None
     weights_given: bool | None
     weight_kN: float | None
     thrust_joint: str | None

@@ -46,6 +46,7 @@ class JointRow:
     normal: str
     friction: str
     eccentricity: str
+    stress: str
     width_used: str
     friction_used: str
     worst: bool
@@ -131,7 +132,13 @@ def assumptions(problem: Problem) -> list[str]:
     )  # fmt: skip
     return [
         "Blocks are rigid, and supports do not move.",
-        "Joints bear no tension; compressive strength is unlimited.",
+        "Joints bear no tension; "
+        + (
+            "compressive strength is unlimited."
+            if problem.strength is None
+            else f"their compressive strength is {problem.strength / 1e6:g} MPa, as a "
+            "rectangular block of stress."
+        ),
         law,
         *load_words(problem),
         "Stands means that it can rest: forces of equilibrium exist.",
@@ -144,6 +151,10 @@ def factor_facts(answer: Check, sheet: Sheet) -> list[Fact]:
     facts: list[Fact] = []
     if carried is not None:
         facts += _margin_facts(carried, of_thickness=answer.arch is not None)
+    if answer.needed is not None and problem.strength is not None:
+        factor = f"{problem.strength / answer.needed.high:.4g}"
+        said = f"{answer.needed.high / 1e6:.4g} MPa is needed"
+        facts.append(Fact("strength factor", factor, said))
     if answer.load_factor is not None:
         at = f"asked at {problem.load:g}; " if problem.load else ""
         value = "∞" if math.isinf(answer.load_factor) else f"{answer.load_factor:.6g}"
@@ -250,18 +261,24 @@ def joint_rows(sheet: Sheet) -> list[JointRow]:
     off = ((found.point - middle) * joints.tangent).sum(axis=1)
     chosen = np.sort(np.argsort(-found.used, kind="stable")[:MOST])
     names, worst = joint_names(problem.assembly), int(found.used.argmax())
+    known = problem.weighed and problem.has_size
     return [
         JointRow(
             name=names[k],
             normal=unit.number(float(found.normal[k])),
             friction=unit.number(float(found.friction[k])),
             eccentricity="-" if np.isnan(off[k]) else f"{1e3 * off[k] + 0.0:.0f}",
+            stress=_stress(float(found.stress[k])) if known else "-",
             width_used=_percent(float(found.width_used[k])),
             friction_used=_percent(float(found.friction_used[k])),
             worst=k == worst,
         )
         for k in map(int, chosen)
     ]
+
+
+def _stress(pascal: float) -> str:
+    return "-" if math.isnan(pascal) else f"{pascal / 1e6:.3g}"
 
 
 def _percent(share: float) -> str:

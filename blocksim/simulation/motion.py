@@ -26,19 +26,19 @@ is watched until `QUIET` only: what does not rest by then will not.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array, Assembly, displacement
-from blocksim.blocks.joints import overlap_share
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Quality, Settings, World, trusted
+from blocksim.simulation.looking import Looking
 from blocksim.simulation.onset import UNFOUND
-from blocksim.simulation.recording import Recording
-from blocksim.simulation.simulated import Simulation
+from blocksim.simulation.recorded import Recorded
 from blocksim.simulation.verdict import Verdict
 
 MOVED = 2e-3
@@ -60,8 +60,43 @@ FAR = 0.02
 """Displacement from which it is not: an overlap seen first then may be of other joints."""
 
 
+Shown = TypeVar("Shown", bound=Recorded[Any], covariant=True)
+"""What is recorded: in the plane, or in space."""
+
+
+class Runs(Protocol[Shown]):
+    """What a moving run needs of a problem in an engine."""
+
+    @property
+    def settings(self) -> Settings:
+        """What the engine is run with."""
+        ...
+
+    @property
+    def look(self) -> Looking:
+        """The problem as it is looked at where blocks move."""
+        ...
+
+    @property
+    def length(self) -> str:
+        """What the unit of length is called."""
+        ...
+
+    def world(self) -> World:
+        """Blocks in the engine, at rest."""
+        ...
+
+    def finer(self, factor: int) -> Runs[Shown]:
+        """Return the same with more sweeps in each step of a moving run."""
+        ...
+
+    def record(self, times: Sequence[float], poses: Sequence[Array], quality: Quality) -> Shown:
+        """Return frames as a recording."""
+        ...
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Motion:
+class Motion(Generic[Shown]):
     """Outcome of a moving run.
 
     Parameters
@@ -71,13 +106,13 @@ class Motion:
         The evidence in words.
     overlap : float
         Deepest overlap of blocks, as a share of the motion of their joints.
-    recording : Recording
+    recording : Recording or SpatialRecording
     """
 
     verdict: Verdict
     reason: str
     overlap: float
-    recording: Recording
+    recording: Shown
 
     @property
     def mechanism(self) -> Array:
@@ -87,19 +122,19 @@ class Motion:
 
 
 def moving_run(
-    simulation: Simulation,
+    simulation: Runs[Shown],
     held: World,
     repeat: Callable[[World], None],
     *,
     rests: bool = False,
     until: float | None = None,
     progress: Progress = silent,
-) -> Motion:
+) -> Motion[Shown]:
     """Let an arch go that the onset test has held, and record it.
 
     Parameters
     ----------
-    simulation : Simulation
+    simulation : Simulation or SpatialSimulation
     held : World
         Built from it and at rest, impulses converged as far as they go.
     repeat : callable
@@ -129,20 +164,16 @@ def moving_run(
 
 
 def _released(
-    simulation: Simulation,
+    simulation: Runs[Shown],
     world: World,
     until: float | None,
     progress: Progress,
     *,
     rests: bool,
     last: bool,
-) -> Motion:
+) -> Motion[Shown]:
     """Record one release, as far as its blocks do not overlap, nor fall that should rest."""
-    assembly, step, rest = (
-        simulation.assembly,
-        simulation.settings.step,
-        simulation.settings.rest,
-    )
+    step, rest, look = simulation.settings.step, simulation.settings.rest, simulation.look
     stride = max(1, round(FRAME / step))
     taken = 0
     times, poses, moved = [0.0], [world.poses()], [0.0]
@@ -155,15 +186,15 @@ def _released(
         taken += frames * stride
         times.append(taken * step)
         poses.append(world.poses())
-        moved.append(_moved(assembly, poses))
+        moved.append(float(look.displacement(poses[-1] - poses[0])))
         # What goes far at once is no longer the mechanism: the engine tells of its overlaps.
         told = moved[-1] > FAR and world.quality().penetration is not None
         if moved[-1] > simulation.settings.noise and moved[-2] < EARLY and not told:
-            overlap = max(overlap, overlap_share(assembly, poses[-1]))
+            overlap = max(overlap, look.overlap(poses[-1]))
         if until is None and verdict_of(times, moved, rest) is not Verdict.UNDECIDED:
             break
         fallen = until is not None and moved[-1] > MOVED
-        if fallen and ((rests and not last) or lie_still(assembly, poses)):
+        if fallen and ((rests and not last) or hardly_move(poses, look.displacement)):
             break
         progress(min(1.0, times[-1] / end), "moving run")
     verdict = verdict_of(times, moved, rest) if overlap <= OVERLAP else Verdict.UNDECIDED
@@ -209,10 +240,6 @@ def is_early(times: list[float], moved: list[float]) -> bool:
         return len(moved) > 1
     ahead = SPARSE * FRAME / (times[-1] - times[-2])
     return moved[-1] ** (1 + ahead) < EARLY * min(moved[-2:]) ** ahead
-
-
-def _moved(assembly: Assembly, poses: list[Array]) -> float:
-    return float(displacement(poses[-1] - poses[0], assembly))
 
 
 def verdict_of(times: list[float], moved: list[float], rest: float) -> Verdict:

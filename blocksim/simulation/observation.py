@@ -14,6 +14,7 @@ from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, TellsForces, World
 from blocksim.simulation.motion import Motion, moving_run
 from blocksim.simulation.onset import Onset, onset
+from blocksim.simulation.recording import Recording
 from blocksim.simulation.simulated import BY_RULE, Overrides, Reduced, Simulation, given_words
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
@@ -48,7 +49,9 @@ class Held:
         built[:, :PLANAR] = self.simulation.assembly.built[:-1]
         return built
 
-    def release(self, until: float | None = None, progress: Progress = silent) -> Motion:
+    def release(
+        self, until: float | None = None, progress: Progress = silent
+    ) -> Motion[Recording]:
         """Let the blocks go; see `moving_run`."""
         first = self.onset
         return moving_run(
@@ -87,7 +90,7 @@ class Observation:
     verdict: Verdict
     evidence: tuple[Evidence, ...]
     onset: Onset
-    motion: Motion | None
+    motion: Motion[Recording] | None
     joints: tuple[ObservedJoint, ...]
     joints_in_motion: tuple[ObservedJoint, ...]
     rates: Array | None
@@ -225,7 +228,7 @@ def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observ
     )
 
 
-def _asides(held: Held, motion: Motion | None) -> tuple[Evidence, ...]:
+def _asides(held: Held, motion: Motion[Recording] | None) -> tuple[Evidence, ...]:
     """Tell what else there is to know of an observation."""
     simulation = held.simulation
     said: list[Evidence] = []

@@ -50,15 +50,13 @@ import math
 from dataclasses import dataclass, replace
 from typing import cast
 
-import numpy as np
-
-from blocksim.blocks.assembly import Array, displacement
-from blocksim.blocks.joints import overlap_share, slip_share
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.progress import Progress, silent
 from blocksim.common.words import counted
-from blocksim.engines.base import Engine, Settings, TakesForces, World, trusted
-from blocksim.limit import equilibrium, least_motion
+from blocksim.engines.base import Engine, Settings, TakesForces, World
+from blocksim.simulation.looking import STICKS, Looking, looking_at
 from blocksim.simulation.verdict import Verdict
 
 WORK = 0.99
@@ -66,9 +64,6 @@ PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
 LATE, NEARLY = 0.1, 1e-3
 """Share of the sweeps allowed, and overlap; see above."""
-SLIPS, STICKS = 0.02, 1e-4
-"""Slip over the largest motion of a joint above which a mechanism slides, and below which it
-surely does not."""
 UNFOUND = "contact forces could not be found"
 """What is said where an engine's numbers end in none."""
 FIRST_SWEEPS = 1000
@@ -147,12 +142,12 @@ class Onset:
 def onset(
     world: World,
     engine: Engine,
-    problem: Problem,
+    problem: Problem | SpatialProblem,
     settings: Settings,
     progress: Progress = silent,
     *,
-    asked: Problem | None = None,
-    rougher: Problem | None = None,
+    asked: Problem | SpatialProblem | None = None,
+    rougher: Problem | SpatialProblem | None = None,
     forces: Array | None = None,
 ) -> Onset:
     """Run the onset test on a world whose blocks are at rest where they were built.
@@ -179,8 +174,8 @@ def onset(
     Onset
         The world keeps its impulses and can be released from there.
     """
-    assembly = problem.assembly
-    if np.abs(assembly.centres).max() > settings.farthest * assembly.size:
+    look = looking_at(problem, asked)
+    if look.far > settings.farthest:
         return Onset(
             verdict=Verdict.UNDECIDED,
             acceleration=math.nan,
@@ -190,37 +185,36 @@ def onset(
         )
     allowed, built = settings.hold_sweeps, world.poses()
     # Nothing is known of the far voussoirs before impulses have crossed the assembly.
-    first = min(max(FIRST_SWEEPS, len(assembly.blocks) ** 2), allowed)
+    first = min(max(FIRST_SWEEPS, len(problem.assembly.blocks) ** 2), allowed)
     total, sweeps = 0, first
     begun = forces
     if begun is not None:
         cast("TakesForces", world).begin(begun)
     may_rest = may_slide = False
     helped = begun is not None or not (
-        engine.takes_forces and problem.is_planar and settings.unaided is not None
+        engine.takes_forces and look.asks and settings.unaided is not None
     )
     # Without bound on friction even an engine that looks for rest can miss it: forces may be
     # wedged, a thousand times their pressures.
-    bounded = bool(np.isfinite(problem.friction).all())
-    unasked = problem.is_planar and not (engine.finds_rest and bounded)
+    unasked = look.asks and not (engine.finds_rest and look.is_bounded(engine))
     while True:
         accelerations = world.hold(sweeps)
         total += sweeps
-        seen = _look(world, problem, settings, built, accelerations, total)
+        seen = _seen(world, look, settings, built, accelerations, total)
         falls = seen.verdict is Verdict.COLLAPSES
         late = total > LATE * allowed
-        slides = unasked and (
-            (falls or (late and overlap_share(assembly, seen.mechanism) < NEARLY))
-            and slip_share(assembly, seen.mechanism) > SLIPS
+        slides = (
+            unasked
+            and (falls or (late and look.overlap(seen.mechanism) < NEARLY))
+            and look.slip(seen.mechanism) > look.slips
         )
         slow = not helped and total >= (settings.unaided or 0)
         decided = seen.verdict is not Verdict.UNDECIDED
         if slides or (slow and not decided):
-            forces = equilibrium(asked or problem).forces
-            may_rest, unasked, helped = forces is not None, False, helped or slow
-            if forces is None and engine.keeps_impulses and slow and not decided:
-                least = least_motion(asked or problem)
-                forces = None if least is None else least.forces
+            may_rest, forces = look.equilibrium()
+            unasked, helped = False, helped or slow
+            if not may_rest and engine.keeps_impulses and slow and not decided:
+                forces = look.least()
             if forces is not None and engine.takes_forces:
                 cast("TakesForces", world).begin(forces)
                 sweeps, begun, may_slide = first, forces, slides
@@ -236,39 +230,37 @@ def onset(
         sweeps = min(int(total * (GROWTH - 1)), allowed - total)
 
 
-def _look(
+def _seen(
     world: World,
-    problem: Problem,
+    look: Looking,
     settings: Settings,
     built: Array,
     accelerations: Array,
     sweeps: int,
 ) -> Onset:
     """Read the accelerations that a number of sweeps have led to."""
-    assembly = problem.assembly
-    largest = float(displacement(accelerations, assembly))
+    largest = float(look.displacement(accelerations))
     mechanism = built + accelerations * (PROBE / largest if largest > 0 else 0.0)
     verdict = Verdict.UNDECIDED
-    if trusted(world, settings):
+    if look.trusts(world, settings, largest):
         if largest < settings.still:
             verdict = Verdict.STANDS
-        elif overlap_share(assembly, mechanism) < settings.closing and (
-            world.quality().residual is not None or _driven(problem, built, accelerations)
+        elif look.overlap(mechanism) < settings.closing and (
+            world.quality().residual is not None or _driven(look, built, accelerations)
         ):
             verdict = Verdict.COLLAPSES
     return Onset(verdict=verdict, acceleration=largest, mechanism=mechanism, sweeps=sweeps)
 
 
-def _may_hold(problem: Problem, mechanism: Array) -> bool:
+def _may_hold(problem: Problem | SpatialProblem, mechanism: Array) -> bool:
     """Tell whether blocks may rest by friction that the engine did not take."""
-    if slip_share(problem.assembly, mechanism) <= STICKS:
+    look = looking_at(problem)
+    if look.slip(mechanism) <= STICKS:
         return False
-    return not problem.is_planar or equilibrium(problem).exists
+    return not look.asks or look.equilibrium()[0]
 
 
-def _driven(problem: Problem, built: Array, accelerations: Array) -> bool:
+def _driven(look: Looking, built: Array, accelerations: Array) -> bool:
     """Tell whether the loads do the work of the motion, from rest over one step."""
-    masses = problem.assembly.spatial_masses[:, : accelerations.shape[1]]
-    of_loads = float((problem.pull(built) * accelerations).sum())
-    of_motion = float((masses * accelerations**2).sum())
+    of_loads, of_motion = look.work(built, accelerations)
     return of_loads > WORK * of_motion

@@ -46,6 +46,11 @@ class Recorded(Generic[Asked]):
         )
 
     @property
+    def displacement(self) -> Array:
+        """Largest displacement of any corner since the release [size], (frames,)."""
+        raise NotImplementedError
+
+    @property
     def state_hash(self) -> str:
         """Fingerprint of all poses: equal if and only if the motions are, bit by bit."""
         little = np.ascontiguousarray(self.poses, dtype="<f8")

@@ -17,6 +17,7 @@ from blocksim.engines.base import Engine, Quality, Settings, TakesForces, TellsF
 from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
+    from blocksim.simulation.looking import Looking
     from blocksim.simulation.onset import Onset
 
 Overrides = Mapping[str, float]
@@ -225,6 +226,14 @@ class Simulation:
         """The problem with the friction asked for, where the engine takes less of it."""
         least = (self.problem.friction <= self.engine.most_friction).all()
         return None if least else self.problem
+
+    @property
+    def look(self) -> Looking:
+        """The problem as it is looked at where blocks move."""
+        # Questions without motion do without what this loads.
+        from blocksim.simulation.looking import looking_at
+
+        return looking_at(self.problem)
 
     @property
     def length(self) -> str:

@@ -9,8 +9,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.reading.scenes import FORMAT
 
-FORMAT = "blocksim scene 1"
 BOUND = 0.05
 """Way up to which a body counts as standing, in sizes of the mean body."""
 

@@ -26,8 +26,19 @@ from blocksim.arch.theory.critical import Critical, inner_sliding
 from blocksim.arch.theory.equations import normal_force
 from blocksim.arch.theory.lines import critical_moment, friction_line, thrust_line
 from blocksim.blocks.assembly import Array
-from blocksim.view.drawing import friction_words
-from blocksim.view.style import FONT, FRICTION, GROUND, INK, MECHANISM, QUIET, THRUST
+from blocksim.blocks.joints import JointState
+from blocksim.view.drawing import ARCH_WORDS, friction_words
+from blocksim.view.style import (
+    FONT,
+    FRICTION,
+    GROUND,
+    INK,
+    JOINTS,
+    MECHANISM,
+    QUIET,
+    THRUST,
+    line_style,
+)
 
 MOVED = 0.16
 """Largest displacement drawn, in mean radii."""
@@ -138,7 +149,7 @@ def arch_figure(pictures: Sequence[ArchPicture], *, columns: int = 1) -> Figure:
     with mpl.rc_context(FONT):
         firsts = pictures[::columns]
         heights = [1.0 + min(5.0, 6.6 * _slenderness(picture)) for picture in firsts]
-        layout = ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08)
+        layout = ConstrainedLayoutEngine(h_pad=0.17, w_pad=0.08)
         figure = Figure(figsize=(7.6 * columns, 0.5 + sum(heights)), layout=layout)
         FigureCanvasAgg(figure)
         grid = figure.add_gridspec(len(firsts), columns, height_ratios=heights)
@@ -174,14 +185,15 @@ def draw_arch(axes: Axes, picture: ArchPicture) -> None:
     for angle in picture.joints[1:-1]:
         axes.plot(*_radius(float(angle), inner, outer), color=INK, lw=0.5, zorder=2)
     pressure, shear = lines_of(picture)
-    for line, name, colour, dashes, width in (
-        (pressure, f"line of thrust{picture.line}", THRUST, "-", 2.0),
-        (shear, "line of friction", FRICTION, (0, (5, 1.6)), 1.5),
+    for line, name, tone, width in (
+        (pressure, f"line of thrust{picture.line}", THRUST, 2.0),
+        (shear, "line of friction", FRICTION, 1.5),
     ):
         if line is None:
             axes.plot([], [], ls="", label=f"{name}: too far out to be drawn")
         else:
-            axes.plot(*line.T, zorder=5, label=name, color=colour, ls=dashes, lw=width)
+            axes.plot(*line.T, zorder=5, label=name, color=tone, ls=line_style(tone),
+                      lw=width)  # fmt: skip
     _mark_joints(axes, picture, inner, outer)
     axes.margins(0.03)
     _draw_scale(axes)
@@ -257,7 +269,7 @@ def _draw_mechanism(axes: Axes, picture: ArchPicture, inner: float, outer: float
         ring = _ring(start, stop, inner, outer)
         moved = ring + MOVED / reach * _velocity(picture.motions[first], ring)
         _put(axes, moved, fc=MECHANISM, alpha=0.13, ec="none", zorder=1)
-        _put(axes, moved, fill=False, ec=MECHANISM, lw=1.3, ls=(0, (6, 1.5, 1, 1.5)), zorder=4,
+        _put(axes, moved, fill=False, ec=MECHANISM, lw=1.3, ls=line_style(MECHANISM), zorder=4,
              label="mechanism")  # fmt: skip
 
 
@@ -272,16 +284,19 @@ def _mark_joints(axes: Axes, picture: ArchPicture, inner: float, outer: float) -
     largest = max(float(picture.rates.max()), FAINT)
     for angle, rates in zip(picture.angles.tolist(), picture.rates, strict=True):
         out, into, *slides = (rates > FAINT * largest).tolist()
-        for turns, radius in ((out, outer), (into, inner)):
+        for turns, radius, state in (
+            (out, outer, JointState.HINGE_EXTRADOS),
+            (into, inner, JointState.HINGE_INTRADOS),
+        ):
             # A joint that opens at both ends parts: no hinge is left.
             if turns and not (out and into):
                 axes.plot(radius * math.sin(angle), radius * math.cos(angle), "o", ms=7,
-                          mfc="white", mec=INK, mew=1.5, zorder=7, label="hinge")  # fmt: skip
+                          mfc="white", mec=JOINTS[state], mew=2.0, zorder=7,
+                          label=ARCH_WORDS[state])  # fmt: skip
         if any(slides):
-            axes.plot(*_radius(angle, inner, outer), color=INK, lw=3.2, zorder=6,
-                      solid_capstyle="butt", label=SLIDES)  # fmt: skip
-            axes.plot(*_radius(angle, inner, outer), color="white", lw=1.2, ls=(0, (2, 1)),
-                      zorder=6)  # fmt: skip
+            tone = JOINTS[JointState.SLIDES]
+            axes.plot(*_radius(angle, inner, outer), color=tone, lw=4.0, zorder=6,
+                      ls=line_style(tone), dash_capstyle="butt", label=SLIDES)  # fmt: skip
 
 
 def figures_of(half_angle: float, eta: float, mu: float) -> str:

@@ -79,6 +79,8 @@ class Shape(NamedTuple):
         Of the edge, in pixels.
     closed : bool
         Whether the last point is joined to the first.
+    dash : tuple of float
+        Lengths of the edge drawn and left out, in widths; nothing where it is drawn through.
     """
 
     points: Array
@@ -86,6 +88,7 @@ class Shape(NamedTuple):
     edge: Colour = NOTHING
     width: float = 0.0
     closed: bool = True
+    dash: tuple[float, ...] = ()
 
 
 class Label(NamedTuple):
@@ -184,6 +187,7 @@ def _polygons(panel: Panel, shapes: Sequence[Shape]) -> PolyCollection:
         facecolors=[shape.fill for shape in shapes],
         edgecolors=[shape.edge for shape in shapes],
         linewidths=[shape.width for shape in shapes],
+        linestyles=[(0, shape.dash) if shape.dash else "-" for shape in shapes],
         joinstyle="round",
         capstyle="round",
         # Upright edges would jump from pixel to pixel as blocks move.

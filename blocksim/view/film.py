@@ -12,21 +12,21 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from blocksim.arch.circular import GRAVITY
+from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
-from blocksim.common.words import counted, printable
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.verdict import Verdict
+from blocksim.view.acting import Acting
 from blocksim.view.canvas import Canvas, Label, Panel, Part, Shape, colour, width_of
+from blocksim.view.captions import gravity_arrow, legend_of, title
 from blocksim.view.drawing import (
     ARCH_WORDS,
-    friction_words,
-    loading_words,
     round_length,
     words_of,
 )
-from blocksim.view.filmwords import digits_of, fitting, slowness, verdict_words
+from blocksim.view.filmwords import digits_of, slowness, verdict_words
+from blocksim.view.following import EASED, eased, needed, zoomed
 from blocksim.view.planar import PlanarView
-from blocksim.view.sheet import factor_words
 from blocksim.view.spatial import SpatialView
 from blocksim.view.stage import Moment, Stage
 from blocksim.view.style import INK, QUIET, THRUST
@@ -37,6 +37,8 @@ BEFORE, AFTER = 0.8, 1.2
 TALL = 720
 """Height for which sizes below are given [pixels]."""
 HEAD, FOOT = 74.0, 44.0
+SAMPLES = 200
+"""Times at which it is seen whether blocks leave the picture."""
 
 
 class View(Protocol):
@@ -53,6 +55,15 @@ class View(Protocol):
 
     def scale_bar(self, length: float, words: str) -> tuple[list[Shape], list[Label]]:
         """Draw a bar of a length in units of the radius, and its words."""
+        ...
+
+    def places(self, points: Array) -> Array:
+        """Return where points in space are seen [pixels]."""
+        ...
+
+    @property
+    def centre(self) -> Array:
+        """The place that stays as the camera draws back [pixels]."""
         ...
 
 
@@ -139,6 +150,11 @@ class Film:
             for stage, panel in zip(self._stages, self._panels, strict=True)
         ]
         self._canvas = Canvas(self.width, self.height)
+        self._acting = [
+            Acting(stage, view, panel, self._size)
+            for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True)
+        ]
+        self._shares = self._drawn_back()
         states = {state for stage in self._stages for state in stage.states}
         self._canvas.keep(*self._still(states, thrust=True))
         self._last: tuple[float, NDArray[np.uint8]] | None = None
@@ -196,14 +212,50 @@ class Film:
     def _within(self, seconds: float) -> float:
         return min(max(seconds, 0.0), self.seconds)
 
-    def _draw(self, seconds: float) -> None:
-        parts: list[Part] = []
+    def _drawn_back(self) -> tuple[Array, Array] | None:
+        """Find times [s], and shares of their size at which all blocks are in the picture."""
+        times = np.linspace(0.0, self.seconds, SAMPLES)
+        shares = np.ones(len(times))
         for stage, view, panel in zip(self._stages, self._views, self._panels, strict=True):
-            parts.append((panel, view.shapes(stage.at(seconds / _unit(stage.recording)))))
+            for at, seconds in enumerate(times.tolist() if stage.moves else []):
+                corners = stage.at(seconds / _unit(stage.recording)).corners.reshape(-1, 3)
+                share = needed(view.places(corners), panel, view.centre)
+                shares[at] = min(shares[at], share)
+        if shares.min() == 1:
+            return None
+        return eased(times, shares, EASED / self.slow)
+
+    def share(self, seconds: float) -> float:
+        """Return the share of its size at which all is drawn at a time [s]."""
+        return 1.0 if self._shares is None else float(np.interp(seconds, *self._shares))
+
+    def _draw(self, seconds: float) -> None:
+        parts, labels = list[Part](), list[Label]()
+        share = self.share(seconds)
+        each = zip(self._stages, self._views, self._acting, self._panels, strict=True)
+        for stage, view, acting, panel in each:
+            moment = stage.at(seconds / _unit(stage.recording))
+            around = list[Shape]()
+            if self._shares is not None:
+                bar, words = self._scale_bar(stage, view, share)
+                around = [*zoomed(view.still, share, view.centre), *bar]
+                labels += words
+            beside, said = acting.aside(moment, share)
+            blocks = [*view.shapes(moment), *acting.shapes(moment)]
+            parts.append((panel, [*around, *zoomed(blocks, share, view.centre), *beside]))
+            labels += said
         size = self._size
         clock = self._clock(seconds)
-        label = Label(24 * size, 15 * size, clock, size=19 * size, bold=True)
-        self._canvas.draw(parts, [label])
+        labels.append(Label(24 * size, 15 * size, clock, size=19 * size, bold=True))
+        self._canvas.draw(parts, labels)
+
+    def _scale_bar(
+        self, stage: Stage, view: View, share: float = 1.0
+    ) -> tuple[list[Shape], list[Label]]:
+        radius = stage.recording.assembly.size
+        length = round_length(0.5 * radius / share)
+        unit = "m" if self.metric else "r"
+        return view.scale_bar(share * length / radius, f"{length:g} {unit}")
 
     def _duration(self) -> float:
         """Seconds shown: until the last of those that move has ended."""
@@ -223,65 +275,27 @@ class Film:
         """All that stays the same: surroundings, scale bars, words, legend of what is seen."""
         parts: list[Part] = []
         labels: list[Label] = []
+        size = self._size
         each = zip(self._stages, self._views, self._panels, self._words, strict=True)
         for stage, view, panel, verdict in each:
-            radius = stage.recording.assembly.size
-            length = round_length(0.5 * radius)
-            unit = "m" if self.metric else "r"
-            bar, words = view.scale_bar(length / radius, f"{length:g} {unit}")
-            pull, name = self._gravity(stage, panel)
-            parts.append((panel, [*view.still, *bar, *pull]))
-            labels += [*words, *name, *self._title(stage, panel, verdict)]
+            pull, name = gravity_arrow(stage, panel, size) if self._flat else ([], [])
+            around = list[Shape]()
+            if self._shares is None:
+                # What the camera sees the same in every frame is drawn once.
+                bar, words = self._scale_bar(stage, view)
+                around = [*view.still, *bar]
+                labels += words
+            parts.append((panel, [*around, *pull]))
+            moving = bool(stage.speed) and not self._is_mode
+            labels += [*name, *title(stage, panel, verdict, self.height, size, moving=moving)]
         whole = Panel(0, 0, self.width, self.height)
         rules = [
             np.array([[panel.x, FOOT * self._size], [panel.x, self.height]])
             for panel in self._panels[1:]
         ]
         lines = [Shape(r, edge=colour(INK, 0.25), width=1, closed=False) for r in rules]
-        legend, words = self._legend(states, thrust=thrust)
+        legend, words = legend_of(self._entries(states, thrust=thrust), self.width, size)
         return [*parts, (whole, [*lines, *legend])], [*labels, *words, self._pace()]
-
-    def _gravity(self, stage: Stage, panel: Panel) -> tuple[list[Shape], list[Label]]:
-        """Show where gravity pulls in the plane, in a corner, unless it is straight down."""
-        way = stage.recording.problem.gravity[:2]
-        if not self._flat or way[0] == 0:
-            return [], []
-        size, tone = self._size, colour(QUIET)
-        way = way / np.hypot(*way)
-        across = np.array([-way[1], way[0]])
-        middle = np.array(
-            [panel.x + panel.width - 64 * size, panel.y + panel.height - 36 * size]
-        )
-        tip = middle + 30 * size * way
-        back = tip - 13 * size * way
-        head = np.array([tip, back + 5.5 * size * across, back - 5.5 * size * across])
-        shaft = np.array([middle - 30 * size * way, back])
-        shapes = [
-            Shape(shaft, edge=tone, width=2.5 * size, closed=False),
-            Shape(head, fill=tone),
-        ]
-        under = float(middle[1]) - 52 * size
-        words = Label(float(middle[0]), under, "gravity", size=13 * size, across="center")
-        return shapes, [words._replace(colour=QUIET)]
-
-    def _title(self, stage: Stage, panel: Panel, verdict: str) -> list[Label]:
-        """Say what it is, outcome, loading and engine, above a panel."""
-        size, problem = self._size, stage.recording.problem
-        built = [*problem.measures, counted(len(stage.assembly.blocks), "block")]
-        built.append(friction_words(problem.mu))
-        facts = [verdict, *(loading_words(problem) or factor_words(stage.carried))]
-        head = printable(problem.title) or "   ".join(built)
-        facts[1:1] = built if problem.title else []
-        facts[1:1] = ["still moving as it ends"] if stage.speed and not self._is_mode else []
-        run = stage.recording
-        below = printable(f"{', '.join(facts)}   {run.engine} {run.engine_version}")
-        x, top, wide = panel.x + 24 * size, self.height, panel.width - 48 * size
-        head = fitting(head, 20 * size, wide, bold=True)
-        below = fitting(below, 15 * size, wide)
-        return [
-            Label(x, top - 36 * size, head, size=20 * size, bold=True),
-            Label(x, top - 61 * size, below, size=15 * size, colour=QUIET),
-        ]
 
     @property
     def _tick(self) -> float:
@@ -302,25 +316,14 @@ class Film:
         x = 48 * self._size + width_of(self._clock(self.seconds), 19 * self._size, bold=True)
         return Label(x, 15 * self._size, words, size=14 * self._size, colour=QUIET)
 
-    def _legend(
-        self, states: set[JointState], *, thrust: bool
-    ) -> tuple[list[Shape], list[Label]]:
-        """Explain the colours that occur, from the lower right corner."""
+    def _entries(self, states: set[JointState], *, thrust: bool) -> list[tuple[str, str]]:
+        """Words and colours of what occurs."""
         is_arch = all(stage.is_arch for stage in self._stages)
         told = [words_of(state, is_arch=is_arch) for state in ARCH_WORDS if state in states]
-        entries = list(dict.fromkeys(told))
         if thrust and any(stage.thrust for stage in self._stages):
-            entries.append(("line of thrust at rest", THRUST))
-        shapes, labels = list[Shape](), list[Label]()
-        size = self._size
-        x, y = self.width - 24 * size, 15 * size
-        for words, tone in reversed(entries):
-            x -= width_of(words, 13 * size)
-            labels.append(Label(x, y, words, size=13 * size))
-            line = np.array([[x - 28 * size, y + 5 * size], [x - 8 * size, y + 5 * size]])
-            shapes.append(Shape(line, edge=colour(tone), width=5 * size, closed=False))
-            x -= 54 * size
-        return shapes, labels
+            told.append(("line of thrust at rest", THRUST))
+        told += [entry for acting in self._acting for entry in acting.entries]
+        return list(dict.fromkeys(told))
 
 
 def _enlarged(recording: Recording, times: float) -> Recording:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import json
 import struct
+from collections.abc import Sequence
 from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
@@ -54,12 +55,12 @@ def write_gltf(recording: Recording, file: BinaryIO, kind: str) -> None:
     kind : {"glb", "gltf"}
         Binary, or JSON with the numbers in it as base64.
     """
-    made = _Document()
+    made = Document()
     _add_scene(made, recording)
     file.write(made.glb() if kind == "glb" else made.gltf())
 
 
-class _Document:
+class Document:
     """What is written, as it grows: JSON, and the numbers it points to."""
 
     def __init__(self) -> None:
@@ -97,16 +98,23 @@ class _Document:
         )
         return len(self._accessors) - 1
 
-    def solid(self, name: str, solid: Solid, material: int, **placed: object) -> int:
-        """Add a node with a mesh of its own."""
-        attributes = {
-            "POSITION": self.add(solid.corners, _VERTICES),
-            "NORMAL": self.add(solid.normals, _VERTICES),
-        }
-        indices = self.add(solid.triangles, _INDICES)
-        parts: list[dict[str, Any]] = [
-            {"attributes": attributes, "indices": indices, "material": material}
-        ]
+    def solid(
+        self,
+        name: str,
+        solid: Solid,
+        material: int,
+        marks: Sequence[tuple[Solid, int]] = (),
+        **placed: object,
+    ) -> int:
+        """Add a node with a mesh of its own, and of what is painted on it."""
+        parts: list[dict[str, Any]] = []
+        for each, look in ((solid, material), *marks):
+            attributes = {
+                "POSITION": self.add(each.corners, _VERTICES),
+                "NORMAL": self.add(each.normals, _VERTICES),
+            }
+            indices = self.add(each.triangles, _INDICES)
+            parts.append({"attributes": attributes, "indices": indices, "material": look})
         if len(solid.edges):
             ends = {"POSITION": self.add(solid.edges, _VERTICES)}
             parts.append({"attributes": ends, "mode": _LINES, "material": self.ink})
@@ -169,7 +177,7 @@ class _Document:
         )
 
 
-def _add_scene(made: _Document, recording: Recording) -> None:
+def _add_scene(made: Document, recording: Recording) -> None:
     assembly, size = recording.assembly, recording.assembly.size
     made.extras = {
         "title": printable(recording.problem.title),

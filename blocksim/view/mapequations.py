@@ -49,7 +49,7 @@ NOTES = {
 def draw_equations(axes: Axes) -> None:
     """Write into each region of the whole map which equations rule there."""
     for mode, note in NOTES.items():
-        colour = MODES[mode].colour
+        colour = MODES[mode].ink
         leads = None
         if note.target is not None:
             leads = {"arrowstyle": "-", "color": colour, "lw": 0.9}

@@ -170,10 +170,10 @@ def draw_unbounded(
     """Draw the far end of the map, unbounded friction: a strip beyond a gap, or at 90 deg."""
     level = CROWN_ETA[weight]
     if friction.angle:
-        axes.plot((90, 90), (level, 2.0), color=MODES[Mode.R].colour, lw=4, clip_on=False,
+        axes.plot((90, 90), (level, 2.0), color=MODES[Mode.R].ink, lw=4, clip_on=False,
                   solid_capstyle="butt", gid="region-r", zorder=3)  # fmt: skip
         axes.annotate(Mode.R.value, (90, 1.5), xytext=(8, 0), textcoords="offset points",
-                      color=MODES[Mode.R].colour, fontweight="bold", fontsize=13,
+                      color=MODES[Mode.R].ink, fontweight="bold", fontsize=13,
                       annotation_clip=False)  # fmt: skip
         # Beyond the last line that is computed the regions are as they are there.
         for mode, low, high in ((Mode.RRR, 0.0, level), (Mode.RS, level, 2.0)):
@@ -185,7 +185,7 @@ def draw_unbounded(
                           gid=f"strip-{mode}")  # fmt: skip
     axes.plot(STRIP, (level, level), color=INK, lw=1.1)
     middle = sum(STRIP) / 2
-    axes.text(middle, 1.5, Mode.R.value, color=MODES[Mode.R].colour, fontweight="bold",
+    axes.text(middle, 1.5, Mode.R.value, color=MODES[Mode.R].ink, fontweight="bold",
               fontsize=13, ha="center", va="center")  # fmt: skip
     axes.set_xlim(0.0, STRIP[1])
     ticks = np.arange(0.0, LARGEST_MU + 0.1, 0.5).tolist()
@@ -201,7 +201,7 @@ def _name_regions(
     for mode, (mu, eta) in section.names.items():
         size = 10 if mode in {Mode.SRR, Mode.RSR} else 13
         style: dict[str, Any] = {
-            "color": MODES[mode].colour,
+            "color": MODES[mode].ink,
             "fontweight": "bold",
             "fontsize": size,
         }
@@ -215,10 +215,10 @@ def _name_regions(
         (float(friction.place(mu)), _within_thin(mu, shapes)),
         xytext=(float(friction.place(beside)), above),
         ha="center",
-        color=MODES[Mode.RSR].colour,
+        color=MODES[Mode.RSR].ink,
         fontweight="bold",
         fontsize=11,
-        arrowprops={"arrowstyle": "-", "color": MODES[Mode.RSR].colour, "lw": 1.2},
+        arrowprops={"arrowstyle": "-", "color": MODES[Mode.RSR].ink, "lw": 1.2},
     )
 
 

@@ -10,12 +10,14 @@ from blocksim.blocks.joints import JointState
 from blocksim.view.canvas import Label, Panel, Shape, colour, edge_width, mixed, stone_tones
 from blocksim.view.drawing import HINGES, along_side, words_of
 from blocksim.view.stage import Moment, Stage
-from blocksim.view.style import GROUND, INK, PAPER, STONE, THRUST
+from blocksim.view.style import DASHES, GROUND, INK, PAPER, STONE, THRUST
 
 MARGIN = 0.06
 """Free share of a panel on each side."""
 FLOOR = 0.1
 """Share of a panel that shows the ground, at least."""
+BEYOND = 12.0
+"""How far ground goes on beyond a panel [its widths and heights]."""
 SEAM = 0.6
 """Width of a line that closes the seam between parts of a block [pixels]."""
 
@@ -75,6 +77,8 @@ class PlanarView:
         for piece in order:
             points = self._to_pixels(_outline(moment.corners[piece]))
             tone = self._tones[owner[piece]]
+            if owner[piece] in self._stage.carriers:
+                tone = mixed(colour(GROUND), colour(PAPER), 0.35)
             if piece not in outer:
                 blocks.append(Shape(points, fill=tone, edge=edge, width=self._line))
                 continue
@@ -92,14 +96,26 @@ class PlanarView:
         ]
         return [*blocks, *self._joints(moment), *self._thrust(moment)]
 
+    def places(self, points: Array) -> Array:
+        """Return where points in space are seen, (k, 2) [pixels]."""
+        return self._to_pixels(points[..., :2])
+
+    @property
+    def centre(self) -> Array:
+        """The place that stays as the camera draws back: below the middle, on the ground."""
+        ground = self._stage.ground * self._scale + self._origin[1]
+        return np.array([self._panel.x + self._panel.width / 2, ground])
+
     def _to_pixels(self, points: Array) -> Array:
         return points * self._scale + self._origin
 
     def _surroundings(self) -> list[Shape]:
         """Ground and footings."""
         panel, level = self._panel, self._stage.ground * self._scale + self._origin[1]
-        right, below = panel.x + panel.width, panel.y - 10
-        floor = np.array([[panel.x, below], [right, below], [right, level], [panel.x, level]])
+        # Beyond the panel, for when the camera draws back.
+        left, right = panel.x - BEYOND * panel.width, panel.x + (1 + BEYOND) * panel.width
+        below = level - BEYOND * panel.height
+        floor = np.array([[left, below], [right, below], [right, level], [left, level]])
         ground = colour(GROUND)
         stone = mixed(ground, colour(PAPER), 0.35)
         edge = mixed(ground, colour(INK), 0.45)
@@ -107,7 +123,7 @@ class PlanarView:
             Shape(self._to_pixels(each), fill=stone, edge=edge, width=self._line)
             for each in self._stage.footings
         ]
-        line = np.array([[panel.x, level], [right, level]])
+        line = np.array([[left, level], [right, level]])
         return [
             *footings,
             Shape(floor, fill=ground),
@@ -121,9 +137,12 @@ class PlanarView:
         for state, face in zip(moment.joints, moment.faces, strict=True):
             if state is JointState.CLOSED:
                 continue
-            tone = colour(words_of(state, is_arch=self._stage.is_arch)[1])
+            name = words_of(state, is_arch=self._stage.is_arch)[1]
+            tone, dash = colour(name), DASHES.get(name, ())
             places = [self._to_pixels(pair[:, :2]) for pair in face]
-            faces += [Shape(pair, edge=tone, width=width, closed=False) for pair in places]
+            faces += [
+                Shape(pair, edge=tone, width=width, closed=False, dash=dash) for pair in places
+            ]
             hinge = HINGES.get(state)
             if hinge is not None:
                 middle = (places[0][hinge] + places[1][hinge]) / 2

@@ -17,7 +17,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Patch
 from matplotlib.transforms import Bbox
 
-from blocksim.arch.modes import Mode
 from blocksim.blocks.assembly import Array
 from blocksim.common.version import __version__
 from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
@@ -32,7 +31,7 @@ from blocksim.view.structure import (
     draw_supports,
     edge_width,
 )
-from blocksim.view.style import FONT, FRICTION, INK, MODES, QUIET, THRUST
+from blocksim.view.style import FONT, INK, QUIET, THRUST
 
 INCH = 25.4
 """In millimetres."""
@@ -44,12 +43,8 @@ LONG = 26.0
 """Dimension lines from which on words stand along them [mm]."""
 SMALL, SMALLER = 8.0, 7.5
 """Sizes of letters [points]."""
-LINES = {
-    "min": (FRICTION, (0, (6, 2))),
-    "max": (MODES[Mode.RS].colour, (0, (6, 1.6, 1.2, 1.6))),
-    "safest": (THRUST, "-"),
-}
-"""Colour and dashes of each line of thrust."""
+LINES = {"min": (0, (6, 2)), "max": (0, (1, 1.2)), "safest": "-"}
+"""Dashes of each line of thrust."""
 
 
 def sheet_figure(
@@ -129,9 +124,8 @@ def _entries(axes: Axes) -> dict[str, Patch | Line2D]:
 
 
 def _draw_line(axes: Axes, name: str, words: str, paths: tuple[Array, ...]) -> None:
-    tone, dashes = LINES[name]
     for index, path in enumerate(paths):
-        axes.plot(*path.T, color=tone, ls=dashes, lw=1.5 if name == "safest" else 1.2,
+        axes.plot(*path.T, color=THRUST, ls=LINES[name], lw=1.5 if name == "safest" else 1.2,
                   zorder=8, label=words, gid=f"thrust-{name}-{index}",
                   solid_capstyle="round")  # fmt: skip
 

@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
+from blocksim.limit.space import SpatialEquilibrium
 from blocksim.view.drawing import literal, state_of_any, words_of
+from blocksim.view.solidjoints import force_lines, marks_of
 from blocksim.view.solidscene import Camera, blocks_of, moving_box, supports_of
-from blocksim.view.style import FONT, INK, PAPER, QUIET, VERDICTS
+from blocksim.view.style import FONT, INK, PAPER, QUIET, THRUST, VERDICTS
 
 if TYPE_CHECKING:
     from blocksim.ask.check import Check
@@ -42,23 +44,33 @@ def solid_figure(answer: Check[SpatialProblem]) -> Figure:
     if rates is None:
         rates = np.zeros((len(assembly.blocks), 6))
     turns = Rotation.from_rotvec(WAY * rates[:, 3:]).as_matrix()
+    marks = marks_of(assembly, [each.state for each in answer.joints])
     pieces = supports_of(assembly, low, high)
-    pieces += blocks_of(assembly, turns, WAY * assembly.size * rates[:, :3], _marks(answer))
+    pieces += blocks_of(assembly, turns, WAY * assembly.size * rates[:, :3], marks)
+    camera = Camera(low, high)
     with mpl.rc_context(FONT):
-        return _figure(answer, *Camera(low, high).painted(pieces))
+        figure = _figure(answer, *camera.painted(pieces))
+        static = answer.static
+        forces = static.point_forces if isinstance(static, SpatialEquilibrium) else None
+        if forces is not None:
+            _draw_forces(figure, answer.problem, forces, camera)
+    return figure
 
 
-def _marks(answer: Check[SpatialProblem]) -> dict[int, list[tuple[Array, Array, str]]]:
-    """Return joints that take part by block, each with its normal out of it and a colour."""
-    told: dict[int, list[tuple[Array, Array, str]]] = {}
-    for joint, seen in zip(answer.problem.assembly.joints, answer.joints, strict=True):
-        state = seen.state
-        if state is JointState.CLOSED or len(joint.points) < 3:
-            continue
-        tone = words_of(state, is_arch=False)[1]
-        for side, sign in ((joint.before, 1.0), (joint.after, -1.0)):
-            told.setdefault(side, []).append((joint.points, sign * joint.normal, tone))
-    return told
+def _draw_forces(
+    figure: Figure, problem: SpatialProblem, forces: Array, camera: Camera
+) -> None:
+    """Draw the resultants of joints over the blocks, as wide as they are large."""
+    lines, shares = force_lines(problem, forces)
+    seen = [camera.seen(line) for line, share in zip(lines, shares, strict=True) if share]
+    widths = [0.4 + 2.6 * share for share in shares.tolist() if share]
+    (axes,) = figure.axes
+    axes.add_collection(
+        LineCollection(seen, colors=THRUST, linewidths=widths, capstyle="round",
+                       gid="forces")
+    )  # fmt: skip
+    figure.text(0.97, 0.035, "forces at joints: length and width in proportion", ha="right",
+                color=THRUST)  # fmt: skip
 
 
 def _figure(answer: Check[SpatialProblem], polygons: list[Array], fills: list[Array]) -> Figure:

@@ -11,11 +11,15 @@ from scipy.spatial.transform import Rotation
 
 from blocksim.arch.circular import GRAVITY
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
 from blocksim.blocks.space.parting import displacement_in_space
 from blocksim.simulation.space import SpatialRecording
 from blocksim.view.canvas import Canvas, Label, Panel, Shape, colour
+from blocksim.view.captions import legend_of
+from blocksim.view.drawing import words_of
 from blocksim.view.film import AFTER, BEFORE, FOOT, HEAD, TALL
 from blocksim.view.filmwords import digits_of, fitting, slowness
+from blocksim.view.solidjoints import marks_of, states_at
 from blocksim.view.solidscene import Camera, blocks_of, corners_of, supports_of
 from blocksim.view.style import INK, QUIET
 
@@ -142,10 +146,10 @@ class SolidFilm:
 
     def _draw(self, seconds: float) -> None:
         s = self._size
-        pieces = [
-            *self._supports,
-            *blocks_of(self._recording.problem.assembly, *self._at(seconds)),
-        ]
+        assembly = self._recording.problem.assembly
+        states = self._states_at(seconds)
+        marks = marks_of(assembly, states)
+        pieces = [*self._supports, *blocks_of(assembly, *self._at(seconds), marks)]
         polygons, fills = self._camera.painted(pieces)
         edge = colour(INK)
         shapes: list[Shape] = []
@@ -157,4 +161,22 @@ class SolidFilm:
             clock += ", at rest" if self.at_rest else ", still moving"
         panel = Panel(0, 0, self.width, self.height)
         words = [Label(self.width - 24 * s, 18 * s, clock, 15 * s, INK, across="right")]
-        self._canvas.draw([(panel, shapes)], words)
+        told = dict.fromkeys(
+            words_of(each, is_arch=False) for each in states if each is not JointState.CLOSED
+        )
+        lines, said = legend_of(list(told), self.width - 220 * s, s)
+        self._canvas.draw([(panel, [*shapes, *lines])], [*words, *said])
+
+    def _states_at(self, seconds: float) -> tuple[JointState, ...]:
+        """Tell what joints are seen to do at a time."""
+        recording = self._recording
+        turns, shifts = self._at(seconds)
+        assembly = recording.problem.assembly
+        poses = np.concatenate(
+            [
+                recording.poses[0, :, :3] + shifts / assembly.size,
+                Rotation.from_matrix(turns).as_rotvec(),
+            ],
+            axis=1,
+        )
+        return states_at(assembly, poses)

@@ -39,6 +39,8 @@ SHADOW = 0.72
 """Brightness of the ground in the shade."""
 WIDER = 1.12
 """Depth of the footings over that of the blocks."""
+NEAREST = 0.3
+"""Least distance from the eye at which anything is seen, over what is shown."""
 SEAM = 0.6
 """Width of a line that closes the seam between parts of a block [pixels]."""
 RINGS = 60
@@ -163,6 +165,18 @@ class SpatialView:
             )
             for piece in self._stage.thrust
         ]  # fmt: skip
+
+    def places(self, points: Array) -> Array:
+        """Return where points in space are seen, (k, 2) [pixels]."""
+        # What is beside the eye or behind it is seen as far away as can be.
+        depth = np.maximum((points - self._eye) @ self._axes[2], NEAREST * self._reach)
+        flat = (points - self._eye) @ self._axes[:2].T
+        return flat / depth[..., None] * self._scale + self._shift
+
+    @property
+    def centre(self) -> Array:
+        """The place that stays as the camera draws back: below the middle, on the ground."""
+        return self._to_pixels(np.array([[self._aside, self._stage.ground, 0.0]]))[0]
 
     def _to_pixels(self, points: Array) -> Array:
         seen = (points - self._eye) @ self._axes.T

@@ -16,25 +16,26 @@ import numpy as np
 from blocksim.ask.carried import carried_of
 from blocksim.ask.check import SOUGHT
 from blocksim.blocks.assembly import SUPPORT, Array, Joint, displacement
-from blocksim.blocks.joints import JointState, classify
+from blocksim.blocks.joints import JointState
 from blocksim.engines.ground import ground_level, piers
 from blocksim.limit.carried import Carried
 from blocksim.simulation.motion import AT_REST, FRAME, UNMOVED, UNSEEN
 from blocksim.simulation.recording import Recording
 from blocksim.view.drawing import Part, clipped, outer_parts
-from blocksim.view.placing import Placing, depth_of, distance_of
+from blocksim.view.placing import Placing, depth_of
+from blocksim.view.seenjoints import SEEN, SeenJoints
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines
 
 FEWEST = 4
 """Sides of a footing, and of a block at least."""
 SUNK = 0.02
 """Depth of a corner in the ground or in a footing that passes for touching it [r]."""
-SEEN = 4e-3
-"""Turn or slip of a joint from which on it is coloured [r]: a pixel of a film."""
 FARTHEST = 1.75
 """Blocks are followed up to this far beyond where they were at rest [r]."""
 ALONG = 2.25
 """The same to the sides on supports that are known, which are shown as far [size]."""
+FOLLOWED = 5.0
+"""How far a camera follows blocks that go on and on [widths of what it shows at first]."""
 BESIDE, ABOVE = 0.25, 0.1
 """How far beyond the blocks supports are shown, sidewards and upwards [r]."""
 SAMPLES = 500
@@ -145,7 +146,8 @@ class Stage:
         """Time at which a block sinks, the last has left the picture, or the recording ends."""
         # A block that slides on and on leaves a picture in which nothing is to be seen.
         along = self.recording.poses[..., 0]
-        near = (along > self._low[0] - self._aside) & (along < self._high[0] + self._aside)
+        reach = FOLLOWED * (self._high[0] - self._low[0] + 2 * self._aside)
+        near = (along > self._low[0] - reach) & (along < self._high[0] + reach)
         last = np.flatnonzero(near.any(axis=1))[-1]
         return min(self.sinks, float(self.recording.times[last]))
 
@@ -177,13 +179,16 @@ class Stage:
 
     @cached_property
     def speed(self) -> float:
-        """Speed of the fastest corner as it ends [m/s]; 0 where all has lain still a while."""
+        """Speed of the fastest corner as it ends [m/s]; 0 where blocks have lain still."""
         times, poses = self.recording.times, self.recording.poses
         last = int(np.searchsorted(times, self.end, "right")) - 1
         if last == 0:
             return 0.0
         first = min(int(np.searchsorted(times, float(times[last]) - AT_REST * FRAME)), last - 1)
-        since = displacement(poses[first : last + 1] - poses[last], self.assembly)
+        since = poses[first : last + 1] - poses[last]
+        # Supports that are moved do not tell whether blocks lie still.
+        since[:, sorted(self.carriers)] = 0.0
+        since = displacement(since, self.assembly)
         is_long = first > 0 or bool(self._displaced[: last + 1].max() <= UNMOVED)
         if is_long and float(since.max()) < UNSEEN:
             return 0.0
@@ -222,7 +227,7 @@ class Stage:
         seen = {
             state
             for frame in self._shown
-            for state in self._joints(poses[frame], float(times[frame]))
+            for state in self._seen.at(poses[frame], float(times[frame]))
         }
         return tuple(state for state in JointState if state in seen - {JointState.CLOSED})
 
@@ -290,9 +295,36 @@ class Stage:
             time=time,
             corners=self._placing.corners(earlier, later, share),
             faces=self._placing.faces(earlier, later, share),
-            joints=self._joints(one + (two - one) * share, time),
+            joints=self._seen.at(one + (two - one) * share, time),
             statics=float(np.interp(moved, (STILL, GONE), (1.0, 0.0))),
         )
+
+    def point_at(self, moment: Moment, block: int, arm: Array) -> Array:
+        """Where a point of a block is that lies so far from its centre as built, (3,) float.
+
+        Parameters
+        ----------
+        moment : Moment
+        block : int
+        arm : (2,) float
+        """
+        piece = int(np.flatnonzero(self.owner == block)[0])
+        outline, now = self._placing.outlines[piece], moment.corners[piece].mean(axis=0)
+        # Its corners tell how the block has been carried.
+        plain = np.column_stack([outline, np.ones(len(outline))])
+        way: Array = np.linalg.pinv(plain) @ now
+        return np.append(arm, 1.0) @ way
+
+    @cached_property
+    def carriers(self) -> frozenset[int]:
+        """The blocks that are supports which move: the last ones."""
+        count = len(self.assembly.blocks)
+        return frozenset(range(count - len(self.recording.problem.moves), count))
+
+    @cached_property
+    def _seen(self) -> SeenJoints:
+        frames = self._shown if self.moves else []
+        return SeenJoints(self.recording, self._placing, frames, self.ground + SUNK)
 
     def _side(self, joint: Joint, block: int) -> Part | None:
         """Find the side of a piece of a block that a joint lies on."""
@@ -323,45 +355,3 @@ class Stage:
         """Frames that are shown, or as many of them as tell enough of a long recording."""
         last = int(np.searchsorted(self.recording.times, self.end, "right")) - 1
         return sorted({*range(0, last, 1 + last // SAMPLES), last})
-
-    def _joints(self, poses: Array, time: float) -> tuple[JointState, ...]:
-        # Joint states are those of motion in the plane.
-        if not self.recording.problem.is_planar:
-            return (JointState.CLOSED,) * len(self.assembly.joints)
-        parted, gone = self._fates
-        states: list[JointState] = []
-        for joint in classify(self.assembly, poses, least=SEEN):
-            place = len(states)
-            open_by_now = time >= parted[place]
-            state = JointState.OPEN if open_by_now else joint.state
-            states.append(JointState.CLOSED if time >= gone[place] else state)
-        return tuple(states)
-
-    @cached_property
-    def _fates(self) -> tuple[Array, Array]:
-        """Times from which each joint has parted, and is none any more, (joints,) each.
-
-        What has parted and meets again is no hinge, and a block that lies on the ground, or
-        has come loose of both its neighbours, is rubble: it has no joints.
-        """
-        before, after, *_ = self.assembly.joint_arrays
-        blocks = len(self.assembly.blocks)
-        parted = np.full(len(before), np.inf)
-        rubble = np.full(blocks + 1, np.inf)  # the last stands for the support
-        for frame in self._shown if self.moves else ():
-            time = float(self.recording.times[frame])
-            seen = classify(self.assembly, self.recording.poses[frame], least=SEEN)
-            faces = self._placing.faces(frame, frame, 0.0)[..., :2]
-            # Turned far, blocks may have left each other though neither end seems open.
-            apart = np.array([joint.state is JointState.OPEN for joint in seen])
-            apart |= distance_of(faces[:, 0], faces[:, 1]) > SEEN
-            parted = np.minimum(parted, np.where(apart, time, np.inf))
-            held = np.zeros(blocks + 1, dtype=bool)
-            for side in (before, after):
-                held[side[parted > time]] = True
-            bottoms = self._placing.corners(frame, frame, 0.0)[..., 1].min(axis=(1, 2))
-            lowest = np.full(blocks, np.inf)
-            np.minimum.at(lowest, self.owner, bottoms)
-            loose = ~held[:blocks] | (lowest < self.ground + SUNK)
-            rubble[:blocks] = np.minimum(rubble[:blocks], np.where(loose, time, np.inf))
-        return parted, np.minimum(rubble[before], rubble[after])

@@ -31,6 +31,7 @@ from blocksim.view.style import (
     MECHANISM,
     PAPER,
     STONE,
+    line_style,
 )
 
 MOVED, AROUND = 0.08, 0.06
@@ -145,9 +146,9 @@ def _draw_gaps(axes: Axes, problem: Problem) -> None:
     for index, gap in gaps.items():
         joint = joints[index]
         ends = np.array([joint.inner, joint.outer])
-        axes.plot(*ends.T, color=GAP, lw=1.8, zorder=2.5, solid_capstyle="butt",
-                  marker="D" if joint.is_corner else "", ms=4, gid=f"gap-{index}",
-                  label="closed gap (+) or overlap (-)")  # fmt: skip
+        axes.plot(*ends.T, color=GAP, ls=line_style(GAP), lw=1.8, zorder=2.5,
+                  solid_capstyle="butt", marker="D" if joint.is_corner else "", ms=4,
+                  gid=f"gap-{index}", label="closed gap (+) or overlap (-)")  # fmt: skip
         if index in largest:
             x, y = joint.tangent if joint.tangent[0] >= 0 else -joint.tangent
             axes.annotate(f"{1000 * gap:+.3g} mm", ends.mean(axis=0), xytext=(-3 * y, 3 * x),
@@ -182,6 +183,7 @@ def draw_mechanism(
         )  # fmt: skip
         axes.add_collection(
             LineCollection(outer_sides(moved), colors=MECHANISM, linewidths=1.1, zorder=4,
+                           linestyles=[line_style(MECHANISM)],
                            label="mechanism, enlarged")
         )  # fmt: skip
         shown += moved
@@ -196,9 +198,9 @@ def draw_states(axes: Axes, problem: Problem, states: Sequence[JointState]) -> N
         words, tone = words_of(state, is_arch=problem.is_arch)
         ends = np.array([joint.inner, joint.outer])
         # A corner on a face has no length to colour.
-        axes.plot(*ends.T, color=tone, lw=3.2, zorder=6, solid_capstyle="butt", label=words,
-                  ls="-", marker="D" if joint.is_corner else "", ms=5,
-                  gid=f"joint-{index}")  # fmt: skip
+        axes.plot(*ends.T, color=tone, lw=3.2, zorder=6, label=words, ls=line_style(tone),
+                  solid_capstyle="butt", dash_capstyle="butt", ms=5,
+                  marker="D" if joint.is_corner else "", gid=f"joint-{index}")  # fmt: skip
         if state in HINGES and not joint.is_corner:
             axes.plot(*ends[HINGES[state]], "o", ms=6, mfc="white", mec=tone, mew=1.6,
                       zorder=7, gid=f"hinge-{index}")  # fmt: skip

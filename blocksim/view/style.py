@@ -1,4 +1,9 @@
-"""One colour for each mode, verdict, joint and line, told apart by colour-blind readers too."""
+"""One colour, one meaning: hues, line styles and marks of all that pictures and pages show.
+
+Any two that appear together differ by at least 12 in CIEDE2000, for everybody and as simulated
+for protanopia, deuteranopia and tritanopia, and where only grey is left in colour or in form
+(`tests/test_colours.py`). Maps, drawings, films, pages and the explorer take them from here.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +21,7 @@ class Style(NamedTuple):
     Parameters
     ----------
     colour : str
-        Of points and labels: Okabe and Ito's palette.
+        Of points.
     tint : str
         Of regions: the same, lightened.
     marker : str
@@ -27,15 +32,37 @@ class Style(NamedTuple):
     tint: str
     marker: str
 
+    @property
+    def ink(self) -> str:
+        """Of words on the tint or on paper."""
+        return mix(self.colour, "#000000", 0.35)
+
+
+def mix(one: str, other: str, share: float) -> str:
+    """Go from one colour #rrggbb to another by a share, 0 to 1."""
+    pairs = ((int(one[i : i + 2], 16), int(other[i : i + 2], 16)) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(a + (b - a) * share):02x}" for a, b in pairs)
+
+
+STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
+INK, QUIET = "#222222", "#5d5a53"
+"""Of lines and words, and of those that matter less."""
+MISS = "#c00000"
+"""Of what an engine got wrong."""
+
+
+def _mode(colour: str, marker: str) -> Style:
+    return Style(colour, mix("#ffffff", colour, 0.2), marker)
+
 
 MODES = {
-    Mode.RRR: Style("#0072B2", "#cfe3f0", "o"),
-    Mode.SS: Style("#7a7a7a", "#e6e6e6", "X"),
-    Mode.SRR: Style("#D55E00", "#f8dcc9", "s"),
-    Mode.RRS: Style("#009E73", "#cdebe2", "^"),
-    Mode.RSR: Style("#B8860B", "#f3e3b8", "v"),
-    Mode.RS: Style("#AA4499", "#efd8ec", "D"),
-    Mode.R: Style("#332288", "#d8d3ea", "P"),
+    Mode.RRR: _mode("#295681", "o"),
+    Mode.SS: _mode("#42443e", "X"),
+    Mode.SRR: _mode("#a88159", "s"),
+    Mode.RRS: _mode("#2a8477", "^"),
+    Mode.RSR: _mode("#7d6c0f", "v"),
+    Mode.RS: _mode("#e55395", "D"),
+    Mode.R: _mode("#a670e2", "P"),
 }
 UNNAMED = Style("#000000", "#ffffff", "*")
 
@@ -48,29 +75,43 @@ def style_of_method(name: str) -> Style:
     return Style(method.colour, method.tint, method.marker)
 
 
-MISS = "#c00000"
-
 VERDICTS = {
-    Verdict.STANDS: "#0060A0",
-    Verdict.COLLAPSES: "#B84300",
+    Verdict.STANDS: "#032d55",
+    Verdict.COLLAPSES: "#8a0200",
     Verdict.UNDECIDED: "#6b6b6b",
 }
 JOINTS = {
-    JointState.HINGE_INTRADOS: "#0072B2",
-    JointState.HINGE_EXTRADOS: "#E69F00",
-    JointState.SLIDES: "#009E73",
-    JointState.HINGE_AND_SLIDES: "#CC79A7",
-    JointState.OPEN: "#555555",
+    JointState.HINGE_INTRADOS: "#568fc7",
+    JointState.HINGE_EXTRADOS: "#ca7719",
+    JointState.SLIDES: "#6018aa",
+    JointState.HINGE_AND_SLIDES: "#a25789",
+    JointState.OPEN: "#525252",
 }
-"""Of joints that take part; a closed one is drawn as stone."""
-THRUST, FRICTION, MECHANISM, ISO = "#D55E00", "#0072B2", "#009E73", "#0072B2"
-INK, QUIET = "#222222", "#5d5a53"
-"""Of lines and words, and of those that matter less."""
-DEAD, LIVE = "#222222", "#CC0055"
+"""Of joints that take part; a closed one is drawn as stone. Hinges have a dot at the end that
+stays closed."""
+THRUST, FRICTION, MECHANISM = "#b4410a", "#6060cf", "#307f53"
+DEAD, LIVE = INK, "#661527"
 """Of loads besides gravity: those that stay, and those multiplied by the load factor."""
-GAP = "#AA4499"
+GAP = "#4a1f4f"
 """Of joints at which a drawing's gap or overlap is closed."""
-STONE, GROUND, PAPER = "#d9cdb8", "#b9b3a6", "#fbfaf7"
+ISO = "#0072B2"
+"""Of lines of equal half-angle on maps that have no modes."""
+
+DASHES: dict[str, tuple[float, ...]] = {
+    FRICTION: (5.0, 1.6),
+    MECHANISM: (6.0, 1.5, 1.0, 1.5),
+    JOINTS[JointState.SLIDES]: (1.6, 0.5),
+    JOINTS[JointState.HINGE_AND_SLIDES]: (1.6, 0.4, 0.4, 0.4),
+    JOINTS[JointState.OPEN]: (0.5, 0.5),
+    GAP: (1.0, 1.0),
+}
+"""Form of lines by their colour: lengths drawn and left out, in widths of the line."""
+
+
+def line_style(colour: str) -> Any:
+    """Return the style of a line of a colour, as matplotlib takes it."""
+    return (0, DASHES[colour]) if colour in DASHES else "-"
+
 
 FONT: dict[Any, Any] = {
     "font.family": "DejaVu Sans",

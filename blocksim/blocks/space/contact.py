@@ -14,6 +14,8 @@ Spot = tuple[float, float]
 """A point in a plane."""
 PARALLEL = 1e-9
 """Sine of the angle below which two edges have one direction."""
+SAME = 1 - 1e-14
+"""Cosine of the angle below which two planes are one."""
 
 
 class Contact(NamedTuple):
@@ -69,9 +71,14 @@ def contact(first: Polyhedron, second: Polyhedron, slack: float) -> Contact | Ov
         if widest < -slack:
             return Overlap(float(-widest))
     found: list[Contact] = []
-    for index in np.argsort(-gaps):
+    tried: list[Array] = []
+    for index in np.argsort(-gaps).tolist():
         if gaps[index] < -slack:
             break
+        # A face of each lies in the same plane.
+        if any(normals[index] @ other > SAME for other in tried):
+            continue
+        tried.append(normals[index])
         points = _common(first, second, normals[index], slack)
         if points is not None:
             found.append(Contact(points, normals[index], float(gaps[index])))

@@ -82,18 +82,19 @@ class Polyhedron:
             hull = ConvexHull(points - points.mean(axis=0))
         except QhullError:
             raise InputError("vertices", "a flat hull", allowed) from None
-        object.__setattr__(self, "corners", frozen(points[hull.vertices], (-1, 3)))
-        object.__setattr__(self, "slack", slack)
+        place = np.empty(len(points), np.int64)
+        place[hull.vertices] = np.arange(len(hull.vertices))
+        sides = place[hull.simplices]
+        own = frozen(points[hull.vertices], (-1, 3))
         # Triangles of the hull, turned counter-clockwise seen from outside.
-        triangles = points[hull.simplices]
-        inwards = np.einsum("ij,ij->i", _crosses(triangles), hull.equations[:, :3]) < 0
-        triangles[inwards] = triangles[inwards][:, ::-1]
-        object.__setattr__(self, "_triangles", triangles)
+        inwards = (_crosses(own[sides]) * hull.equations[:, :3]).sum(axis=1) < 0
+        sides[inwards] = sides[inwards][:, ::-1]
+        vars(self).update(corners=own, slack=slack, _sides=sides)
 
-    @property
+    @cached_property
     def triangles(self) -> Array:
         """Its surface, (k, 3, 3), each counter-clockwise seen from outside."""
-        return self.__dict__["_triangles"]
+        return self.corners[self.__dict__["_sides"]]
 
     @cached_property
     def box(self) -> Array:
@@ -103,26 +104,26 @@ class Polyhedron:
     @cached_property
     def faces(self) -> tuple[Face, ...]:
         """Its faces: triangles in one plane are one."""
-        triangles, corners = self.triangles, self.corners
+        corners, sides = self.corners, self.__dict__["_sides"]
         middle = corners.mean(axis=0)
-        cross = _crosses(triangles)
+        cross = _crosses(self.triangles)
         areas = np.linalg.norm(cross, axis=1)
         slack = max(self.slack, COPLANAR * self.thickness)
         found: list[Face] = []
         free = areas > 0
-        for index in np.argsort(-areas):
+        for index in np.argsort(-areas).tolist():
             if not free[index]:
                 continue
             normal = cross[index] / areas[index]
-            on = np.abs((corners - triangles[index, 0]) @ normal) <= slack
-            plane = corners[on]
-            normal = _normal_of(plane, normal)
-            offset = float((plane @ normal).mean())
+            on = np.abs((corners - corners[sides[index, 0]]) @ normal) <= slack
+            face = _face_of(corners[on], normal)
+            normal, offset = face.normal, face.offset
             # A sliver of a face found before is no face.
-            free &= np.abs(triangles @ normal - offset).max(axis=1) > 2 * slack
+            off = np.abs(corners @ normal - offset)
+            free &= off[sides].max(axis=1) > 2 * slack
             free[index] = False
-            if not any(normal @ face.normal > 1 - 1e-14 for face in found):
-                found.append(Face(normal, offset, _around(plane, normal)))
+            if not any(normal @ other.normal > 1 - 1e-14 for other in found):
+                found.append(face)
         outwards = [face for face in found if face.normal @ middle < face.offset]
         return tuple(outwards)
 
@@ -135,8 +136,9 @@ class Polyhedron:
     def with_slack(self, slack: float) -> Polyhedron:
         """Return the same, whose corners may lie as far off the planes of its faces [m]."""
         other = object.__new__(Polyhedron)
-        known = {"corners": self.corners, "slack": slack, "_triangles": self.triangles}
-        vars(other).update(known, thickness=self.thickness)
+        vars(other).update(vars(self), thickness=self.thickness, slack=slack)
+        vars(other).pop("faces", None)
+        vars(other).pop("planes", None)
         return other
 
     @cached_property
@@ -194,13 +196,28 @@ class Polyhedron:
 
 def _crosses(triangles: Array) -> Array:
     """Return normals of triangles, (k, 3), twice as long as their areas."""
-    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    (a, b, c), (x, y, z) = (triangles[:, 1:] - triangles[:, :1]).transpose(1, 2, 0)
+    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=1)
 
 
-def _normal_of(plane: Array, near: Array) -> Array:
-    """Return the unit normal of points that lie in a plane, on the side of another."""
-    normal = np.linalg.svd(plane - plane.mean(axis=0))[2][2]
-    return normal if normal @ near > 0 else -normal
+def _face_of(plane: Array, near: Array) -> Face:
+    """Return the face of points that lie nearly in a plane, about a normal near to its own.
+
+    Its normal is that of the polygon's area (Newell's): corners that were rounded count alike.
+    """
+    (x, y, z), count = plane.sum(axis=0).tolist(), len(plane)
+    x, y, z = x / count, y / count, z / count
+    (a, b, c), (d, e, f) = frame(near).tolist()
+    arms = [(u - x, v - y, w - z) for u, v, w in plane.tolist()]
+    angles = [math.atan2(d * u + e * v + f * w, a * u + b * v + c * w) for u, v, w in arms]
+    order = sorted(range(count), key=angles.__getitem__)
+    around = [arms[at] for at in order]
+    i = j = k = 0.0
+    for (u, v, w), (p, q, r) in zip(around, around[1:] + around[:1], strict=True):
+        i, j, k = i + v * r - w * q, j + w * p - u * r, k + u * q - v * p
+    long = math.sqrt(i * i + j * j + k * k)
+    i, j, k = i / long, j / long, k / long
+    return Face(np.array([i, j, k]), i * x + j * y + k * z, plane[order])
 
 
 def frame(normal: Array) -> Array:
@@ -220,9 +237,3 @@ def frame(normal: Array) -> Array:
     x, y, z = (each / long for each in first)
     a, b, c = way
     return np.array([[x, y, z], [b * z - c * y, c * x - a * z, a * y - b * x]])
-
-
-def _around(plane: Array, normal: Array) -> Array:
-    """Put the corners of a convex polygon in order, counter-clockwise about its normal."""
-    flat = (plane - plane.mean(axis=0)) @ frame(normal).T
-    return plane[np.argsort(np.arctan2(flat[:, 1], flat[:, 0]))]

@@ -62,7 +62,9 @@ def settle(step: Step, guess: Answer, precision: float) -> list[Answer]:
         not be known.
     """
     x, contacts = guess.x, guess.contacts
-    stiffness = stiffness_at(step.friction, x, precision)
+    # Forces stop what is closed: accelerations will be as large.
+    stopped = np.abs(step.rates[:, :2][contacts != OPEN]).max(initial=0.0)
+    stiffness = stiffness_at(step.friction, np.append(x, stopped), precision)
     linear = Linear(step, contacts, stiffness)
     held = np.abs(guess.forces[:, 2:])
     preload = linear.doing.forces(guess.forces, held)

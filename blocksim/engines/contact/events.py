@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import brentq
 
 from blocksim.blocks.assembly import Array
 
 PARTS = 64
 """Parts of a step in which the first sign of closing is looked for."""
-ROUNDS = 40
-"""Halvings of such a part."""
+CLOSE = 1e-13
+"""Share of a step to which the moment is found."""
 
 
 def first_closing(gap: Array, rate: Array, later: Array, at_end: Array, step: float) -> float:
@@ -40,10 +41,12 @@ def first_closing(gap: Array, rate: Array, later: Array, at_end: Array, step: fl
     # One that leaves from 0 has no sign at the start.
     high = float(shares[int(closed.argmax())]) if closed.any() else 1.0
     low = high - 1 / PARTS
-    for _ in range(ROUNDS):
-        middle = (low + high) / 2
-        if gaps(np.array([middle]))[0] < 0:
-            high = middle
-        else:
-            low = middle
-    return step * high
+
+    def least(share: float) -> float:
+        return float(gaps(np.array([share]))[0])
+
+    if not least(low) > 0 > least(high):
+        return step * high
+    # Beyond the zero, so that something has closed.
+    found = brentq(least, low, high, xtol=CLOSE)
+    return step * min(high, float(found) + CLOSE)

@@ -86,7 +86,7 @@ def _as_last_resort(step: Step, best: Answer) -> Answer:
 
     Its residual says how far it is from Coulomb's law.
     """
-    forces = _dilating(step)
+    forces = dilating(step)
     if forces is None:
         return best
     x = step.pushed_by(forces)
@@ -99,11 +99,11 @@ def _guesses(step: Step, forces: Array | None) -> Iterator[Array]:
     if forces is not None and moves:
         near = followed(step, ROUNDED[0], forces, NEAR)
         yield forces if near is None else near
-    dilating = _dilating(step)
-    if dilating is not None:
-        yield dilating
+    opening = dilating(step)
+    if opening is not None:
+        yield opening
         # Of rest near its limit the forces lie on the cones; with less friction within.
-        less = _dilating(replace(step, friction=LESS * step.friction))
+        less = dilating(replace(step, friction=LESS * step.friction))
         if less is not None:
             yield less
     for rounded in ROUNDED:
@@ -193,7 +193,7 @@ def _newton(step: Step, pushed: Array, left: Array, stiff: float) -> Array | Non
     return solved(system, -left)
 
 
-def _dilating(step: Step) -> Array | None:
+def dilating(step: Step) -> Array | None:
     """Return forces of friction that dilates: a cone programme, and rest if there is any."""
     points, size = len(step.friction), step.matrix.shape[1]
     mu = step.friction

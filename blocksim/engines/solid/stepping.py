@@ -78,12 +78,7 @@ class Stepping:
 
     def _rest(self) -> Answer:
         """Solve the contacts as they were built, from rest."""
-        bodies, contacts = self.bodies, self._contacts
-        rows = sparse.csr_matrix(contacts.matrix.T @ self._frames(bodies.built))
-        free = bodies.pull(bodies.built).ravel() / bodies.root
-        drift = np.zeros(rows.shape[0])
-        step = Step(rows, drift, free, np.minimum(contacts.friction, ROUGH))
-        found = solve(step, None)
+        found = solve(at_rest(self.bodies), None)
         self._begin(found.forces)
         return found
 
@@ -106,14 +101,6 @@ class Stepping:
                 if set(sides_of(joint)) == set(sides[at].tolist()):
                     sign = 1.0 if after[each] == sides[at, 1] else -1.0
                     self._forces[at] = sign * axes[at] @ pushes[each]
-
-    def _frames(self, place: Place) -> Any:
-        """Return what takes scaled velocities in frames to those in space, sparse."""
-        count = len(self.bodies.inertia)
-        blocks = np.zeros((count, 6, 6))
-        blocks[:, :3, :3] = np.eye(3)
-        blocks[:, 3:, 3:] = place.turns[:-1]
-        return on_diagonal(blocks / self.bodies.root.reshape(-1, 1, 6))
 
     def _move(self, step: float) -> None:
         """Go on for a time."""
@@ -298,6 +285,19 @@ class Stepping:
                 self._place = self._place.moved(way)
                 deep = self._overlap()
         self._penetration = max(self._penetration, deep)
+
+
+def at_rest(bodies: Bodies) -> Step:
+    """Return what the contacts of blocks as they were built ask, from rest."""
+    contacts, built = JointPoints(bodies.problem), bodies.built
+    # From velocities in frames, scaled, to those in space.
+    turns = np.zeros((len(bodies.inertia), 6, 6))
+    turns[:, :3, :3] = np.eye(3)
+    turns[:, 3:, 3:] = built.turns[:-1]
+    frames_of = on_diagonal(turns / bodies.root.reshape(-1, 1, 6))
+    rows = sparse.csr_matrix(contacts.matrix.T @ frames_of)
+    free = bodies.pull(built).ravel() / bodies.root
+    return Step(rows, np.zeros(rows.shape[0]), free, np.minimum(contacts.friction, ROUGH))
 
 
 def carried(places: Array, block: NDArray[np.int64], found: Place, there: Place) -> Array:

@@ -252,12 +252,10 @@ def observed_joints(problem: SpatialProblem, rates: Array) -> tuple[ObservedJoin
     slides = together & (slip > SEEN)
     ends = np.cumsum([len(each.points) for each in problem.assembly.joints])[:-1]
     pairs = zip(np.split(together, ends), np.split(slides, ends), strict=True)
-    return tuple(
-        ObservedJoint(angle=math.nan, state=STATES[_some_or_all(one), bool(two.any())])
-        for one, two in pairs
-    )
+    return tuple(ObservedJoint(angle=math.nan, state=state_of(one, two)) for one, two in pairs)
 
 
-def _some_or_all(together: NDArray[np.bool_]) -> bool | None:
-    """Tell whether all points stay together; None where none does."""
-    return bool(together.all()) if together.any() else None
+def state_of(together: NDArray[np.bool_], slides: NDArray[np.bool_]) -> JointState:
+    """Tell what a joint does by which of its points stay together, and which slide."""
+    some_or_all = bool(together.all()) if together.any() else None
+    return STATES[some_or_all, bool(slides.any())]

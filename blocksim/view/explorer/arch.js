@@ -109,11 +109,10 @@ const archPicture = (() => {
   function mark(group, { angle, kind }, inner, outer, pixel) {
     if (kind === "out" || kind === "in") {
       const d = pathOf([at(angle, inner), at(angle, outer)]);
-      add(group, "path", { d, class: "slide" });
-      add(group, "path", { d, class: "slide-core" });
+      add(group, "path", { d, class: "slide slides" });
     } else if (kind !== "parts") {
       const [cx, cy] = at(angle, kind === "extrados" ? outer : inner);
-      add(group, "circle", { cx, cy, r: 5 * pixel, class: "hinge" });
+      add(group, "circle", { cx, cy, r: 5 * pixel, class: `hinge hinge-${kind}` });
     }
   }
 

@@ -20,7 +20,16 @@ from blocksim.blocks.assembly import Array
 from blocksim.common.words import printed
 from blocksim.view.explorer.results import Result
 from blocksim.view.mapshapes import ISO_DEGREES, LARGEST_MU, iso_line, map_shapes
-from blocksim.view.style import FRICTION, MISS, MODES, THRUST, UNNAMED, VERDICTS
+from blocksim.view.style import (
+    FRICTION,
+    JOINTS,
+    MECHANISM,
+    MISS,
+    MODES,
+    THRUST,
+    UNNAMED,
+    VERDICTS,
+)
 
 HERE = Path(__file__).parent
 SCRIPTS = (
@@ -46,9 +55,23 @@ def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
     str
         HTML, complete in itself.
     """
-    loader = PackageLoader("blocksim.view.explorer", "")
+    return (
+        environment_of("blocksim.view.explorer")
+        .get_template("page.html")
+        .render(
+            data=_data(results),
+            source=source,
+            style=(HERE / "style.css").read_text(encoding="utf-8"),
+            scripts=[(HERE / name).read_text(encoding="utf-8") for name in SCRIPTS],
+            version=blocksim.__version__,
+        )
+    )
+
+
+def environment_of(package: str) -> Environment:
+    """Return templates of a package, which escape what they are given."""
     environment = Environment(
-        loader=loader,
+        loader=PackageLoader(package, ""),
         autoescape=True,
         undefined=StrictUndefined,
         finalize=printed,
@@ -56,13 +79,7 @@ def explorer_page(results: Sequence[Result] = (), source: str = "") -> str:
     )
     # JSON has no infinity; modes keep the order of the paper.
     environment.policies["json.dumps_kwargs"] = {"allow_nan": False}
-    return environment.get_template("page.html").render(
-        data=_data(results),
-        source=source,
-        style=(HERE / "style.css").read_text(encoding="utf-8"),
-        scripts=[(HERE / name).read_text(encoding="utf-8") for name in SCRIPTS],
-        version=blocksim.__version__,
-    )
+    return environment
 
 
 def _data(results: Sequence[Result]) -> dict[str, Any]:
@@ -77,6 +94,8 @@ def _data(results: Sequence[Result]) -> dict[str, Any]:
             "thrust": THRUST,
             "friction": FRICTION,
             "wrong": MISS,
+            "mechanism": MECHANISM,
+            **{state.value: colour for state, colour in JOINTS.items()},
             **{verdict.value: colour for verdict, colour in VERDICTS.items()},
         },
         "largestMu": LARGEST_MU,

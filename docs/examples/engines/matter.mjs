@@ -3,6 +3,8 @@ import Matter from "matter-js";
 import { local, main } from "./files.mjs";
 
 const SCALE = 100; // pixels a metre: its bodies and slop are in pixels, its times in ms
+// Its friction depends on the unit of mass; its own bodies have 0.001 a square pixel, as 2000 kg a square metre here.
+const MASS = 0.001 * SCALE * SCALE / 2000;
 const { Bodies, Body, Composite, Engine, Vertices } = Matter;
 
 main({
@@ -29,11 +31,12 @@ main({
           return Bodies.fromVertices(middle.x, middle.y, [part], options);
         });
         const body = made.length > 1 ? Body.create({ ...options, parts: made }) : made[0];
+        body.parts.forEach((part) => { part.friction = scene.friction; }); // What is static has 1.
         const [x, y] = given.centre ?? [0, 0];
         Body.translate(body, { x: SCALE * x, y: -SCALE * y });
         if (!given.fixed) {
-          Body.setMass(body, given.mass);
-          Body.setInertia(body, given.inertia * SCALE * SCALE);
+          Body.setMass(body, MASS * given.mass);
+          Body.setInertia(body, MASS * given.inertia * SCALE * SCALE);
           // Velocities are by a sixtieth of a second.
           Body.setVelocity(body, { x: (SCALE * given.velocity[0]) / 60, y: (-SCALE * given.velocity[1]) / 60 });
           Body.setAngularVelocity(body, -given.spin / 60);
@@ -47,7 +50,7 @@ main({
         const [cos, sin] = [Math.cos(-body.angle), Math.sin(-body.angle)];
         const at = { x: cos * lever[0] - sin * lever[1], y: sin * lever[0] + cos * lever[1] };
         const place = { x: body.position.x + SCALE * at.x, y: body.position.y - SCALE * at.y };
-        Body.applyForce(body, place, { x: (force[0] * SCALE) / 1e6, y: (-force[1] * SCALE) / 1e6 });
+        Body.applyForce(body, place, { x: (MASS * force[0] * SCALE) / 1e6, y: (-MASS * force[1] * SCALE) / 1e6 });
       },
       step() {
         for (const body of pulled) {

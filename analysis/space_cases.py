@@ -1,0 +1,153 @@
+"""All cases in space with known answers, by every engine, a little to either side.
+
+Question: which engine is right near the limit, in space, and how often? Each case of
+`tests/structures/space` is asked whether it stands; one with a load factor at a share less and
+at the same share more of it. Asked are the onset test and the moving run, as `check` does. Rows
+of each question go to disk as they are found, and are not asked again.
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import blocksim
+from analysis.command import run
+from analysis.rows import provenance, write_rows
+from blocksim import SpatialProblem, Verdict
+from blocksim.blocks.space.files import problem_in_space
+from blocksim.common.files import make_folder
+
+CASES = Path(__file__).parents[1] / "tests" / "structures" / "space"
+BESIDE = {
+    "limit": (0.01, 0.001),
+    "direct": (0.01, 0.001),
+    "pybullet": (0.01,),
+    "mujoco": (0.01,),
+}
+QUICK = ("block_topples_20", "tower_113")
+NAMES = {Verdict.STANDS: True, Verdict.COLLAPSES: False, Verdict.UNDECIDED: None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One question.
+
+    Parameters
+    ----------
+    case, method : str
+    beside : float
+        Share by which the load is beside the load factor; below 0 less, 0 for a verdict.
+    blocks : int
+    known, found : str
+        Verdicts.
+    right : str
+        "right", "open" or "false".
+    seconds : float
+        Processor time.
+    evidence : str
+    """
+
+    case: str
+    method: str
+    beside: float
+    blocks: int
+    known: str
+    found: str
+    right: str
+    seconds: float
+    evidence: str
+
+
+def asked(name: str, method: str) -> Iterator[tuple[float, SpatialProblem, bool]]:
+    """Give the share, the problem and whether it stands, of each question on a case."""
+    case = json.loads((CASES / f"{name}.json").read_text(encoding="utf-8"))
+    problem, value = problem_in_space(case["scene"]), case["expected"]["value"]
+    if case["question"] == "stands":
+        yield 0.0, problem, bool(value)
+        return
+    for beside in BESIDE[method]:
+        yield -beside, problem.with_load(value * (1 - beside)), True
+        yield beside, problem.with_load(value * (1 + beside)), False
+
+
+def row(case: str, method: str, beside: float, problem: SpatialProblem, *, stands: bool) -> Row:
+    """Ask one question."""
+    began = time.process_time()
+    answer = blocksim.check(problem, method=method)
+    seconds = time.process_time() - began
+    found = NAMES[answer.verdict]
+    return Row(
+        case=case,
+        method=method,
+        beside=beside,
+        blocks=len(problem.assembly.blocks),
+        known=str(Verdict.STANDS if stands else Verdict.COLLAPSES),
+        found=str(answer.verdict),
+        right="open" if found is None else "right" if found is stands else "false",
+        seconds=round(seconds, 2),
+        evidence=answer.reason,
+    )
+
+
+def table(rows: list[dict[str, str]]) -> str:
+    """Count what is right, open and false, by method and share, as lines of Markdown.
+
+    A verdict has no share: it counts with each.
+    """
+    lines = ["| method | beside | right | open | false | time |", "|---|---|---|---|---|---|"]
+    for method, shares in BESIDE.items():
+        for beside in shares:
+            near = [each for each in rows if abs(float(each["beside"])) in (0.0, beside)]
+            mine = [each for each in near if each["method"] == method]
+            if not mine:
+                continue
+            right, left_open, wrong = (
+                sum(each["right"] == word for each in mine)
+                for word in ("right", "open", "false")
+            )
+            spent = sum(float(each["seconds"]) for each in mine)
+            counts = f"{right} | {left_open} | {wrong} | {spent:,.0f} s"
+            lines.append(f"| {method} | {beside:.1%} | {counts} |")
+    return "\n".join(lines)
+
+
+def main(out: Path, *, quick: bool = False, method: str = "", only: str = "") -> str:
+    """Ask what is not yet on disk; return the table.
+
+    Parameters
+    ----------
+    out : Path
+        Folder for what is found.
+    quick : bool, optional
+        Two small cases only.
+    method : str, optional
+        The method that is asked; by default all.
+    only : str, optional
+        Cases whose names hold this.
+    """
+    make_folder(out)
+    path = out / "space_cases.csv"
+    rows = list[dict[str, str]]()
+    if path.exists():
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+    known = {(each["case"], each["method"], float(each["beside"])) for each in rows}
+    names = QUICK if quick else sorted(each.stem for each in CASES.glob("*.json"))
+    made = provenance()
+    for each, name in itertools.product([method] if method else BESIDE, names):
+        for beside, problem, stands in asked(name, each):
+            if only in name and (name, each, beside) not in known:
+                found = asdict(row(name, each, beside, problem, stands=stands)) | made
+                rows.append({key: str(value) for key, value in found.items()})
+                write_rows(path, rows)
+    return table(rows)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,281 @@
+"""Many structures, asked one after the other whether they stand, on all processors.
+
+For who filters or labels scenes that a program made. What is asked is limit analysis; of stacks
+and towers the margin follows from statics alone (`limit.determinate`), and where it is near 0
+the ordinary check decides, with its proof.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import threading
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import BrokenExecutor, Future
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from queue import Empty, Queue
+from typing import Literal
+
+from blocksim.ask.check import check
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.errors import BlocksimError, InputError, in_line
+from blocksim.common.processes import Crew, processes
+from blocksim.kinds.files import any_of, load_any, with_friction, written
+from blocksim.kinds.offers import offers_of
+from blocksim.limit.determinate import margin_of_stack, margin_of_tower
+from blocksim.simulation.verdict import Verdict
+
+Structure = str | bytes | Path | Mapping[str, object] | Problem | SpatialProblem
+"""A line of JSON, a file, what such a file says, or a problem."""
+NEAR = 1e-6
+"""Margin up to which the ordinary check decides."""
+FARTHEST = 100.0
+"""Lack of force beyond which it does, too: it may be beyond all bounds."""
+ALONE = 40
+"""Structures that are answered before processes are started."""
+BATCH = 32
+"""Structures that a process is handed at once."""
+AHEAD = 4
+"""Batches that are read ahead, and handed out for each process."""
+LARGEST = 20_000_000
+"""Bytes of a line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Told:
+    """What was found of one structure of many.
+
+    Parameters
+    ----------
+    verdict : {"stands", "collapses", "undecided"} or None
+        None where there is an error.
+    margin : float or None
+        As of `blocksim.check`: above 0 it stands, below it falls. In the plane the least part
+        of a force along an edge of a cone of friction, over what its joint carries, about;
+        in space how hard each corner of each face presses, over the share of the lighter
+        block's weight. At most 1; -inf where no forces would do. None of kinds without one.
+    title : str
+        What the structure is called.
+    error : str or None
+        What is wrong with it, in one line.
+    """
+
+    verdict: Literal["stands", "collapses", "undecided"] | None = None
+    margin: float | None = None
+    title: str = ""
+    error: str | None = None
+
+
+def check_many(
+    structures: Iterable[Structure],
+    *,
+    friction: float | None = None,
+    workers: int | None = None,
+) -> Iterator[Told]:
+    """Tell of many structures whether they stand, by limit analysis, in their order.
+
+    What is wrong with one is its answer, and those after it are answered nevertheless. They
+    are read as they are needed, and a bounded number is held at once.
+
+    Parameters
+    ----------
+    structures : iterable
+        Lines of JSON, paths of files, what structure files say as dicts, or problems.
+    friction : float, optional
+        Coefficient of those that have none of their own.
+    workers : int, optional
+        Processes; by default one a processor, started after the first 40 structures. A program
+        that asks for more than that has to guard its main module, as `multiprocessing` says.
+
+    Yields
+    ------
+    Told
+
+    Examples
+    --------
+    >>> floor = {"id": 0, "fixed": True, "vertices": [[-2, -1], [2, -1], [2, 0], [-2, 0]]}
+    >>> box = {"id": 1, "vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+    >>> for told in check_many([{"friction": 0.5, "blocks": [floor, box]}, "no JSON"]):
+    ...     print(told.verdict, told.margin, told.error is None)
+    stands 0.125 True
+    None None False
+    """
+    each = iter(structures)
+    batches = iter(lambda: tuple(islice(each, BATCH)), ())
+    yield from check_batches(batches, friction=friction, workers=workers)
+
+
+def check_batches(
+    batches: Iterable[Iterable[Structure]],
+    *,
+    friction: float | None = None,
+    workers: int | None = None,
+) -> Iterator[Told]:
+    """Tell of many structures whether they stand; see `check_many`.
+
+    Parameters
+    ----------
+    batches : iterable of iterables
+        Structures; each batch is answered as soon as it is there, as by `check_many`.
+    friction, workers
+        As of `check_many`.
+    """
+    count = workers or os.cpu_count() or 1
+    pool, coming = _Pool(count), _Coming(batches)
+    handed = deque[tuple[tuple[Structure, ...], Future[list[Told]]]]()
+    try:
+        while coming.more or handed:
+            while coming.more and len(handed) < AHEAD * count:
+                batch = coming.next(wait=not handed)
+                if batch is None:
+                    break
+                handed.append((batch, pool.submit(batch, friction)))
+            if not handed:
+                continue
+            batch, found = handed.popleft()
+            try:
+                yield from found.result()
+            except BrokenExecutor:
+                yield from _one_by_one(batch, friction)
+    finally:
+        coming.end()
+        pool.end()
+
+
+class _Coming:
+    """Batches read by a thread: answers are given while the next is waited for."""
+
+    def __init__(self, batches: Iterable[Iterable[Structure]]) -> None:
+        self.more, self._ended = True, threading.Event()
+        self._queue: Queue[tuple[Structure, ...] | BaseException | None] = Queue(AHEAD)
+        threading.Thread(target=self._read, args=(batches,), daemon=True).start()
+
+    def _read(self, batches: Iterable[Iterable[Structure]]) -> None:
+        last: BaseException | None = None
+        try:
+            for batch in batches:
+                self._queue.put(tuple(batch))
+                if self._ended.is_set():
+                    return
+        except BaseException as error:
+            last = error
+        self._queue.put(last)
+
+    def next(self, *, wait: bool) -> tuple[Structure, ...] | None:
+        """Return the next batch; None where there is none yet, or no more."""
+        try:
+            found = self._queue.get(block=wait)
+        except Empty:
+            return None
+        if isinstance(found, BaseException):
+            raise found
+        self.more = found is not None
+        return found
+
+    def end(self) -> None:
+        """Read no more."""
+        self._ended.set()
+        with suppress(Empty):
+            while True:
+                self._queue.get_nowait()
+
+
+class _Pool:
+    """Processes that are started once more than a few structures came, and anew if one dies."""
+
+    def __init__(self, count: int) -> None:
+        self._count, self._seen = count, 0
+        self._crew: Crew | None = None
+
+    def submit(
+        self, batch: tuple[Structure, ...], friction: float | None
+    ) -> Future[list[Told]]:
+        """Hand out a batch, or answer it here."""
+        self._seen += len(batch)
+        if self._count == 1 or self._seen <= ALONE:
+            done = Future[list[Told]]()
+            done.set_result(_answered(batch, friction))
+            return done
+        if self._crew is None:
+            self._crew = processes(self._count)
+        try:
+            return self._crew.submit(_answered, batch, friction)
+        except BrokenExecutor:
+            self._crew = processes(self._count)
+            return self._crew.submit(_answered, batch, friction)
+
+    def end(self) -> None:
+        """End all work."""
+        if self._crew is not None:
+            self._crew.end()
+
+
+def _one_by_one(batch: tuple[Structure, ...], friction: float | None) -> Iterator[Told]:
+    """Answer structures in a process of their own, which may die of one."""
+    own = processes(1)
+    try:
+        for each in batch:
+            try:
+                yield own.submit(_told, each, friction).result()
+            except BrokenExecutor:
+                yield Told(error="the process that answered it died: is there enough memory?")
+                own = processes(1)
+    finally:
+        own.end()
+
+
+def _answered(batch: tuple[Structure, ...], friction: float | None) -> list[Told]:
+    return [_told(each, friction) for each in batch]
+
+
+def _told(structure: Structure, friction: float | None) -> Told:
+    """Answer one structure; what is wrong with it is its answer."""
+    try:
+        problem = _read(structure, friction)
+        verdict, margin = _verdict(problem)
+    except BlocksimError as error:
+        return Told(error=str(error))
+    except (ValueError, RecursionError, MemoryError) as error:
+        return Told(error=in_line(" ".join(str(error).split()) or type(error).__name__))
+    return Told(verdict=verdict.value, margin=margin, title=problem.title)
+
+
+def _read(structure: Structure, friction: float | None) -> Problem | SpatialProblem:
+    """Make a problem of a line, a file, or what one says."""
+    if isinstance(structure, Problem | SpatialProblem):
+        return structure
+    if isinstance(structure, Path):
+        return load_any(structure, friction=friction)
+    if isinstance(structure, str | bytes):
+        text = structure.encode() if isinstance(structure, str) else structure
+        if len(text) > LARGEST:
+            raise InputError("line", f"{len(text)} bytes", f"at most {LARGEST} bytes")
+        try:
+            said = written(text, "JSON")
+        except InputError:
+            raise
+        except (ValueError, RecursionError) as error:
+            words = " ".join(str(error).split())
+            raise InputError("line", words, "one JSON object in a line") from None
+    else:
+        said = structure
+    return any_of(said if friction is None else with_friction(said, friction))
+
+
+def _verdict(problem: Problem | SpatialProblem) -> tuple[Verdict, float | None]:
+    """Return verdict and margin, by statics alone where that tells them apart from 0."""
+    margin = None
+    if isinstance(problem, SpatialProblem):
+        margin = margin_of_tower(problem)
+    elif problem.shaking is None and problem.is_planar and offers_of(problem) is None:
+        margin = margin_of_stack(problem)
+    if margin is not None and NEAR < abs(margin) < FARTHEST:
+        return Verdict.STANDS if margin > 0 else Verdict.COLLAPSES, margin
+    answer = check(problem, method="limit")
+    margin = math.nan if answer.static is None else answer.static.margin
+    return answer.verdict, None if math.isnan(margin) else margin

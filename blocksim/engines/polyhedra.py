@@ -1,0 +1,219 @@
+"""Blocks in space as engines with shapes of their own need them.
+
+While joints are joints, all that touches are their corners, each on a plate on the other block:
+a face presses within its polygon by forces at its corners (`JointPoints`). A corner is of the
+block whose rim ends there, or whose edge or corner it is, and the plate lies on a face of the
+other. Each touches its plate and nothing else. Once blocks may meet others they are the
+polyhedra they are, on their supports and a floor.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple, cast
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.space.assembly import FaceJoint
+from blocksim.blocks.space.parting import displacement_in_space
+from blocksim.blocks.space.polyhedron import frame
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.engines.energy import Balance
+from blocksim.engines.solid.between import body_of, sides_of
+from blocksim.engines.solid.bodies import Bodies, Place
+from blocksim.engines.solid.meeting import meet, near
+
+SQUARE = 1e-6
+"""Cosine from 1 up to which a face lies along a joint."""
+BEYOND, THIN = 0.5, 0.2
+"""How far a plate reaches beyond the corners on it, and its thickness, over their spread."""
+LEAST = 0.02
+"""Least spread that is taken [size]."""
+FREE = 0.05
+"""Displacement up to which joints are all that touches, less where others are near [size]."""
+TOUCHING = 1e-6
+"""Gap up to which what has no joint touches along a rim as it was built [size]."""
+LARGEST = 0.004
+"""Way in a step, in units of a block's least extent, that keeps overlaps small."""
+
+
+class Touch(NamedTuple):
+    """What touches at a joint.
+
+    Parameters
+    ----------
+    joint : int
+    plate, corners : int
+        Blocks with the plate and with the corners, or `SUPPORT`.
+    sign : float
+        1 where the corners are on `after` of the joint, else -1.
+    places : (k, 3) float
+        Of the corners, in the order of the joint's points [size].
+    axes : (3, 3) float
+        Columns: two along the plate, and its normal towards the block with the corners.
+    spread : float
+        How far the corners are from their mean.
+    """
+
+    joint: int
+    plate: int
+    corners: int
+    sign: float
+    places: Array
+    axes: Array
+    spread: float
+
+    @property
+    def half(self) -> list[float]:
+        """Half extents of the plate."""
+        wide = (1 + BEYOND) * self.spread
+        return [wide, wide, THIN * self.spread / 2]
+
+
+class Polyhedra:
+    """Blocks of a problem: frames, masses, loads, energy, what touches, and when all may.
+
+    Poses are centres [size] and rotation vectors since blocks were built, (blocks, 6).
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+
+    Attributes
+    ----------
+    loose : bool
+        Whether blocks may meet that share no joint.
+    largest : float
+        Way in a step that keeps overlaps small [size].
+    """
+
+    def __init__(self, problem: SpatialProblem) -> None:
+        self.problem, self.assembly = problem, problem.assembly
+        self.bodies = Bodies(problem)
+        self.built = self.bodies.poses(self.bodies.built)
+        hulls = self.bodies.hulls
+        self.largest = LARGEST * float(hulls.thickness[hulls.owner != SUPPORT].min())
+        self.loose = False
+
+    @property
+    def quaternions(self) -> Array:
+        """How blocks are built, along their principal axes, (blocks, 4)."""
+        return Rotation.from_matrix(self.bodies.built.turns[:-1]).as_quat()
+
+    def place(self, poses: Array) -> Place:
+        """Return where blocks are by their poses."""
+        turned = Rotation.from_rotvec(poses[:, 3:]).as_matrix()
+        built = self.bodies.built
+        return Place(
+            np.vstack([poses[:, :3], built.centres[-1:]]),
+            np.concatenate([turned @ built.turns[:-1], built.turns[-1:]]),
+        )
+
+    def along(self, poses: Array) -> Array | None:
+        """Return loads besides gravity along the axes, (blocks, 6); None where none acts."""
+        if not self.problem.is_loaded:
+            return None
+        place = self.place(poses)
+        found = self.bodies.pull(place)
+        found[:, :3] -= self.bodies.weights[:, None] * self.problem.gravity
+        found[:, 3:] = np.einsum("bij,bj->bi", place.turns[:-1], found[:, 3:])
+        return found
+
+    def displacement(self, moved: Array) -> float:
+        """Return the largest displacement of any corner."""
+        return float(displacement_in_space(moved, self.assembly))
+
+    def balance(self, poses: Array) -> Balance:
+        """Return what looks at the energy, from where blocks are let go."""
+
+        def potential(poses: Array) -> float:
+            return self.bodies.energy(self.place(poses), np.zeros_like(poses))[0]
+
+        def kinetic(poses: Array, velocities: Array) -> float:
+            own, place = velocities.copy(), self.place(poses)
+            own[:, 3:] = np.einsum("bji,bj->bi", place.turns[:-1], own[:, 3:])
+            return self.bodies.energy(place, own)[1]
+
+        return Balance.of(potential, kinetic, poses)
+
+    @cached_property
+    def touches(self) -> tuple[Touch, ...]:
+        """What touches at each joint."""
+        return tuple(self._touch(at, joint) for at, joint in enumerate(self.assembly.joints))
+
+    def _touch(self, at: int, joint: FaceJoint) -> Touch:
+        """Return the plate on the side that has a face there, and the corners on the other."""
+        sign = 1.0
+        if not self._has_face(joint, 1.0) and self._has_face(joint, -1.0):
+            sign = -1.0
+        plate, corners = joint.before, joint.after
+        if sign < 0:
+            plate, corners = corners, plate
+        places = joint.points / self.assembly.size
+        spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+        first, _ = frame(joint.normal)
+        normal = sign * joint.normal
+        second = cast("Array", np.cross(normal, first))
+        axes = np.stack([first, second, normal], axis=1)
+        return Touch(at, plate, corners, sign, places, axes, max(spread, LEAST))
+
+    def _has_face(self, joint: FaceJoint, sign: float) -> bool:
+        """Tell whether the block on a side of a joint has a face along it."""
+        index = joint.before if sign > 0 else joint.after
+        if index != SUPPORT:
+            blocks = (self.assembly.blocks[index],)
+        elif joint.support is None:
+            blocks = self.assembly.supports
+        else:
+            blocks = (self.assembly.supports[joint.support],)
+        faces = [face for block in blocks for hull in block.hulls for face in hull.faces]
+        return any(sign * float(face.normal @ joint.normal) > 1 - SQUARE for face in faces)
+
+    @cached_property
+    def _free(self) -> float:
+        """How far blocks may move before they meet others [size]."""
+        hulls = self.bodies.hulls.placed(*self.bodies.built)
+        reach = np.full(len(hulls.owner), FREE)
+        pairs = near(hulls, reach)
+        points = meet(hulls, pairs, reach[pairs].sum(axis=1))
+        joined = {tuple(sorted(sides_of(each))) for each in self.assembly.joints}
+        bodies = body_of(hulls)
+        sides = np.sort(np.stack([bodies[points.before], bodies[points.after]]), axis=0)
+        apart = np.array([tuple(each) not in joined for each in sides.T.tolist()], dtype=bool)
+        gaps = points.gaps[apart & (points.gaps > TOUCHING)]
+        return float(gaps.min(initial=2 * FREE)) / 2
+
+    def update(self, poses: Array) -> None:
+        """Look where blocks are, and whether they may meet others."""
+        self.loose = self.loose or self.displacement(poses - self.built) > self._free
+
+    def texts(self) -> tuple[list[str], list[str]]:
+        """Return hulls as texts of .obj files: of blocks in their frames, and of supports."""
+        hulls = self.bodies.hulls
+        owned = [
+            np.flatnonzero(hulls.owner == index).tolist()
+            for index in range(len(self.assembly.blocks))
+        ]
+        moving = ["\n".join(self._text(hull) for hull in its) for its in owned]
+        fixed = np.flatnonzero((hulls.owner == SUPPORT) & (hulls.support >= 0))
+        return moving, [self._text(hull) for hull in fixed.tolist()]
+
+    def _text(self, hull: int) -> str:
+        """Return one hull as the text of an .obj file, numbered from the last corner back."""
+        hulls = self.bodies.hulls
+        corners, many = hulls.corners[hull], hulls.many[hull]
+        lines = [f"o {hull}", *(f"v {x!r} {y!r} {z!r}" for x, y, z in corners.tolist())]
+        for around, count in zip(hulls.around[hull], many.tolist(), strict=True):
+            if count:
+                # Numbers below 0 count back: files may hold several hulls.
+                own = (around[:count] - len(corners)).tolist()
+                lines.append("f " + " ".join(map(str, own)))
+        return "\n".join(lines) + "\n"
+
+    @property
+    def level(self) -> float:
+        """Height of the floor [size]."""
+        hulls = self.bodies.hulls
+        return float(hulls.corners[-1, :, 2].max())

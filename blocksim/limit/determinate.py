@@ -1,0 +1,165 @@
+"""Stacks and towers: what joints carry there by statics alone, and so their margin, exactly.
+
+Where each block reaches the ground through one joint only, as in a stack, a joint carries all
+that is above it, whatever friction may do elsewhere: force and moment follow from equilibrium.
+How they best lie on the ends of a joint in the plane has a closed form; so has it in space
+where nothing rubs. The margin is that of the programmes (`equilibrium`, `can_rest`), which
+other assemblies need.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from blocksim.blocks.assembly import SUPPORT, Array
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.points import JointPoints
+from blocksim.blocks.space.polyhedron import frame
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.limit.cones import carried_weights, joint_weights
+
+MOST = 1.0
+"""Margin that is told at most, as of the programmes."""
+RUBS = 1e-13
+"""Force across, over that along the normal, up to which it is rounding."""
+
+
+def margin_of_stack(problem: Problem) -> float | None:
+    """Return the margin of `equilibrium`, of a stack.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+
+    Returns
+    -------
+    float or None
+        None where blocks reach the ground in more ways than one, where a corner rests on a
+        face, or where friction is 0 or has no bound.
+
+    Examples
+    --------
+    >>> from blocksim.kinds.column import Column
+    >>> margin_of_stack(Column(drums=3, drum_height=1, width=1, friction=0.5).problem())
+    0.125
+    """
+    assembly, mu = problem.assembly, problem.friction
+    joints = assembly.joint_arrays
+    if joints.is_corner.any() or not (np.isfinite(mu) & (mu > 0)).all():
+        return None
+    pull = problem.pull()
+    arms = assembly.built[:-1, :2]
+    pull[:, 2] += arms[:, 0] * pull[:, 1] - arms[:, 1] * pull[:, 0]
+    sums = _carried(assembly.sides, pull)
+    if sums is None:
+        return None
+    normal, tangent, (start, end) = joints.normal, joints.tangent, joints.ends.swapaxes(0, 1)
+    along = (sums[:, :2] * normal).sum(axis=1)
+    across = (sums[:, :2] * tangent).sum(axis=1)
+    # Of moments about the first end only the other end's normal force has one.
+    turning = sums[:, 2] - start[:, 0] * sums[:, 1] + start[:, 1] * sums[:, 0]
+    way = end - start
+    second = turning / (way[:, 0] * normal[:, 1] - way[:, 1] * normal[:, 0])
+    # Parts along both edges of both cones: the least is largest where friction is shared so
+    # that both ends have as much to spare, if both press by that much.
+    spare = np.minimum(np.minimum(along - second, second), (along - np.abs(across) / mu) / 2)
+    unit = joint_weights(problem, carried_weights(problem))
+    return min(MOST, float((spare * np.maximum(1.0, mu) / (2 * unit)).min()))
+
+
+def margin_of_tower(problem: SpatialProblem) -> float | None:
+    """Return the margin of `can_rest`, of a tower in which nothing rubs.
+
+    Parameters
+    ----------
+    problem : SpatialProblem
+
+    Returns
+    -------
+    float or None
+        None where blocks reach the ground in more ways than one, where a joint is no face,
+        carries a force across or a moment about its normal, or would have to pull as a whole.
+    """
+    assembly = problem.assembly
+    sides = np.array([(each.before, each.after) for each in assembly.joints]).reshape(-1, 2).T
+    pull = problem.fixed_pull + problem.load * problem.live_pull
+    pull[:, 3:] += np.cross(assembly.centres, pull[:, :3])
+    sums = _carried(sides, pull)
+    if sums is None:
+        return None
+    own, margin = JointPoints(problem).own * assembly.weights.mean(), MOST
+    first = 0
+    for joint, mu, (x, y, z, *turning) in zip(
+        assembly.joints, problem.friction.tolist(), sums.tolist(), strict=True
+    ):
+        found = _pressed(joint.points, joint.normal, mu, (x, y, z), turning)
+        if found is None:
+            return None
+        margin = min(margin, found / float(own[first]))
+        first += len(joint.points)
+    return margin
+
+
+def _pressed(
+    points: Array, normal: Array, mu: float, force: tuple[float, ...], turning: list[float]
+) -> float | None:
+    """Return how hard all corners of a face can press at once, which carries a force [N].
+
+    The force acts at a place within the face. What is left when each corner presses by t acts
+    on the ray from the corners' middle through that place, and leaves the face at its rim.
+    """
+    count = len(points)
+    along = float(np.dot(force, normal))
+    middle = points.sum(axis=0) / count
+    about = np.array(turning) - np.cross(middle, force)
+    reach = float(np.abs(points - middle).max())
+    across = np.abs(np.array(force) - along * normal).max()
+    rubs = max(float(across), abs(float(about @ normal)) / reach)
+    if count < 3 or not along > 0 or not rubs <= RUBS * along * min(mu, 1.0):
+        return None
+    axes = frame(normal)
+    x, y = (axes @ np.cross(normal, about) / along).tolist()
+    corners = ((points - middle) @ axes.T).tolist()
+    share = 0.0
+    for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True):
+        # On which side of the edge the place is, over that of the middle.
+        share = max(share, (x * (d - b) - y * (c - a)) / (a * (d - b) - b * (c - a)))
+    return along / count * (1.0 - share)
+
+
+def _carried(sides: NDArray[np.int64], pull: Array) -> Array | None:
+    """Return force and moment at each joint on the block after it, about the origin.
+
+    (joints, 3 or 6) float, of pulls about the origin; None where that does not follow from
+    equilibrium alone.
+    """
+    count = len(pull)
+    pairs: list[tuple[int, int]] = list(zip(*sides.tolist(), strict=True))
+    if len(pairs) != count:
+        return None
+    at: dict[int, list[int]] = {index: [] for index in (SUPPORT, *range(count))}
+    for joint, pair in enumerate(pairs):
+        for block in pair:
+            at[block].append(joint)
+    order, reached = [(SUPPORT, -1)], {SUPPORT}
+    for block, by in order:
+        for joint in at[block]:
+            if joint == by:
+                continue
+            other = sum(pairs[joint]) - block
+            if other in reached:
+                return None
+            reached.add(other)
+            order.append((other, joint))
+    if len(reached) <= count:
+        return None
+    above, sums = pull.copy(), np.zeros_like(pull)
+    for block, joint in order[:0:-1]:
+        before, after = pairs[joint]
+        sums[joint] = above[block] * (-1.0 if after == block else 1.0)
+        below = before if after == block else after
+        if below != SUPPORT:
+            above[below] += above[block]
+    return sums

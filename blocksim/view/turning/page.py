@@ -1,0 +1,58 @@
+"""Build the page of an answer in space: words, model, viewer in one file."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import blocksim
+from blocksim.blocks.joints import JointState
+from blocksim.common.words import counted, printable
+from blocksim.view.drawing import state_of_any, words_of
+from blocksim.view.explorer.page import environment_of
+from blocksim.view.gltfspace import mechanism_model
+from blocksim.view.style import INK, PAPER, QUIET, VERDICTS
+
+if TYPE_CHECKING:
+    from blocksim.ask.check import Check
+    from blocksim.blocks.space.problem import SpatialProblem
+
+VIEWER = Path(__file__).parent / "model-viewer.min.js"
+"""<model-viewer> as the registry of npm has it, @google/model-viewer."""
+VERSION = "4.4.0"
+
+
+def turning_page(answer: Check[SpatialProblem]) -> str:
+    """Build the page.
+
+    Parameters
+    ----------
+    answer : Check
+
+    Returns
+    -------
+    str
+        HTML, complete in itself.
+    """
+    problem = answer.problem
+    states = {state_of_any(each.state) for each in answer.joints} - {JointState.CLOSED}
+    return (
+        environment_of("blocksim.view.turning")
+        .get_template("page.html")
+        .render(
+            title=printable(problem.title) or "Blocks in space",
+            verdict=f"{answer.verdict.value}, by {answer.method}",
+            about=f"{counted(len(problem.assembly.blocks), 'block')}, mu {problem.mu:g}",
+            model=base64.b64encode(mechanism_model(answer)).decode(),
+            told=[words_of(each, is_arch=False) for each in sorted(states)],
+            moves=answer.mechanism is not None,
+            tone=VERDICTS[answer.verdict],
+            paper=PAPER,
+            ink=INK,
+            quiet=QUIET,
+            script=VIEWER.read_text(encoding="utf-8"),
+            viewer=VERSION,
+            version=blocksim.__version__,
+        )
+    )

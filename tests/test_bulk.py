@@ -1,0 +1,221 @@
+"""Many structures at once: margins by statics alone, streams, folders, what is broken."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from space_cases import box, problem_of, tower
+
+import blocksim
+from blocksim import Solid, SpatialProblem
+from blocksim.ask.bulk import Structure, check_many
+from blocksim.cli.app import app
+from blocksim.limit import equilibrium
+from blocksim.limit.determinate import margin_of_stack, margin_of_tower
+from blocksim.limit.space import can_rest
+from blocksim.suite.export import questions
+from blocksim.suite.families import Question
+
+FLOOR: dict[str, Any] = {
+    "id": "floor",
+    "fixed": True,
+    "vertices": [[-9, -1], [9, -1], [9, 0], [-9, 0]],
+}
+
+
+COLUMN = {"kind": "column", "drums": 3, "drum_height": 1, "width": 1, "friction": 1}
+
+
+def stack(
+    widths: list[float], shifts: list[float], mu: float = 0.6, **said: object
+) -> dict[str, Any]:
+    """Boxes upon each other, each half as high as wide, shifted from the one below."""
+    blocks: list[dict[str, Any]] = [FLOOR]
+    at, height = 0.0, 0.0
+    for index, (width, shift) in enumerate(zip(widths, shifts, strict=True)):
+        at += shift
+        left, right, top = at - width / 2, at + width / 2, height + width / 2
+        corners = [[left, height], [right, height], [right, top], [left, top]]
+        blocks.append({"id": index, "vertices": corners})
+        height = top
+    return {"friction": mu, "density": 2e4, "blocks": blocks, **said}
+
+
+sizes = st.floats(0.1, 2.0)
+
+
+@given(
+    st.lists(st.tuples(sizes, st.floats(-0.3, 0.3)), min_size=1, max_size=7),
+    st.floats(0.02, 3.0),
+    st.floats(-0.6, 0.6),
+    st.floats(-0.5, 0.5),
+)
+@settings(max_examples=40, deadline=None)
+def test_margin_of_a_stack_is_that_of_the_programme(
+    boxes: list[tuple[float, float]], mu: float, tilt: float, push: float
+) -> None:
+    widths, shifts = [each for each, _ in boxes], [each for _, each in boxes]
+    # Each box touches the one below along a part of its face.
+    shifts = [
+        shift * min(pair)
+        for shift, pair in zip(shifts, zip(widths, [9.0, *widths], strict=False), strict=True)
+    ]
+    loads = [{"body": [0, -1]}, {"block": 0, "force": [push * 1e4, 0]}]
+    problem = blocksim.structure_of(stack(widths, shifts, mu, dead=loads)).tilted(tilt)
+    found, asked = margin_of_stack(problem), equilibrium(problem)
+    assert found is not None
+    if math.isinf(asked.margin):
+        assert found < -900
+    else:
+        assert found == pytest.approx(asked.margin, abs=1e-8, rel=1e-7)
+
+
+def test_margins_in_closed_form() -> None:
+    # Both ends of a box's face press by half the weight, along two edges of friction each; the
+    # unit is twice the weight.
+    assert margin_of_stack(blocksim.structure_of(stack([1], [0]))) == pytest.approx(1 / 8)
+    # On a slope friction is used by tan(tilt)/mu of it, up to where it slides.
+    for slope in (0.1, 0.3, 0.59, 0.61, 0.9):
+        low = blocksim.structure_of(stack([1], [0])).tilted(math.atan(slope))
+        share = (1 - slope / 0.6) / 2 * math.cos(math.atan(slope)) / 4
+        # The centre is a quarter of the width high: it turns at a slope of 2.
+        lifts = (1 - slope / 2) / 2 * math.cos(math.atan(slope)) / 4
+        assert margin_of_stack(low) == pytest.approx(min(share, lifts))
+    # A cube each of whose corners presses by its share; on the rim by none.
+    ground = Solid(parts=(box((-3, -3, -1), (3, 3, 0)),), fixed=True)
+    cube = Solid(parts=(box((0, 0, 0), (1, 1, 1)),))
+    assert margin_of_tower(problem_of([ground, cube])) == 1.0
+    high = Solid(parts=(box((0.25, 0, 1), (1.25, 1, 2)),))
+    # Its weight acts a quarter from the middle of a face 3/4 wide: 2/3 of the way to the rim
+    # would leave a third; it is 1/8 off, a third of 3/8.
+    assert margin_of_tower(problem_of([ground, cube, high])) == pytest.approx(2 / 3)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_towers_stand_where_what_is_above_lies_over_each_face(seed: int) -> None:
+    solids = tower(seed, blocks=2 + seed % 4)
+    corners = [np.asarray(each.parts[0]) for each in solids]
+    bases = [shapely.MultiPoint(each[:, :2]).convex_hull for each in corners]
+    pairs = zip(bases, corners, strict=True)
+    volumes = [base.area * float(np.ptp(each[:, 2])) for base, each in pairs]
+    over = True
+    for at in range(1, len(solids)):
+        above = sum(volumes[at:])
+        x = sum(v * b.centroid.x for v, b in zip(volumes[at:], bases[at:], strict=True)) / above
+        y = sum(v * b.centroid.y for v, b in zip(volumes[at:], bases[at:], strict=True)) / above
+        over &= bases[at].intersection(bases[at - 1]).contains(shapely.Point(x, y))
+    problem = problem_of(solids)
+    margin = margin_of_tower(problem)
+    assert margin is not None
+    assert (margin > 0) == over
+    assert margin == pytest.approx(can_rest(problem).margin, abs=1e-7)
+
+
+def test_what_is_no_tower_is_left_to_the_programme() -> None:
+    ground = Solid(parts=(box((-3, -3, -1), (3, 3, 0)),), fixed=True)
+    legs = [Solid(parts=(box((x, 0, 0), (x + 0.5, 1, 1)),)) for x in (0, 2)]
+    beam = Solid(parts=(box((0, 0, 1), (2.5, 1, 1.5)),))
+    assert margin_of_tower(problem_of([ground, *legs, beam])) is None
+    pushed: SpatialProblem = problem_of([ground, legs[0]]).tilted(0.1)
+    assert margin_of_tower(pushed) is None
+    wall = blocksim.Wall(
+        length=3, courses=3, block_length=1, block_height=0.5, friction=0.6
+    ).problem()
+    assert margin_of_stack(wall) is None
+
+
+def test_each_has_its_answer_in_order_and_what_is_broken_is_one() -> None:
+    fine = stack([1, 1], [0, 0.2])
+    given: list[Structure] = [
+        fine, json.dumps(stack([1, 1], [0, 0.6])), "{", b"\xff", "[1]", "{}", "[" * 100_000,
+        '{"friction": 0.5, "friction": 0.5}', json.dumps({**fine, "friction": -1}),
+        COLUMN, Path("/nowhere.json"),
+        blocksim.structure_of(fine),
+    ]  # fmt: skip
+    told = list(blocksim.check_many(given, workers=1))
+    assert len(told) == len(given)
+    assert [each.verdict for each in told] == [
+        "stands", "collapses", *[None] * 7, "stands", None, "stands"
+    ]  # fmt: skip
+    for each in told:
+        assert (each.error is None) == (each.verdict is not None)
+        assert "\n" not in (each.error or "")
+    assert told[0].margin == told[-1].margin
+
+
+def test_the_same_as_the_ordinary_check() -> None:
+    draw = np.random.default_rng(7)
+
+    def drawn(low: float, high: float, count: int) -> list[float]:
+        return [float(draw.uniform(low, high)) for _ in range(count)]
+
+    made = [stack(drawn(0.4, 1.2, n), drawn(-0.3, 0.3, n)) for n in (2, 3, 4, 5, 6, 7) * 3]
+    for table, told in zip(made, check_many(made, workers=1), strict=True):
+        usual = blocksim.check(blocksim.structure_of(table), method="limit")
+        assert told.verdict == usual.verdict.value
+        assert usual.static is not None
+        assert told.margin == pytest.approx(usual.static.margin, abs=1e-9)
+
+
+class _Ends(dict[str, object]):
+    """Ends the process that reads it."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return os._exit, (1,)
+
+
+@pytest.mark.long
+def test_a_structure_that_ends_its_process_is_told_and_the_others_are_answered() -> None:
+    fine = stack([1, 1], [0, 0.2])
+    given: list[Structure] = [*[fine] * 60, _Ends(fine), *[fine] * 20]
+    told = list(check_many(given, workers=2))
+    assert [each.verdict for each in told] == [*["stands"] * 60, None, *["stands"] * 20]
+    assert "died" in (told[60].error or "")
+
+
+def test_a_stream_and_a_folder_are_answered_by_line_and_by_file(tmp_path: Path) -> None:
+    fine, falls = stack([1, 1], [0, 0.2]), stack([1, 1], [0, 0.6])
+    lines = [json.dumps(fine), "{", "", json.dumps(falls)]
+    done = CliRunner().invoke(app, ["check", "-"], input="\n".join(lines))
+    told = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [each["line"] for each in told] == [1, 2, 3, 4]
+    assert [each.get("verdict") for each in told] == ["stands", None, None, "collapses"]
+    assert done.exit_code == 0
+    (tmp_path / "a.json").write_text(json.dumps(fine))
+    (tmp_path / "b.json").write_text("{")
+    (tmp_path / "notes.md").write_text("no structure")
+    done = CliRunner().invoke(app, ["check", str(tmp_path)])
+    told = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [each["file"] for each in told] == ["a.json", "b.json"]
+    assert told[0]["margin"] > 0
+    assert "error" in told[1]
+    # A coefficient is for those without one; what is for one structure is refused.
+    del fine["friction"]
+    done = CliRunner().invoke(app, ["check", "-", "--mu", "0.6"], input=json.dumps(fine))
+    assert json.loads(done.stdout)["verdict"] == "stands"
+    for option in (["--tilt", "3"], ["--method", "direct"], ["--must-rest"], ["--eta", "0.2"]):
+        done = CliRunner().invoke(app, ["check", "-", *option], input=json.dumps(fine))
+        assert isinstance(done.exception, blocksim.InputError)
+
+
+def test_scenes_of_the_suite_are_structures(tmp_path: Path) -> None:
+    names = [f"{name}-{at:02}" for name in ("incline", "semicircle") for at in (1, 2, 3)]
+    for name in names:
+        scene = questions()[name].scene
+        (tmp_path / f"{name}.json").write_text(json.dumps(scene.record()))
+    told = check_many((tmp_path / f"{name}.json" for name in names), workers=1)
+    for name, each in zip(names, told, strict=True):
+        asked = questions()[name]
+        assert isinstance(asked, Question)
+        assert (each.verdict == "stands") == asked.stands
+        assert each.title == name

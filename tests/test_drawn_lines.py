@@ -1,0 +1,244 @@
+# pyright: basic
+"""Drawings as they are: lines and arcs, odd layers, gaps, mortar, references, clones."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, cast
+
+import ezdxf
+import numpy as np
+import pytest
+from drawn import GROUND, new_dxf, svg_of, written
+from hypothesis import given
+from hypothesis import strategies as st
+from running import inside
+
+from blocksim import InputError, ask, load_structure
+from blocksim.reading.curves import arc, bezier, ellipse
+from blocksim.reading.drawing import Reading
+from blocksim.reading.loops import loops_of
+
+BED = {"layer": "0-Auflager"}
+RIB = {"layer": "A-Mauerwerk.Rippe"}
+LAYERS = {"blocks": ["a-mauerwerk.rippe"], "supports": ["0-AUFLAGER"]}
+INNER, OUTER, HALF, GAP = 4000.0, 4400.0, 2000.0, 0.5
+"""Radii of a pointed arch, half its span, and the gaps between its voussoirs [mm]."""
+
+
+def on(radius: float, angle: float) -> tuple[float, float]:
+    return HALF + radius * math.cos(angle), radius * math.sin(angle)
+
+
+def pointed(path: Path, count: int = 7, unit: int = 4) -> float:
+    """Draw one half by lines and arcs, insert it and its mirror image; return its area [m2]."""
+    document = cast(Any, ezdxf).new("R2010", units=unit)
+    half = document.blocks.new("halbe Rippe")
+    first = math.pi
+    ends = [math.acos((-GAP / 2 - HALF) / radius) for radius in (INNER, OUTER)]
+    area = 0.0
+    for k in range(count):
+        last = first + (math.acos(-HALF / INNER) - math.pi) / count
+        low = first - (GAP / 2 / INNER if k else 0.0)
+        high = [last + GAP / 2 / INNER] * 2 if k < count - 1 else ends
+        for radius, angle in zip((INNER, OUTER), high, strict=True):
+            half.add_arc((HALF, 0), radius, math.degrees(angle), math.degrees(low))
+        half.add_line(on(INNER, low), on(OUTER, low))
+        half.add_line(on(OUTER, high[1]), on(INNER, high[0]))
+        # By Green's theorem: two arcs, and two lines of which one leads to the centre.
+        swept = [radius**2 * (low - angle) for radius, angle in zip((INNER, OUTER), high,
+                                                                      strict=True)]  # fmt: skip
+        (x, y), (to_x, to_y) = on(INNER, high[0]), on(OUTER, high[1])
+        area += (swept[1] - swept[0]) / 2 - ((to_x - HALF) * y - (x - HALF) * to_y) / 2
+        first = last
+    space = document.modelspace()
+    space.add_blockref("halbe Rippe", (0, 0), dxfattribs=RIB)
+    space.add_blockref("halbe Rippe", (0, 0), dxfattribs={**RIB, "xscale": -1})
+    for side in (-1, 1):
+        bed = [(side * 1900, -500), (side * 2500, -500), (side * 2500, 0), (side * 1900, 0)]
+        space.add_lwpolyline(bed, close=True, dxfattribs=BED)
+    space.add_text("Rippe", dxfattribs={"layer": "Maße"})
+    document.saveas(path)
+    return 2 * area / 1e6
+
+
+def test_a_pointed_rib_by_lines_and_arcs_weighs_what_it_does(tmp_path: Path) -> None:
+    """Layers of their own names, mm, gaps of 0.5 mm, mirrored references, text."""
+    area = pointed(tmp_path / "rippe.dxf")
+    problem = load_structure(
+        tmp_path / "rippe.dxf", density=22e3, friction=0.6, tolerance=1e-3, depth=0.3,
+        reading=Reading(layers=LAYERS),
+    )  # fmt: skip
+    assert len(problem.assembly.blocks) == 14
+    assert len(problem.assembly.joints) == 15
+    weight = problem.unit_force * 14
+    assert weight == pytest.approx(22e3 * 0.3 * area, rel=1e-12)
+    assert any("areas are exact" in note for note in problem.notes)
+    assert any("1 TEXT on layer Maße" in note for note in problem.notes)
+    up = [each.force[1] for each in ask.check(problem).carried.reactions]  # type: ignore[union-attr]
+    assert up == pytest.approx([weight / 2] * 2, rel=1e-9)
+
+
+def test_a_rib_without_a_unit_is_asked_for_one(tmp_path: Path) -> None:
+    pointed(tmp_path / "rippe.dxf", unit=0)
+    asked = ("check", str(tmp_path / "rippe.dxf"), "--mu", "0.6", "--tolerance", "0.001")
+    layers = ("--layer", "blocks=A-Mauerwerk.Rippe", "--layer", "supports=0-Auflager")
+    bare = inside(*asked, *layers)
+    assert bare.returncode == 2
+    assert "unit is missing" in bare.stderr
+    assert "it is 5000 by 4" in bare.stderr
+    assert inside(*asked, *layers, "--unit", "mm").returncode == 0
+    for wrong, words in (
+        (("--layer", "blocks=Ripe"), "layer = 'Ripe': must be one of the drawing's: 0-Auf"),
+        (("--layer", "stones=Rippe"), "--layer = 'stones=Rippe': must be blocks=NAME"),
+        (("--unit", "ell"), "--unit = 'ell': must be m, mm, cm"),
+    ):
+        said = inside(*asked, *wrong)
+        assert said.returncode == 2
+        assert words in said.stderr
+
+
+@pytest.mark.parametrize("mortar", [0.0, 0.010])
+def test_bricks_with_mortar_are_joined_across_it(tmp_path: Path, mortar: float) -> None:
+    """A stack of one brick on another: it tips about the edge at atan(240 / height).
+
+    Mortar has no weight, and is as high as it is drawn.
+    """
+    document = cast(Any, new_dxf(unit=4))
+    brick = document.blocks.new("brick")
+    for at, corner in enumerate(corners := [(0, 0), (240, 0), (240, 65), (0, 65)]):
+        brick.add_line(corner, corners[(at + 1) % 4])
+    space = document.modelspace()
+    high = 65 + 1000 * mortar
+    for k in range(8):
+        # Turned by half a turn, each second.
+        at, turn = ((240, k * high + 65), 180) if k % 2 else ((0, k * high), 0)
+        space.add_blockref("brick", at, dxfattribs={"layer": "blocks", "rotation": turn})
+    bed = [(-500, -300), (900, -300), (900, -1000 * mortar), (-500, -1000 * mortar)]
+    space.add_lwpolyline(bed, close=True, dxfattribs={"layer": "supports"})
+    document.saveas(tmp_path / "bricks.dxf")
+    read = {"friction": 3.0, "tolerance": mortar or None}
+    problem = load_structure(tmp_path / "bricks.dxf", **read)  # type: ignore[arg-type]
+    assert len(problem.assembly.joints) == 8
+    # Joints lie midway in the mortar: the lowest one is half of it below the bricks.
+    lever = (7 * high + 65) / 2 + 500 * mortar
+    found = ask.bracket(ask.family_of(problem, "tilt")).limit
+    assert found == pytest.approx(math.degrees(math.atan(120 / lever)), rel=1e-6)
+
+
+def ring(count: int, *, twice: bool) -> list[list[tuple[float, float]]]:
+    """Lines of voussoirs side by side, those between two of them once or twice."""
+    lines: list[list[tuple[float, float]]] = []
+    for k in range(count):
+        low, high = math.pi * k / count, math.pi * (k + 1) / count
+        inner, outer = ([(r * math.cos(t), r * math.sin(t)) for t in (low, high)]
+                        for r in (2, 3))  # fmt: skip
+        lines += [inner, outer, [inner[0], outer[0]]]
+        if twice or k == count - 1:
+            lines.append([inner[1], outer[1]])
+    return lines
+
+
+def test_voussoirs_that_share_lines_are_told_from_the_opening() -> None:
+    """Also where lines lie on a part of others, and beside a hole that they leave."""
+    loops, wrong = loops_of(ring(7, twice=True))
+    assert not wrong
+    assert [len(loop.corners) for loop in loops] == [4] * 7
+    square = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]
+    # Four blocks around an opening, each longer than the side of the one it meets.
+    turns = [np.exp(0.5j * math.pi * k) for k in range(4)]
+    blocks = [[((complex(x, y) + 1j * 1 - 0) * turn) for x, y in square] for turn in turns]
+    lines = [
+        [(p.real, p.imag) for p in (block[k], block[(k + 1) % 4])]
+        for block in blocks
+        for k in range(4)
+    ]
+    loops, wrong = loops_of(lines)
+    assert not wrong
+    areas = [abs(area([complex(*each) for each in loop.corners])) for loop in loops]
+    assert areas == pytest.approx([2.0] * 4)
+
+
+def area(path: list[complex]) -> float:
+    """Return the area of a polygon of complex corners."""
+    return (
+        sum((a.conjugate() * b).imag for a, b in zip(path, path[1:] + path[:1], strict=True))
+        / 2
+    )
+
+
+def test_a_line_drawn_once_between_two_blocks_is_refused_with_its_place(tmp_path: Path) -> None:
+    """Nobody could tell a block from an opening."""
+    loops, wrong = loops_of(ring(7, twice=False))
+    assert not loops
+    assert any(each.at == pytest.approx((2 * math.cos(math.pi / 7), 2 * math.sin(math.pi / 7)))
+               for each in wrong)  # fmt: skip
+    document = cast(Any, new_dxf())
+    space = document.modelspace()
+    space.add_lwpolyline(GROUND, close=True, dxfattribs={"layer": "supports"})
+    for line in (((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0.1, 1)), ((0, 0.9), (0, 0))):
+        space.add_line(*line, dxfattribs={"layer": "blocks"})
+    document.saveas(tmp_path / "open.dxf")
+    with pytest.raises(InputError, match=r"LINE \w+ on layer blocks at \(0.1, 1\) = 'ends"):
+        load_structure(tmp_path / "open.dxf", friction=0.6)
+    snapped = load_structure(tmp_path / "open.dxf", friction=0.6, tolerance=0.0,
+                             reading=Reading(snap=0.2))  # fmt: skip
+    assert len(snapped.assembly.blocks) == 1
+    assert any("apart are one corner" in note for note in snapped.notes)
+
+
+INK = """<g xmlns:i="http://www.inkscape.org/namespaces/inkscape" i:label="Stones of the pier"
+ id="layer1" transform="translate(10,0)">
+<rect id="one" width="40" height="20" x="60" y="180"/>
+<use xmlns:x="http://www.w3.org/1999/xlink" x:href="#one" id="two"
+ transform="translate(0,-20)"/>
+<use href="#deep" id="three" transform="matrix(-1 0 0 1 160 -60)"/>
+<path id="cap" d="m 60,140 a 20,{b} 0 0 1 40,0 z"/>
+<g id="deep"><path id="four" d="M60 200 60 220 100 220 100 200Z"/></g></g>
+<g id="Ground"><rect id="bed" width="120" height="30" x="30" y="220"/></g>"""
+
+
+@pytest.mark.parametrize("high", [20.0, 8.0])
+def test_clones_and_arcs_of_inkscape(tmp_path: Path, high: float) -> None:
+    head = 'viewBox="0 0 210 297" width="210mm" height="297mm"'
+    path = written(tmp_path / "pier.svg", svg_of(INK.replace("{b}", f"{high:g}"), head))
+    layers = {"blocks": ["stones of the pier"], "supports": ["ground"]}
+    problem = load_structure(path, friction=0.6, reading=Reading(layers=layers))
+    found = {block.name: block for block in problem.assembly.blocks}
+    assert [*found] == ["one", "two", "three", "cap", "four"]
+    assert found["three"].centre == pytest.approx([0.09, -0.15])
+    brick = found["one"].mass
+    # Half an ellipse of 20 by `high` mm, on bricks of 40 by 20.
+    assert found["cap"].mass / brick == pytest.approx(math.pi * 20 * high / 2 / 800, rel=1e-12)
+
+
+@given(st.floats(0.01, 5.0), st.sampled_from([-1.0, 1.0]), st.floats(-3, 3), st.floats(0.1, 9))
+def test_chords_of_an_arc_have_its_area_and_its_ends(
+    bulge: float, sign: float, turn: float, long: float
+) -> None:
+    start, end = 1 - 2j, 1 - 2j + long * np.exp(1j * turn)
+    found = arc(start, end, sign * bulge)
+    path = [start, *[complex(*each) for each in found.corners], end]
+    beside = area([each - start for each in path])
+    angle = 4 * math.atan(bulge)
+    radius = long / 2 / math.sin(angle / 2)
+    segment = sign * radius**2 / 2 * (angle - math.sin(angle))
+    assert beside == pytest.approx(segment, rel=1e-9)
+    # The arc is on the right of its chord where it turns counter-clockwise.
+    assert found.stray <= 0.02 * abs(radius)
+    middle = (start + end) / 2 - 1j * (end - start) / 2 * sign * bulge
+    assert min(abs(each - middle) for each in path) < 0.3 * abs(radius)
+
+
+def test_curves_of_svg_have_the_area_they_enclose() -> None:
+    # 3/20 of the sum of cross products, by integrating a cubic by hand: here 0.6 * 0.75 * 4/3.
+    found = bezier([0j, 1j, 1 + 1j, 1 + 0j])
+    path = [0, *[complex(*each) for each in found.corners], 1]
+    assert area(path) == pytest.approx(-0.6, rel=1e-12)
+    assert bezier([0j, 1 + 0j, 2 + 0j, 3 + 0j]).corners == []
+    assert bezier([0j, 1 + 1j, 2 - 1j, 3 + 0j]).wrong is not None
+    large = ellipse(0j, 1 + 0j, (1.0, 1.0), 0.0, large=True, rising=True)
+    swept = area([0, *[complex(*each) for each in large.corners], 1])
+    sweep = 2 * math.pi - math.pi / 3
+    assert swept == pytest.approx((sweep - math.sin(sweep)) / 2, rel=1e-9)

@@ -1,0 +1,245 @@
+"""Films decoded again: what is in their frames is what the recording says."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+import blocksim
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import JointState
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.shaking import Shaking
+from blocksim.engines.base import Quality, Settings
+from blocksim.simulation.recording import Recording
+from blocksim.view.drawing import words_of
+from blocksim.view.film import Film
+from blocksim.view.following import FARTHEST, eased
+from blocksim.view.style import DEAD, JOINTS, LIVE
+from blocksim.view.video import render, to_bytes
+
+HEIGHT = 300
+
+
+def recorded(problem: Problem, moved: Array, times: Array) -> Recording:
+    """Motion given by displacements of blocks, (frames, blocks, 3) [size]."""
+    return Recording(
+        problem=problem, engine="direct", engine_version="0",
+        settings=Settings(step=0.01, sweeps=1, hold_sweeps=1), times=times,
+        poses=problem.assembly.built[:-1, :3] + moved, quality=Quality(),
+    )  # fmt: skip
+
+
+def frames_of(path: Path, rate: int = 30) -> list[NDArray[np.uint8]]:
+    """Decode a film; of a .gif, which keeps equal frames once, as often as they stand."""
+    if path.suffix == ".gif":
+        found = []
+        with Image.open(path) as picture:
+            for number in range(picture.n_frames):
+                picture.seek(number)
+                stands = round(picture.info["duration"] * rate / 1000)
+                found += stands * [np.asarray(picture.convert("RGB"))]
+        return found
+    with av.open(str(path)) as film:
+        return [frame.to_ndarray(format="rgb24") for frame in film.decode(video=0)]
+
+
+def filmed(run: Recording, path: Path) -> tuple[Film, list[NDArray[np.uint8]]]:
+    """The film as it is written, and its frames decoded."""
+    film = render([run], path, height=HEIGHT, slow=1)
+    frames = frames_of(path, film.rate)
+    assert len(frames) == film.count
+    return film, frames
+
+
+def seen_at(film: Film, number: int, points: Array) -> Array:
+    """Columns and rows of points of space in a frame."""
+    seconds = film._within((number / film.rate - 0.8) / film.slow)
+    (view,) = film._views
+    share = film.share(seconds)
+    places = view.centre + share * (view.places(points) - view.centre)
+    return np.column_stack([places[:, 0], film.height - places[:, 1]])
+
+
+def moment_of(film: Film, number: int):
+    (stage,) = film._stages
+    seconds = film._within((number / film.rate - 0.8) / film.slow)
+    return stage.at(seconds / math.sqrt(stage.assembly.size / 9.81))
+
+
+def far_slider() -> Recording:
+    """Three courses of a column; the uppermost goes off to the side, far and on the ground."""
+    problem = blocksim.load("column", friction=0.7)
+    count = len(problem.assembly.blocks)
+    times = np.linspace(0, 2, 41)
+    moved = np.zeros((len(times), count, 3))
+    way = np.maximum(0, times - 0.5)
+    moved[:, -1, 0] = 6.0 * way
+    ground = problem.assembly.built[0, 1] - problem.assembly.built[count - 1, 1]
+    moved[:, -1, 1] = np.maximum(ground, -4 * way**2)
+    return recorded(problem, moved, times)
+
+
+@pytest.mark.parametrize("view", ["2d", "3d"])
+def test_every_block_is_in_every_frame(view: str, tmp_path: Path) -> None:
+    """The camera draws back with a block that leaves, smoothly, and never comes nearer."""
+    run = far_slider()
+    film = Film([run], height=HEIGHT, slow=1, view=view)  # type: ignore[arg-type]
+    low, high = 0.0, film.height - 0.0
+    shares = []
+    for number in range(0, film.count, 12):
+        corners = moment_of(film, number).corners.reshape(-1, 3)
+        places = seen_at(film, number, corners)
+        assert (places > [0, low]).all()
+        assert (places < [film.width, high]).all()
+        shares.append(film.share(film._within(number / film.rate - 0.8)))
+    assert FARTHEST < shares[-1] < 0.7 < shares[0] <= 1
+    steps = np.diff([film.share(each) for each in np.arange(0, film.seconds, 1 / film.rate)])
+    assert -0.05 < steps.min() < 0 >= steps.max()
+    # Blocks are seen where they should be: decoded, not only reckoned.
+    if view == "2d":
+        render([run], tmp_path / "far.mp4", height=HEIGHT, slow=1)
+        decoded = frames_of(tmp_path / "far.mp4")
+        for number in (0, len(decoded) // 2, len(decoded) - 1):
+            centres = moment_of(film, number).corners.mean(axis=(1, 2))
+            for x, y in seen_at(film, number, centres).round().astype(int).tolist():
+                stone = decoded[number][y, x].astype(int)
+                assert stone[0] > stone[2] + 8  # no paper, no ground
+
+
+def test_the_camera_is_never_nearer_than_is_needed() -> None:
+    random = np.random.default_rng(0)
+    for _ in range(50):
+        times = np.linspace(0, 3, 61)
+        need = np.clip(random.uniform(0.1, 1.6, 61), None, 1.0)
+        fine, shares = eased(times, need, random.uniform(0.05, 0.8))
+        at = np.interp(times, fine, shares)
+        assert (at <= np.minimum.accumulate(need) + 1e-9).all()
+        assert (np.diff(shares) <= 1e-12).all()
+
+
+def test_colours_of_joints_are_those_of_their_states(tmp_path: Path) -> None:
+    """Of an arch that falls: along each joint the colour of its state, or of nothing.
+
+    A .gif has the very colours; .mp4 has a quarter of them.
+    """
+    arch = blocksim.CircularArch(half_angle_deg=90, ratio=0.97, friction=0.7, voussoirs=9)
+    run = blocksim.simulate(arch, method="direct", duration=1.7)
+    film, frames = filmed(run, tmp_path / "arch.gif")
+    tones = {state: np.array(to_bytes(tone)) for state, tone in JOINTS.items()}
+    # The grey of what is open is nearly that of edges.
+    del tones[JointState.OPEN]
+    compared: dict[JointState, int] = {}
+    for number in (0, int(0.8 * film.rate) + 9, len(frames) - 1):
+        moment = moment_of(film, number)
+        picture = frames[number].astype(int)
+        for state, faces in zip(moment.joints, moment.faces, strict=True):
+            inner, outer = faces.mean(axis=0)
+            along = inner + np.linspace(0.3, 0.7, 9)[:, None] * (outer - inner)
+            if np.abs(faces[0] - faces[1]).max() > 0.02:
+                along = faces[0][0] + np.linspace(0.3, 0.7, 9)[:, None] * (
+                    faces[0][1] - faces[0][0]
+                )
+            for_state = dict.fromkeys(tones, 0)
+            for x, y in seen_at(film, number, along).round().astype(int).tolist():
+                patch = picture[y - 1 : y + 2, x - 1 : x + 2].reshape(-1, 3)
+                for each, tone in tones.items():
+                    for_state[each] += int((np.abs(patch - tone).max(axis=1) < 12).any())
+            if state is JointState.OPEN:
+                continue
+            if state is JointState.CLOSED:
+                assert max(for_state.values()) <= 2
+            else:
+                assert max(for_state, key=lambda each: for_state[each]) is state
+                compared[state] = compared.get(state, 0) + 1
+    assert compared.get(JointState.HINGE_INTRADOS, 0) >= 2
+    assert compared.get(JointState.HINGE_EXTRADOS, 0) >= 2
+    assert words_of(JointState.SLIDES, is_arch=True)[1] == JOINTS[JointState.SLIDES]
+
+
+def near(picture: NDArray[np.uint8], tone: str, x: float, y: float, reach: int) -> bool:
+    """Whether a colour is found near a place."""
+    rows, columns = (slice(max(0, int(v) - reach), int(v) + reach + 1) for v in (y, x))
+    patch = picture[rows, columns].reshape(-1, 3).astype(int)
+    return bool((np.abs(patch - to_bytes(tone)).max(axis=1) < 50).any())
+
+
+def test_loads_are_drawn_where_they_act_and_go_with_their_blocks(tmp_path: Path) -> None:
+    """A push on the top of a column that turns over; in no other place its colour."""
+    known = blocksim.load("column", friction=0.7)
+    top = len(known.assembly.blocks) - 1
+    block = known.assembly.blocks[top]
+    corner = block.vertices[block.vertices[:, 0].argmin()]
+    push = blocksim.Load(force=np.array([5e3, 0.0]), blocks=(top,), point=corner)
+    problem = replace(known, live=(push,), load=1.0)
+    times = np.linspace(0, 1, 21)
+    moved = np.zeros((21, top + 1, 3))
+    moved[:, top] = np.column_stack([0.3 * times, 0.2 * times, -0.8 * times])
+    film, frames = filmed(recorded(problem, moved, times), tmp_path / "push.mp4")
+    arm = (corner - known.assembly.centres[top]) / known.assembly.size
+    for number in (0, len(frames) - 1):
+        turn = 0.0 if number == 0 else -0.8
+        way = np.zeros(2) if number == 0 else np.array([0.3, 0.2])
+        cos, sin = math.cos(turn), math.sin(turn)
+        place = known.assembly.built[top, :2] + way + np.array([[cos, -sin], [sin, cos]]) @ arm
+        ((x, y),) = seen_at(film, number, np.append(place, 0.0)[None]).tolist()
+        assert near(frames[number], LIVE, x - 8, y, 4)
+        assert not near(frames[number], LIVE, x + 40, y, 12)
+    assert near(frames[0], LIVE, film.width - 150, film.height - 10, 120)  # the legend
+    still = replace(problem, load=0.0)
+    quiet = Film([recorded(still, 0 * moved, times)], height=HEIGHT)
+    assert all(acting.entries == [] for acting in quiet._acting)
+    assert DEAD not in {tone for acting in film._acting for _, tone in acting.entries}
+
+
+def test_the_pulse_has_its_mark_at_the_time_shown() -> None:
+    """A half sine of 0.4 g for a second: the words say its value, the marks stand still."""
+    shaking = Shaking(shape="half-sine", amplitude=0.4, duration=1.0)
+    problem = replace(blocksim.load("column", friction=0.7), shaking=shaking)
+    count = len(problem.assembly.blocks)
+    times = np.linspace(0, 1.6 / math.sqrt(problem.assembly.size / 9.81), 33)
+    film = Film([recorded(problem, np.zeros((33, count, 3)), times)], height=720)
+    (acting,), (stage,) = film._acting, film._stages
+    unit = math.sqrt(stage.assembly.size / 9.81)
+    for seconds, value in ((0.25, 0.4 * math.sin(math.pi / 4)), (0.5, 0.4), (1.2, 0.0)):
+        shapes, labels = acting.aside(stage.at(seconds / unit), 1.0)
+        (said,) = [label.words for label in labels]
+        assert float(said.split()[1]) == pytest.approx(value, abs=0.011)
+        assert len(shapes) > 5
+    # Marks of what stands still go left by the way of the ground: in 1 s 0.4 g (1 s)^2 / pi.
+    way = 0.4 * 9.81 / math.pi / stage.assembly.size
+    (view,) = film._views
+    ends = view.places(np.array([[0.0, 0, 0], [1.0, 0, 0]]))
+    pixels = float(ends[1, 0] - ends[0, 0])
+    firsts = [min(s.points[0, 0] for s in acting._marks(shaking, at, 1.0)) for at in (0.0, 1.0)]
+    apart = 0.25 * pixels
+    gone = (firsts[0] - way * pixels - firsts[1]) / apart
+    assert gone == pytest.approx(round(gone), abs=0.02)
+
+
+def test_the_amount_of_a_spread_is_told_in_every_frame() -> None:
+    """Two supports, 1 m/s of span between them, half of it each: 30 mm after 30 ms."""
+    known = blocksim.load("column", friction=0.7)
+    count = len(known.assembly.blocks)
+    moves = tuple(
+        blocksim.blocks.acting.Move(support=0, direction=np.array([way, 0.0]))
+        for way in (-0.5, 0.5)
+    )
+    times = np.linspace(0, 1, 5)
+    moved = np.zeros((5, count, 3))
+    for block, way in ((count - 2, -0.5), (count - 1, 0.5)):
+        moved[:, block, 0] = way * 0.1 * times / known.assembly.size
+    film = Film([recorded(replace(known, moves=moves), moved, times)], height=HEIGHT)
+    (acting,), (stage,) = film._acting, film._stages
+    for time in (0.0, 0.3, 1.0):
+        _, (label,) = acting.aside(stage.at(time), 1.0)
+        assert label.words == f"supports moved {100 * time:.1f} mm"
+    assert stage.carriers == {count - 2, count - 1}
+    assert stage.speed == 0  # supports that move do not say that blocks still do

@@ -1,0 +1,193 @@
+"""What is seen of blocks in space: joints in colour, forces, models, a page to turn around."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import blocksim
+from blocksim.blocks.joints import JointState
+from blocksim.engines.base import Quality, Settings
+from blocksim.simulation.space import SpatialRecording
+from blocksim.view.gltfspace import UPRIGHT, mechanism_model, write_recording
+from blocksim.view.solidfilm import SolidFilm
+from blocksim.view.solidjoints import force_lines, states_at
+from blocksim.view.style import JOINTS
+from blocksim.view.turning import turning_page
+from blocksim.view.video import to_bytes
+
+
+def tower() -> Any:
+    return blocksim.Tower(blocks=3, offset=0.1, turn_deg=0, friction=0.7).problem()
+
+
+def thin_dome() -> Any:
+    return blocksim.Dome(thickness=0.03, lunes=6, courses=4, friction=0.7).problem()
+
+
+def recording(moved: np.ndarray, times: np.ndarray) -> SpatialRecording:
+    problem = tower()
+    assembly = problem.assembly
+    rest = np.zeros((len(assembly.blocks), 6))
+    rest[:, :3] = assembly.centres / assembly.size
+    return SpatialRecording(
+        problem=problem, engine="direct", engine_version="0",
+        settings=Settings(step=0.01, sweeps=1, hold_sweeps=1), times=times,
+        poses=rest + moved, quality=Quality(),
+    )  # fmt: skip
+
+
+def tipping(angle: float = 0.5) -> SpatialRecording:
+    """The uppermost box turns about an edge of its bed; the others stay."""
+    problem = tower()
+    assembly = problem.assembly
+    joint = next(each for each in assembly.joints if {each.before, each.after} == {1, 2})
+    edge = joint.points[np.argsort(joint.points[:, 0])[-2:]].mean(axis=0)
+    times = np.linspace(0, 1, 11)
+    moved = np.zeros((11, 3, 6))
+    arm = (assembly.centres[2] - edge) / assembly.size
+    for at, share in enumerate(times):
+        turn = np.array([0.0, angle * share, 0.0])
+        moved[at, 2, :3] = Rotation.from_rotvec(turn).apply(arm) - arm
+        moved[at, 2, 3:] = turn
+    return recording(moved, times)
+
+
+def test_joints_are_coloured_by_what_they_are_seen_to_do() -> None:
+    """A box that tips has a hinge, in its colour in the last frame and not in the first."""
+    run = tipping()
+    assembly = run.problem.assembly
+    assert set(states_at(assembly, run.poses[0])) == {JointState.CLOSED}
+    last = states_at(assembly, run.poses[-1])
+    assert last.count(JointState.HINGE_INTRADOS) == 1
+    slid = np.zeros((3, 6))
+    slid[2, 0] = 0.05
+    assert JointState.SLIDES in states_at(assembly, run.poses[0] + slid)
+    lifted = np.zeros((3, 6))
+    lifted[2, 2] = 0.02
+    assert JointState.OPEN in states_at(assembly, run.poses[0] + lifted)
+    film = SolidFilm(run, height=300, slow=1)
+    tone = np.array(to_bytes(JOINTS[JointState.HINGE_INTRADOS]))
+    # In the shade as well: the same hue, darker.
+    seen = []
+    for number in (0, film.count - 1):
+        picture = film.frame(number)[..., :3].astype(float)
+        hue = picture / np.maximum(picture.max(axis=-1, keepdims=True), 1)
+        seen.append(int((np.abs(hue - tone / tone.max()).max(axis=-1) < 0.04).sum()))
+    assert seen[0] == 0
+    assert seen[1] > 60
+
+
+def test_forces_are_drawn_where_they_balance_the_weights() -> None:
+    """From the bottom to the top of a tower: three, two and one boxes' weight."""
+    answer = blocksim.check(tower())
+    static = answer.static
+    assert static is not None
+    assert static.point_forces is not None
+    lines, shares = force_lines(answer.problem, static.point_forces)
+    ways = lines[:, 1] - lines[:, 0]
+    assert np.abs(ways[:, :2]).max() < 1e-6 * np.abs(ways).max()
+    assert sorted(shares) == pytest.approx([1 / 3, 2 / 3, 1])
+    for joint, line in zip(answer.problem.assembly.joints, lines, strict=True):
+        above = [each for each in (joint.before, joint.after) if each >= 0]
+        borne = answer.problem.assembly.centres[max(above) :].mean(axis=0)
+        assert line.mean(axis=0)[:2] == pytest.approx(borne[:2], abs=1e-6)
+
+
+def parts_of(model: bytes) -> tuple[dict[str, Any], bytes]:
+    magic, version, length = struct.unpack("<III", model[:12])
+    assert (magic, version, length) == (0x46546C67, 2, len(model))
+    size, _ = struct.unpack("<II", model[12:20])
+    return json.loads(model[20 : 20 + size]), model[20 + size + 8 :]
+
+
+def numbers(document: dict[str, Any], data: bytes, at: int) -> np.ndarray:
+    accessor = document["accessors"][at]
+    view = document["bufferViews"][accessor["bufferView"]]
+    wide = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+    kind = np.float32 if accessor["componentType"] == 5126 else np.uint32
+    whole = np.frombuffer(data, kind, accessor["count"] * wide, view["byteOffset"])
+    return whole.reshape(-1, wide)
+
+
+def test_a_model_moves_blocks_as_the_recording_does(tmp_path: Path) -> None:
+    """Corners of each node, carried by its animation, are those of the blocks, y upwards."""
+    run = tipping()
+    path = tmp_path / "tower.glb"
+    with path.open("wb") as file:
+        write_recording(run, file, "glb")
+    document, data = parts_of(path.read_bytes())
+    assembly = run.problem.assembly
+    channels = document["animations"][0]["channels"]
+    samplers = document["animations"][0]["samplers"]
+    for at, block in enumerate(assembly.blocks):
+        tracks = {
+            each["target"]["path"]: samplers[each["sampler"]]
+            for each in channels
+            if each["target"]["node"] == at
+        }
+        places = numbers(document, data, tracks["translation"]["output"])
+        turns = numbers(document, data, tracks["rotation"]["output"])
+        part = document["meshes"][at]["primitives"][0]
+        corners = numbers(document, data, part["attributes"]["POSITION"])
+        for frame in (0, 5, 10):
+            shown = Rotation.from_quat(turns[frame]).apply(corners) + places[frame]
+            pose = run.poses[frame, at]
+            arms = np.concatenate([hull.corners for hull in block.hulls]) - block.centre
+            true = Rotation.from_rotvec(pose[3:]).apply(arms) + pose[:3] * assembly.size
+            true = true @ UPRIGHT.T
+            apart = np.abs(shown[:, None] - true).max(axis=-1).min(axis=0)
+            assert apart.max() < 1e-5 * assembly.size
+        # Triangles look outwards.
+        order = numbers(document, data, part["indices"]).reshape(-1, 3)
+        one, two, three = corners[order].swapaxes(0, 1)
+        out = np.cross(two - one, three - one)
+        assert (np.einsum("ij,ij->i", out, (one + two + three) / 3) > 0).all()
+
+
+def test_a_page_holds_the_mechanism_and_asks_for_nothing() -> None:
+    """A dome that falls: its blocks go and come back, its hinges are painted."""
+    answer = blocksim.check(thin_dome())
+    assert answer.verdict.value == "collapses"
+    page = turning_page(answer)
+    assert "collapses, by limit" in page
+    model = base64.b64decode(re.search(r"base64,([A-Za-z0-9+/=]+)", page)[1])  # type: ignore[index]
+    assert model == mechanism_model(answer)
+    document, data = parts_of(model)
+    sampler = document["animations"][0]["samplers"]
+    moves = [numbers(document, data, each["output"]) for each in sampler]
+    assert all(np.abs(each[0] - each[-1]).max() < 1e-6 for each in moves)
+    assert max(float(np.ptp(each, axis=0).max()) for each in moves) > 0.01
+    looks = {each["name"] for each in document["materials"]}
+    assert f"joint {JOINTS[JointState.HINGE_INTRADOS]}" in looks
+    assert not re.search(r"""(src|href)=["']?https?:""", page)
+    assert "default-src 'none'" in page
+
+
+@pytest.mark.long
+def test_the_page_is_shown_in_a_browser(windows: Any, tmp_path: Path) -> None:
+    """The model is loaded, moves and turns; whatever the page complains about fails."""
+    path = tmp_path / "dome.html"
+    path.write_text(turning_page(blocksim.check(thin_dome())), encoding="utf-8")
+    page = windows.open(path.as_uri(), 420, 420)
+    page.set_default_timeout(120_000)
+    asked = "document.getElementById('model').loaded"
+    for _ in range(120):
+        if page.evaluate(asked):
+            break
+        page.wait_for_timeout(500)
+    assert page.evaluate(asked)
+    assert page.evaluate("document.getElementById('model').availableAnimations") == ["motion"]
+    assert [
+        each
+        for each in windows.wrong(path.as_uri())
+        if not each.startswith(("blob:", "[.WebGL"))
+    ] == []
