@@ -82,6 +82,7 @@ def test_options_override_the_scenario() -> None:
 REPEATED = {
     *("--layer", "--level", "--group"),
     *("--with", "--point-load", "--patch-load", "--set", "--figure"),
+    *("--fill-region", "--fill-layer"),
     *("cite --method", "bracket --out"),
 }
 """Options that may be given twice, and are taken as often."""

@@ -336,7 +336,7 @@ def test_without_a_size_lengths_are_in_radii_and_forces_say_of_which(
     said = inside(*asked).stdout
     assert "thickness 0.12 r" in said
     assert "L = 1 m" not in said
-    assert f"left {20 * 0.12 * math.pi / 2:.4g} kN/m up" in said
+    assert f"left: {20 * 0.12 * math.pi / 2:.4g} kN/m up" in said
     unit = "  unit    no size was given: forces are those of r = 1 m and "
     assert f"{unit}20 kN/m3\n" in said
     assert f"{unit}25 kN/m3\n" in inside(*asked, "--unit-weight", "25").stdout

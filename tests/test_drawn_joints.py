@@ -134,7 +134,8 @@ def test_gaps_and_overlaps_are_closed_as_asked_and_listed(tmp_path: Path, gap: f
     assert level == pytest.approx([gap] * len(level), rel=1e-6)
     assert f"{1000 * gap:+.3g} mm" in said["reason"]
     # Blocks may be told apart only as far as they are wide: a tolerance of a metre closes less.
-    assert "within 0.01" in asked(table, tmp_path, "--tolerance", "1")["reason"]
+    capped = asked(table, tmp_path, "--tolerance", "1")["reason"]
+    assert "within 0.0256 m (a quarter of the narrower block; asked: 1 m)" in capped
 
 
 @pytest.mark.parametrize("gap", [0.003, -0.003])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 from typing import Any, cast
@@ -10,7 +11,7 @@ from typing import Any, cast
 import ezdxf
 import numpy as np
 import pytest
-from drawn import GROUND, new_dxf, svg_of, written
+from drawn import GROUND, new_dxf, structure, svg_of, written
 from hypothesis import given
 from hypothesis import strategies as st
 from running import inside
@@ -242,3 +243,64 @@ def test_curves_of_svg_have_the_area_they_enclose() -> None:
     swept = area([0, *[complex(*each) for each in large.corners], 1])
     sweep = 2 * math.pi - math.pi / 3
     assert swept == pytest.approx((sweep - math.sin(sweep)) / 2, rel=1e-9)
+
+
+def test_what_is_refused_is_drawn_where_it_is(tmp_path: Path) -> None:
+    """Each refusal has a ring with its number, also where blocks are refused later."""
+    document = cast(Any, new_dxf())
+    space = document.modelspace()
+    space.add_lwpolyline(GROUND, close=True, dxfattribs={"layer": "supports"})
+    space.add_circle((3, 2), 0.5, dxfattribs={"layer": "blocks"})
+    space.add_line((0, 0), (1, 1), dxfattribs={"layer": "blocks"})
+    document.saveas(tmp_path / "wrong.dxf")
+    picture, out = tmp_path / "wrong.svg", tmp_path / "wrong.json"
+    asked = ("convert", str(tmp_path / "wrong.dxf"), "--mu", "0.6", "--picture", str(picture))
+    said = inside(*asked, "--out", str(out))
+    assert said.returncode == 2
+    assert "CIRCLE 33 on layer blocks at (3, 2)" in said.stderr
+    assert not out.exists()
+    text = picture.read_text("utf-8")
+    assert text.count('id="refused-') == 3
+    # A block that nothing holds is marked.
+    loose = [(0, 2), (1, 2), (1, 3), (0, 3)]
+    document = cast(Any, new_dxf())
+    space = document.modelspace()
+    space.add_lwpolyline(GROUND, close=True, dxfattribs={"layer": "supports"})
+    space.add_lwpolyline(loose, close=True, dxfattribs={"layer": "blocks"})
+    document.saveas(tmp_path / "wrong.dxf")
+    said = inside(*asked)
+    assert "held by nothing" in said.stderr
+    assert 'id="marked-' in picture.read_text("utf-8")
+
+
+def test_depth_is_of_any_structure_in_the_plane(tmp_path: Path) -> None:
+    """Twice as deep, twice as heavy; what has a depth of its own is refused."""
+    for subject in (("wall",), ("portal",), (str(stack(tmp_path)),)):
+        asked = ("check", *subject, "--mu", "0.6", "--unit-weight", "20", "--json")
+        weights = [
+            json.loads(inside(*asked, "--depth", depth).stdout)["weight_kN"]
+            for depth in ("0.5", "1")
+        ]
+        assert weights[1] == pytest.approx(2 * weights[0], rel=1e-12)
+    table = json.loads(stack(tmp_path).read_text())
+    table["blocks"][1]["depth"] = 2.0
+    (tmp_path / "own.json").write_text(json.dumps(table))
+    refused = inside("check", str(tmp_path / "own.json"), "--depth", "0.5")
+    assert refused.returncode == 2
+    assert "blocks[1].depth = 2.0" in refused.stderr
+
+
+def stack(folder: Path) -> Path:
+    return written(folder / "stack.json", structure([[(0, 0), (1, 0), (1, 2), (0, 2)]]))
+
+
+def test_a_tilted_table_is_borne_by_the_world(tmp_path: Path) -> None:
+    """A wall of 24 kN on a table at 5 deg: its supports bear 24 kN up, and nothing sideways."""
+    for subject in (("wall",), (str(stack(tmp_path)),)):
+        asked = ("check", *subject, "--mu", "0.7", "--unit-weight", "10", "--tilt", "5")
+        said = json.loads(inside(*asked, "--json").stdout)
+        up = sum(each["vertical_kN"] for each in said["reactions"])
+        across = [each["horizontal_kN"] for each in said["reactions"]]
+        assert up == pytest.approx(said["weight_kN"], rel=1e-9)
+        assert abs(sum(across)) < 1e-9 * up
+        assert "to the" not in inside(*asked).stdout.split("bears", 1)[1].split("\n")[0]

@@ -302,7 +302,6 @@ def test_loads_in_a_file_of_blocks_stand_where_its_own_x_says(tmp_path: Path) ->
             ["--alpha", "120", "--eta", "0.2", "--mu", "1", "--fill", "1"],
             "--fill = 1.0: .*extrados turns back",
         ),
-        (["wall", "--mu", "0.7", "--fill", "1"], "--fill = 1.0: .*arches and portals"),
         (
             ["portal", "--mu", "0.7", "--point-load", "0", "5"],
             "--unit-weight is missing: must be given beside --point-load",

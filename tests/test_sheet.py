@@ -299,8 +299,8 @@ def test_a_page_is_a4_upright_or_across() -> None:
 def test_usual_scales() -> None:
     room = np.array([200.0, 100.0])
     assert scale_for(np.array([10.0, 1.0]), room) == 50
-    assert scale_for(np.array([10.1, 1.0]), room) == 75
-    assert scale_for(np.array([0.1, 5.1]), room) == 75
+    assert scale_for(np.array([10.1, 1.0]), room) == 100
+    assert scale_for(np.array([0.1, 5.1]), room) == 100
     assert scale_for(np.array([0.02, 0.01]), room) == pytest.approx(0.1)
     assert [scale_words(each) for each in (50.0, 2.5, 0.1)] == ["1:50", "1:2.5", "10:1"]
 

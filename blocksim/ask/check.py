@@ -243,6 +243,7 @@ def check(
         found = _offered(problem, offered, chosen, given)
     else:
         found = _general(problem, chosen, given)
+        problem = found.answer.problem
     rest = motion = None
     if problem.shaking is None:
         rest, motion = rest_of(
@@ -308,8 +309,10 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
 def _general(problem: Problem | SpatialProblem, chosen: Method, given: Taken) -> _Found:
     """Answer by limit analysis or by an engine."""
     known = problem.has_statics
-    static = equilibrium(problem) if known else None
     factor = collapse(problem).load_factor if known and problem.live else None
+    static = equilibrium(problem) if known else None
+    # What soil bears is mobilised as far as it has to be.
+    problem = static.problem if isinstance(static, Equilibrium) else problem
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
         evidence, needed, rates = static_evidence(problem, static), None, static.mechanism

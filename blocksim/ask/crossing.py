@@ -33,6 +33,7 @@ from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
 from blocksim.common.shown import Shown
 from blocksim.limit import collapse, thrust_range
+from blocksim.limit.bearing import settled
 from blocksim.limit.capacity import Capacity
 from blocksim.limit.crushing import exists
 from blocksim.limit.margins import crown
@@ -47,6 +48,8 @@ FAITHFUL = 1e-11
 """Difference that is round-off, over the weight of the vehicle."""
 NARROW = 1e-9
 """Width of a piece that is none, over the width of the structure."""
+NEVER = 1e-9
+"""Inverse of a load factor up to which nothing is too much."""
 HEADINGS = ("right", "left")
 
 
@@ -121,7 +124,8 @@ class Crossing(Shown):
         unit = self.problem.unit_force
         found: list[tuple[float, float] | None] = []
         for place in self.places:
-            under = replace(self.problem, live=loads_at(self.problem, place.live), load=1.0)
+            live = loads_at(self.problem, place.live)
+            under = settled(replace(self.problem, live=live, load=1.0))
             ends = (
                 None if joint is None or place.load_factor < 1 else thrust_range(under, joint)
             )
@@ -245,6 +249,7 @@ class _Search:
         self._to_control = np.linalg.inv(_bernstein(self._nodes, degree))
         self.places: list[Place] = []
         self._open: list[tuple[float, int, _Piece, float, float]] = []
+        self._order = itertools.count()
         self._last: tuple[Array, float] | None = None
 
     def look(self, vehicle: Vehicle, heading: str, progress: Progress) -> None:
@@ -262,7 +267,7 @@ class _Search:
         """Halve pieces until none may hide a worse place; return what bounds all gauges."""
         while self._open:
             bound, _, piece, first, second = heapq.heappop(self._open)
-            if -bound <= self.worst * (1 + gap):
+            if -bound <= max(self.worst * (1 + gap), NEVER):
                 return max(-bound, self.worst)
             left, right = piece.halves()
             middle = self._gauge(piece, left.end, left.control[-1])
@@ -339,7 +344,7 @@ class _Search:
             mean = (1 - share) * first + share * second
             bound = max(bound, mean + self._capacity.at_most(rest))
         if bound > max(first, second):
-            heapq.heappush(self._open, (-bound, len(self.places), piece, first, second))
+            heapq.heappush(self._open, (-bound, next(self._order), piece, first, second))
 
 
 def _bernstein(at: float | Array, degree: int) -> Array:

@@ -15,6 +15,7 @@ from blocksim.ask.scan import TRIED, Scan, least_friction, standing_at
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION, Shaking
 from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import PUSH
 from blocksim.common.errors import InputError
 from blocksim.limit.intervals import Interval, over_factor, over_tilt
 
@@ -201,6 +202,24 @@ def _until(value: float | None) -> tuple[Interval, ...] | None:
     return None if value is None else (Interval(low=-math.inf, high=value),)
 
 
+def _over_push(problem: Problem) -> Family:
+    # It follows blocks that move.
+    from blocksim.ask.push import asked, borne
+
+    both = borne(problem)
+    worst = min(both, key=lambda way: both[way])
+    given = asked(problem, worst)
+    said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
+    return Family(
+        name="push",
+        unit="g",
+        at=given.with_load,
+        high=PUSH.high,
+        standing=lambda: over_factor(given),
+        remark=lambda: f"; it bears {said}",
+    )
+
+
 def _over_amplitude(problem: Problem) -> Family:
     shaking = _shaking(problem, "amplitude")
     return Family(
@@ -236,6 +255,7 @@ FAMILIES: dict[str, Callable[[Any], Family[Any]]] = {
     "lean": _over_lean,
     "mu": _over_mu,
     "spread": _over_spread,
+    "push": _over_push,
     "amplitude": _over_amplitude,
     "duration": _over_duration,
 }

@@ -20,6 +20,7 @@ from blocksim.common.later import Later
 from blocksim.engines import ENGINES, NAMES, engine_named, make_known
 from blocksim.engines.base import Engine, Method
 from blocksim.kinds.offers import offers_of
+from blocksim.limit.bearing import bears
 from blocksim.simulation.simulated import BY_RULE, Overrides, require_setting
 
 _STATICS = (
@@ -160,6 +161,8 @@ def _beyond(method: Method, problem: Problem | SpatialProblem | None) -> str:
         return f"one of {able}: {method.name} knows no ground that shakes"
     if problem.strength is not None and method.name != "limit":
         return f"limit, or no strength: blocks of {method.name} do not crush"
+    if bears(problem) and method.name != "limit":
+        return f"limit, or no --fill-passive: soil in {method.name} gives way to nothing"
     offered = offers_of(problem) if method.name == "theory" else None
     if method.name == "theory" and (offered is None or "theory" not in offered.methods):
         return "limit or an engine: theory is of symmetric circular arches only"
@@ -194,4 +197,4 @@ def chosen_words(method: str | Method, rung: Method) -> str:
     else:
         seen = "sees the blocks as built" if rung.is_static else "can move blocks"
     fine = f"brackets down to {rung.finest:g}" if rung.finest else "is exact"
-    return f"; auto took {rung.name}, the cheapest method that {seen} and {fine}"
+    return f"; {rung.name}, as no cheaper method {seen} and {fine}"

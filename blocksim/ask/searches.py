@@ -172,7 +172,7 @@ def by_programmes(
         return Search(reason="no forces of equilibrium exist at any value")
     if math.isinf(exact):
         return Search(reason="forces of equilibrium exist at all values")
-    if exact < family.low or (rises and exact == family.low):
+    if exact < family.low:
         least = family.low
         reason = f"forces of equilibrium exist down to {least:.6g}"
         return Search(stands=least, runs=1, reason=reason)
@@ -189,13 +189,13 @@ def by_programmes(
             break
     confirmed = told == [False, True]
     words = "confirmed" if confirmed else "not confirmed"
-    programme = "a cone programme" if spatial else "a linear programme"
+    programmes = "cone" if spatial else "linear"
     return Search(
         falls=falls,
         stands=stands,
         confirmed=confirmed,
         runs=runs,
-        reason=f"limit analysis: {programme}, {words} by two others at the ends",
+        reason=f"limit analysis, {words} by two more {programmes} programmes at the ends",
     )
 
 

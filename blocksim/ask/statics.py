@@ -61,15 +61,15 @@ def static_evidence(
 
 def _words(static: Equilibrium) -> str:
     if static.exists:
+        spare = max(0.0, static.margin)
         return (
-            "forces of equilibrium exist, every contact pressing by "
-            f"{max(0.0, static.margin):.3g} of what it carries along both edges of its "
-            "friction cone, or more"
+            "forces of equilibrium exist, and no contact is nearer to opening or sliding than "
+            f"by {spare:.3g} of its force"
         )
     if math.isinf(static.margin):
         return "no forces of equilibrium exist, even if contacts could pull"
     return (
-        "no forces of equilibrium exist: contacts would have to pull by "
+        "no forces of equilibrium exist: contacts would have to pull with "
         f"{-static.margin:.3g} of what they carry"
     )
 
@@ -78,10 +78,10 @@ def _words_in_space(static: SpatialEquilibrium) -> str:
     """Say the same, and how near it was held to."""
     own = "of the lighter block's share of weight beside it"
     if static.exists:
-        left = "nothing but rounding" if not static.gap else f"{static.gap:.1g} of a weight"
+        left = f", but for {static.gap:.1g} of a weight" if static.gap else ""
         return (
-            f"forces of equilibrium exist, each contact pressing by {static.margin:.3g} {own} "
-            f"more than friction needs; {left} is left over"
+            f"forces of equilibrium exist{left}; each contact presses by {static.margin:.3g} "
+            f"{own} more than its friction needs"
         )
     if static.exists is None:
         return (
@@ -133,5 +133,7 @@ def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
             other = Verdict.COLLAPSES if stands else Verdict.STANDS
             found = f"the drawing leaves it open: {other} with blocks {words} by what was "
             return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
-    found = "the same with blocks grown and shrunk by what was closed, "
+    found = (
+        "the verdict is the same with blocks grown and shrunk by what was closed at joints, "
+    )
     return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)

@@ -148,7 +148,7 @@ class Profile:
         right = np.maximum.accumulate(np.clip(seen, 0.0, most))
         left = np.minimum.accumulate(np.clip(seen, -most, 0.0)[::-1])[::-1]
         slopes = left + right
-        links = np.flatnonzero((np.diff(slopes) > LEAST * most) & (self._owner >= 0))
+        links = np.flatnonzero((np.diff(slopes) > LEAST * most) & (self.owner >= 0))
         rays, weights = dispersal.rays(slopes[links, None], slopes[links + 1, None])
         share = weights.sum(axis=1)
         one = chain[links]
@@ -157,10 +157,10 @@ class Profile:
         along = (x + rays * depth - one[:, :1]) / (across + rays * up)
         mean = (weights * along).sum(axis=1) / share
         point = one + mean[:, None] * (chain[links + 1] - one)
-        return self._owner[links], share, point
+        return self.owner[links], share, point
 
     @cached_property
-    def _owner(self) -> NDArray[np.int64]:
+    def owner(self) -> NDArray[np.int64]:
         """Whose each link of the chain is: pieces and steps between them; -1 of a gap."""
         (x, y) = self.ends.reshape(-1, 2).T
         upper = (np.arange(len(x) - 1) + (np.diff(y) > 0)) // 2

@@ -213,6 +213,8 @@ def _said(
         return [f"{notes[0]}, within {TOLERANCE:g} of the smaller block's size"]
     close = slack.close[np.isfinite(slack.close)]
     why = f"coordinates are rounded to {step:.3g} m" if tolerance is None else "as asked"
+    if tolerance is not None and close.max() < tolerance:
+        why = f"a quarter of the narrower block; asked: {tolerance:g} m"
     notes[0] += f", within {close.max():.3g} m ({why})"
     if closed:
         pairs = [

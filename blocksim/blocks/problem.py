@@ -15,7 +15,8 @@ from blocksim.blocks.anyproblem import STANDARD_GRAVITY as STANDARD_GRAVITY
 from blocksim.blocks.anyproblem import AnyProblem
 from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly
 from blocksim.blocks.dispersal import Dispersal
-from blocksim.blocks.road import road_of, with_road
+from blocksim.blocks.road import road_of, with_road, with_soil
+from blocksim.blocks.soil import Soil
 from blocksim.common.checks import LEAN, STRENGTH
 
 if TYPE_CHECKING:
@@ -54,6 +55,9 @@ class Problem(AnyProblem[Assembly]):
         from one x to another [m], and the weight [N].
     dispersal : Dispersal or None
         How fill spreads what stands on the road; None where it goes straight down.
+    soil : Soil or None
+        What the fill is made of and how it presses from the side; None where it is of one
+        weight and presses downwards only.
     weighed : bool
         Whether a unit weight, or the weights of the blocks, were given. If not, only ratios of
         forces have a meaning.
@@ -75,6 +79,7 @@ class Problem(AnyProblem[Assembly]):
     maker: Maker | None = None
     road: tuple[tuple[float, float, float], ...] = ()
     dispersal: Dispersal | None = None
+    soil: Soil | None = None
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -123,6 +128,9 @@ class Problem(AnyProblem[Assembly]):
 
     def remade(self, maker: Kind) -> Self:
         """Return the same by another maker; what is on the road stays where it is."""
+        if self.soil is not None:
+            plain = with_soil(cast("Problem", self), None).remade(maker)
+            return cast("Self", with_soil(plain, self.soil))
         made = super().remade(maker)
         if (road := road_of(made)) is not None and self.dispersal is not None:
             made = replace(made, dispersal=replace(self.dispersal, road=road))

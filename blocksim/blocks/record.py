@@ -17,6 +17,7 @@ from blocksim.blocks.assembly import SUPPORT, Assembly, Block, Joint, Support
 from blocksim.blocks.dispersal import Dispersal
 from blocksim.blocks.problem import Load, Move, Problem
 from blocksim.blocks.shaking import Shaking, table_of
+from blocksim.blocks.soil import Soil
 from blocksim.common.checks import COORDINATE, SMOOTH_OR_ROUGH
 
 if TYPE_CHECKING:
@@ -102,6 +103,7 @@ def from_record(
         live=live,
         moves=moves,
         shaking=_shaking(given.pop("shaking", None)),
+        soil=_soil(given.pop("soil", None)),
         dispersal=Dispersal(**spread) if (spread := given.pop("dispersal", None)) else None,
         maker=maker_of(origin),
         road=road,
@@ -135,6 +137,20 @@ def _shaking(record: Mapping[str, Any] | None) -> Shaking | None:
     times, values = made.table.T
     table_of(times, values)
     return made
+
+
+def _soil(record: Mapping[str, Any] | None) -> Soil | None:
+    if record is None:
+        return None
+    tuples = {"regions", "layers", "backing", "pressure", "passive"}
+    given: dict[str, Any] = {
+        name: _tuples(each) if name in tuples else each for name, each in record.items()
+    }
+    return Soil(**given)
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(map(_tuples, cast("list[Any]", value))) if isinstance(value, list) else value
 
 
 def _numbers(record: Mapping[str, Any]) -> dict[str, object]:

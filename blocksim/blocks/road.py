@@ -1,6 +1,7 @@
 """Fill and weights on the road above: they go straight down to what lies uppermost.
 
-Fill spreads nothing on the way unless it is said how (`blocks.dispersal`).
+Fill spreads nothing on the way unless it is said how (`blocks.dispersal`). What it is made of
+and how it presses from the side is in `blocks.soil`.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ from blocksim.blocks.acting import Load
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.dispersal import Dispersal, quadrature
 from blocksim.blocks.patch import Profile, Share
+from blocksim.blocks.soil import Soil
 from blocksim.common.checks import require
-from blocksim.common.errors import InputError
+from blocksim.common.errors import MISSING, InputError
 
 if TYPE_CHECKING:
     from blocksim.blocks.problem import Problem
@@ -109,7 +111,11 @@ def road_of(problem: Problem) -> float | None:
     maker: Any = problem.maker
     arch = getattr(maker, "arch", maker)
     height = getattr(arch, "fill", None)
-    return None if height is None else arch.top + height
+    if height is not None:
+        return arch.top + height
+    if problem.soil is None or problem.soil.height is None:
+        return None
+    return float(profile_of(problem.assembly).ends[:, :, 1].max()) + problem.soil.height
 
 
 def with_road(
@@ -144,6 +150,18 @@ def with_road(
     return replace(problem, live=tuple(live), road=tuple(loads))
 
 
+def takes_fill(problem: Problem) -> bool:
+    """Tell whether a maker knows its fill: those of an arch, or of arches on piers."""
+    maker: Any = problem.maker
+    return hasattr(maker, "fill") or hasattr(getattr(maker, "arch", None), "fill")
+
+
+def fill_density(problem: Problem) -> float:
+    """Return the density of the fill that a maker knows, over that of its blocks."""
+    maker: Any = problem.maker
+    return float(getattr(maker, "arch", maker).fill_density)
+
+
 def with_fill(problem: Problem, height: float, share: float) -> Problem:
     """Return a problem of an arch or of arches on piers with fill above them.
 
@@ -162,12 +180,42 @@ def with_fill(problem: Problem, height: float, share: float) -> Problem:
         If it is of no arch, or a value is out of range.
     """
     maker: Any = problem.maker
-    own = hasattr(maker, "fill")
-    arches = own or hasattr(getattr(maker, "arch", None), "fill")
-    require(arches, "fill", height, "left out: it is for arches and portals")
-    path = "" if own else "arch."
+    require(takes_fill(problem), "fill", height, "left out: it is for arches and portals")
+    path = "" if hasattr(maker, "fill") else "arch."
     filled = maker.but(**{f"{path}fill": height, f"{path}fill_density": share})
     return problem.remade(filled)
+
+
+def with_soil(problem: Problem, soil: Soil | None) -> Problem:
+    """Return a problem on which soil presses, in place of any other.
+
+    Raises
+    ------
+    InputError
+        If there is no fill.
+    """
+    fills = 0 if problem.maker is None else len(problem.maker.built.fills)
+    others = problem.dead[fills + len(soil_loads(problem)) :]
+    made = replace(problem, soil=soil)
+    return replace(made, dead=(*problem.dead[:fills], *soil_loads(made), *others))
+
+
+def soil_loads(problem: Problem) -> tuple[Load, ...]:
+    """Return what soil does to blocks, which comes after the weight of fill."""
+    return () if problem.soil is None else problem.soil.loads(*_below(problem))
+
+
+def soil_bearing(problem: Problem) -> tuple[Load, ...]:
+    """Return what soil bears more at most where it is moved into, each of its own."""
+    return () if problem.soil is None else problem.soil.bearing(*_below(problem))
+
+
+def _below(problem: Problem) -> tuple[Profile, Array, float]:
+    """Return what lies uppermost, depths of blocks, and the height of the road [m]."""
+    road, assembly = road_of(problem), problem.assembly
+    if road is None:
+        raise InputError("fill", MISSING, "given beside what the fill is made of")
+    return profile_of(assembly), assembly.depths * assembly.size, road
 
 
 def with_dispersal(problem: Problem, words: str) -> Problem:
@@ -194,17 +242,25 @@ def with_dispersal(problem: Problem, words: str) -> Problem:
 
 @dataclass(frozen=True, kw_only=True)
 class FillAbove:
-    """Fill: its height over the highest point of the extrados [m], its weight [N]."""
+    """Fill: its height over the highest point of the extrados [m], weight [N], and words."""
 
     height: float
     weight: float
+    words: tuple[str, ...] = ()
 
 
 def fill_of(problem: Problem) -> FillAbove | None:
     """Return the fill on a structure; None where it has none."""
-    maker: Any = problem.maker
-    height = getattr(getattr(maker, "arch", maker), "fill", None)
+    maker, soil = problem.maker, problem.soil
+    height: float | None = getattr(getattr(maker, "arch", maker), "fill", None)
+    if height is None:
+        height = None if soil is None else soil.height
     if height is None:
         return None
-    fills = maker.made(maker.unit_weight).fills
-    return FillAbove(height=height, weight=sum(each.weight for each in fills))
+    fills = () if maker is None else maker.made(maker.unit_weight).fills
+    down = -sum(float(load.force[1]) for load in soil_loads(problem))
+    return FillAbove(
+        height=height,
+        weight=sum(each.weight for each in fills) + down,
+        words=() if soil is None else tuple(soil.words),
+    )

@@ -40,7 +40,7 @@ COMMANDS = {
     ),
     "report": (
         "reporting.report",
-        "Write a report on one structure, a page to print. Exit codes are those of check.",
+        "Write a report on one structure, to print and to sign. Exit codes are those of check.",
     ),
     "validate": (
         "studies.validate",

@@ -14,6 +14,7 @@ from blocksim.blocks.joints import joint_names
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.arguments import Option
 from blocksim.cli.crossing import cross
+from blocksim.cli.curves import require_curves, write_curves
 from blocksim.cli.options import (
     EXIT_CODES,
     THICKNESS,
@@ -87,7 +88,7 @@ def check(
         told = answer.carried
         if at is not None and told is not None:
             report(1.0, "thrust")
-            told = carried_of(problem, at, answer.needed)
+            told = carried_of(answer.problem, at, answer.needed)
     found = answer.proof
     write_proof(answer.method, () if found is None else (found,), proof)
     answer_with(check_record(answer, told), check_lines(answer, told), as_json=as_json)
@@ -114,9 +115,10 @@ def bracket(
     Of a vehicle that crosses it is the least load factor, and where it stands then.
     """
     crosses = crossed.vehicle is not None
-    for option in ("along", "out") if not crosses else ():
-        value = getattr(crossed, option)
-        require(value is None, f"--{option}", value, "left out, or --vehicle beside it")
+    if not crosses:
+        allowed = "left out, or --vehicle beside it"
+        require(crossed.along is None, "--along", crossed.along, allowed)
+        require_curves(over, crossed.out)
     # The thickness of an arch under its own weight need not be given to be sought.
     sought = (
         over in {None, THICKNESS}
@@ -149,5 +151,7 @@ def bracket(
             progress=report,
         )
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
+    if crossed.out is not None:
+        write_curves(problem, answer.over, crossed.out, silent=as_json)
     record = bracket_record(answer) if as_json else dict[str, object]()
     answer_with(record, [] if as_json else bracket_lines(answer), as_json=as_json)

@@ -7,13 +7,14 @@ from typing import Annotated, Any, cast
 
 from blocksim.cli.arguments import Argument, Option
 from blocksim.cli.options import named_options, require_given
-from blocksim.cli.output import say
+from blocksim.cli.output import picture_kind, save_picture, say
 from blocksim.cli.structures import reading_of
 from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.files import json_text, require_place, write_whole
 from blocksim.common.words import counted
 from blocksim.kinds.files import (
+    DRAWN,
     deepened,
     is_drawing,
     named_file,
@@ -21,6 +22,7 @@ from blocksim.kinds.files import (
     with_friction,
     within,
 )
+from blocksim.reading.drawing import Reading
 
 
 def convert(
@@ -29,6 +31,13 @@ def convert(
     ],
     out: Annotated[
         Path | None, Option(about="Structure file to write, .json; required.")
+    ] = None,
+    picture: Annotated[
+        Path | None,
+        Option(
+            about="Picture of what was read of a drawing, and of what was refused and where: "
+            ".png, .svg or .pdf; --out may then be left out."
+        ),
     ] = None,
     mu: Annotated[
         float | None, Option(about="Friction coefficient, above 0; inf allowed.")
@@ -58,30 +67,54 @@ def convert(
     ] = None,
 ) -> None:
     """Turn a drawing into a structure file, so that loads, weights or friction can be added."""
-    require_given(out=out)
-    out = out or Path()
-    require(out.suffix == ".json", "--out", str(out), "a file name ending in .json")
-    require_place(out)
-    if is_drawing(source):
+    require_given(**({} if picture else {"out": out}))
+    if out is not None:
+        require(out.suffix == ".json", "--out", str(out), "a file name ending in .json")
+        require_place(out)
+    drawn = is_drawing(source)
+    if picture is not None:
+        require(drawn, "--picture", str(picture), "left out: it is of drawings")
+        picture_kind(picture, ("png", "svg", "pdf"), "--picture")
+    if drawn:
         require_given(mu=mu)
-    with named_options(), named_file(source, reading_of(unit, layer, snap)) as data:
-        said = data if mu is None else with_friction(data, mu)
-        if tolerance is not None:
-            said = within(said, tolerance)
-        if depth is not None:
-            said = deepened(said, depth)
-        require(isinstance(said, dict), "structure", type(said).__name__, "a table of keys")
-        table = _held(cast("dict[str, Any]", said), fixed)
-        problem = structure_of(table)
-    write_whole(out, lambda file: file.write(_text(table).encode()))
+    reading = reading_of(unit, layer, snap)
+    try:
+        with named_options(), named_file(source, reading) as data:
+            said = data if mu is None else with_friction(data, mu)
+            if tolerance is not None:
+                said = within(said, tolerance)
+            if depth is not None:
+                said = deepened(said, depth)
+            require(isinstance(said, dict), "structure", type(said).__name__, "a table of keys")
+            table = _held(cast("dict[str, Any]", said), fixed)
+            problem = structure_of(table)
+    except InputError as error:
+        if picture is not None:
+            _draw(source, reading, picture, error)
+        raise
+    if picture is not None:
+        _draw(source, reading, picture, None)
+    if out is not None:
+        write_whole(out, lambda file: file.write(_text(table).encode()))
     assembly = problem.assembly
+    where = source if out is None else f"wrote {out}"
     say(
-        f"wrote {out}: {counted(len(assembly.blocks), 'block')}, "
+        f"{where}: {counted(len(assembly.blocks), 'block')}, "
         f"{counted(len(assembly.supports), 'support')}, "
         f"{counted(len(assembly.joints), 'joint')}"
     )
     for note in problem.notes:
         say(f"  {note}")
+
+
+def _draw(source: str, reading: Reading, picture: Path, refusal: InputError | None) -> None:
+    """Draw what was read of a drawing, and what was refused."""
+    # Drawing takes a second to import, which others need not wait for.
+    from blocksim.view.readfigure import read_figure
+
+    drawing = DRAWN[Path(source).suffix.lower()](source, reading)
+    kind = picture.suffix.removeprefix(".")
+    save_picture(read_figure(drawing, refusal), picture, kind)
 
 
 def _held(table: dict[str, Any], fixed: str | None) -> dict[str, Any]:

@@ -14,7 +14,15 @@ from blocksim.ask.families import FAMILIES
 from blocksim.ask.methods import CHOICES
 from blocksim.blocks.shaking import COLUMNS, SHAPES
 from blocksim.cli.arguments import Argument, Option
-from blocksim.common.checks import FRICTION_ANGLE, LEAN_DEG, RATIO, TILT_DEG, Range, require
+from blocksim.common.checks import (
+    FRICTION_ANGLE,
+    LEAN_DEG,
+    PUSH,
+    RATIO,
+    TILT_DEG,
+    Range,
+    require,
+)
 from blocksim.common.errors import ALL_MISSING, MISSING, InputError
 from blocksim.common.files import json_of
 from blocksim.simulation.simulated import SETTINGS
@@ -93,6 +101,11 @@ Json = Annotated[bool, Option(name="--json", about="Print one JSON object, nothi
 
 THICKNESS = "thickness"
 """The parameter of `bracket` that is left out: of arches."""
+SOIL = (
+    "fill_unit_weight", "fill_region", "fill_layer", "backing", "fill_friction_angle",
+    "fill_pressure", "fill_passive",
+)  # fmt: skip
+"""Options that say what fill is made of."""
 OF_ANY = {"mu", "friction_angle", "unit_weight", "lean", "parameters", "tolerance", "depth",
           "unit", "layer", "snap"}  # fmt: skip
 """Options that say how anything is built, not only an arch."""
@@ -260,13 +273,61 @@ class Loading:
     fill: Annotated[
         float | None,
         Option(
-            about="Of arches and portals: height of fill over the crown in m.",
+            about="Height of fill over the crown in m, or over the highest point of what has "
+            "none.",
             range=Range(low=0, high=1000, unit="m"),
         ),
     ] = None
     fill_unit_weight: Annotated[
         float | None,
         Option(about="Unit weight of the fill in kN/m3; that of the blocks if left out."),
+    ] = None
+    fill_region: Annotated[
+        list[tuple[float, float, float]] | None,
+        Option(
+            metavar="X1 X2 KN/M3",
+            about="Other unit weight of the fill from x1 to x2 (m, as of --point-load); "
+            "repeatable: on the left and on the right, of each span.",
+        ),
+    ] = None
+    fill_layer: Annotated[
+        list[tuple[float, float]] | None,
+        Option(
+            metavar="M KN/M3",
+            about="Layer of the fill below the road: its thickness and unit weight; "
+            "repeatable, from the road downwards.",
+        ),
+    ] = None
+    backing: Annotated[
+        tuple[float, float] | None,
+        Option(
+            metavar="M KN/M3",
+            about="Backing over the haunches, up to a height over the lowest point of the "
+            "extrados, and its unit weight.",
+        ),
+    ] = None
+    fill_friction_angle: Annotated[
+        float | None,
+        Option(
+            about="Angle of friction of the fill in degrees.",
+            range=Range(low=0, high=math.nextafter(90, 0), unit="deg"),
+        ),
+    ] = None
+    fill_pressure: Annotated[
+        str | None,
+        Option(
+            metavar="K[,K]",
+            about="Pressure of the fill from the side: at-rest, active, or a number, over the "
+            "weight above; one, or those of the left and the right. None if left out.",
+        ),
+    ] = None
+    fill_passive: Annotated[
+        str | None,
+        Option(
+            metavar="SHARE[,SHARE]",
+            about="Share of its passive resistance that the fill bears where it is moved into "
+            "(limit); one, or those of the left and the right. None if left out.",
+        ),
     ] = None
     point_load: Annotated[
         list[tuple[float, float]] | None,
@@ -302,6 +363,21 @@ class Loading:
         Option(
             about="Factor on the live loads; if left out 1 with --point-load or --patch-load, "
             "else what the file says."
+        ),
+    ] = None
+    push: Annotated[
+        float | None,
+        Option(
+            about="Push sideways in g, over the weight of each block, to the side to which it "
+            "bears less.",
+            range=PUSH,
+        ),
+    ] = None
+    spread: Annotated[
+        float | None,
+        Option(
+            about="How far the supports have moved apart in m, or as `move` in the file says.",
+            range=Range(low=0, high=1000, unit="m"),
         ),
     ] = None
     tilt: Annotated[
@@ -340,7 +416,7 @@ class Loading:
     @property
     def on_road(self) -> dict[str, object]:
         """Those that lie on the road; empty where none is given."""
-        return _given(self, "fill", "fill_unit_weight", "point_load", "patch_load", "dispersal")
+        return _given(self, "fill", *SOIL, "point_load", "patch_load", "dispersal")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -363,9 +439,10 @@ class Crossed:
     out: Annotated[
         list[Path] | None,
         Option(
-            about="Beside --vehicle, a file to write; repeatable: .csv, load factor and thrust "
+            about="A file to write; repeatable. With --vehicle: .csv, load factor and thrust "
             "at every place; .pdf, .svg, .png, their curve above the worst place; .dxf, the "
-            "drawing at the worst place."
+            "drawing at the worst place. Over push or spread: .csv, .pdf, .svg, .png of the "
+            "push that is borne, or the thrust, as it moves."
         ),
     ] = None
 

@@ -29,12 +29,12 @@ def progress() -> AbstractContextManager[Progress]:
     return bar()
 
 
-def picture_kind(out: Path, kinds: tuple[str, ...]) -> str:
+def picture_kind(out: Path, kinds: tuple[str, ...], option: str = "--out") -> str:
     """Return the kind of a picture, by the ending of a file that can be written."""
     kind = out.suffix.removeprefix(".")
     *most, last = (f".{each}" for each in kinds)
     allowed = f"a file name ending in {', '.join(most)} or {last}"
-    require(kind in kinds, "--out", str(out), allowed)
+    require(kind in kinds, option, str(out), allowed)
     require_place(out)
     return kind
 
@@ -49,9 +49,21 @@ def save_picture(figure: Figure, out: Path, kind: str, height: int | None = None
 
 def answer_with(record: Mapping[str, object], lines: list[str], *, as_json: bool) -> None:
     """Print an answer, as one JSON object or as lines for people."""
-    say(*([json_text(record)] if as_json else lines))
+    if as_json:
+        click.echo(printable(json_text(record)))
+    else:
+        say(*lines)
 
 
 def say(*lines: str) -> None:
-    """Print lines on standard output, with nothing in them that a terminal would obey."""
-    click.echo("\n".join(map(printable, lines)))
+    """Print lines on standard output, with nothing in them that a terminal would obey.
+
+    On a terminal they are folded at the window's edge, and verdicts have colours.
+    """
+    shown = [printable(line) for line in lines]
+    # None where it was closed.
+    if sys.stdout and sys.stdout.isatty():
+        from blocksim.cli.terminal import fitted
+
+        shown = fitted(shown)
+    click.echo("\n".join(shown))

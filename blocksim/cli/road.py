@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import cast
 
 from blocksim.arch.dimensions import require_unit_weight
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
-from blocksim.blocks.road import with_dispersal, with_fill, with_road
+from blocksim.blocks.road import (
+    fill_density,
+    road_of,
+    takes_fill,
+    with_dispersal,
+    with_fill,
+    with_road,
+    with_soil,
+)
 from blocksim.blocks.shaking import SHAPES, Shaking, read_table
-from blocksim.cli.options import Given, Loading, named_options, option_of, require_given
+from blocksim.blocks.soil import Soil, coefficients, resistance
+from blocksim.cli.options import SOIL, Given, Loading, named_options, option_of, require_given
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.kinds.circular import LEAST_DENSITY
@@ -34,7 +44,22 @@ def loaded(problem: Problem, given: Given, loading: Loading) -> Problem:
             problem = problem.tilted(math.radians(loading.tilt))
         if given.lean is not None:
             problem = problem.leaning(math.radians(given.lean))
-        return replace(problem, shaking=_shaking(problem.shaking, loading))
+        problem = replace(problem, shaking=_shaking(problem.shaking, loading))
+        return _moved(problem, loading)
+
+
+def _moved(problem: Problem, loading: Loading) -> Problem:
+    """Move the supports of a problem apart, and push it sideways, as the options say."""
+    if loading.spread is not None:
+        # What moves supports is loaded where it is asked for.
+        from blocksim.ask.spread import spread_by
+
+        problem = spread_by(problem, loading.spread)
+    if loading.push is not None:
+        from blocksim.ask.push import pushed
+
+        problem = pushed(problem, loading.push)
+    return problem
 
 
 def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
@@ -57,6 +82,60 @@ def _shaking(shaking: Shaking | None, loading: Loading) -> Shaking | None:
     return shaking
 
 
+def _filled(problem: Problem, loading: Loading, density: float) -> Problem:
+    """Put fill on a structure: by its maker, where that knows it, else on what is uppermost."""
+    height, heavy = loading.fill, loading.fill_unit_weight
+    filled = height is not None or road_of(problem) is not None
+    for name in SOIL:
+        value = getattr(loading, name)
+        allowed = "left out, or --fill beside it"
+        said = value if isinstance(value, float) else _said(value)
+        require(value is None or filled, option_of(name), said, allowed)
+    if heavy is not None:
+        require_unit_weight("--fill-unit-weight", heavy)
+        allowed = "left out, or --fill beside it"
+        require(height is not None, "--fill-unit-weight", heavy, allowed)
+    usual = density if problem.maker is None else problem.maker.unit_weight
+    weight = usual if heavy is None else 1000 * heavy
+    own = takes_fill(problem)
+    if own:
+        if height is not None:
+            problem = with_fill(problem, height, weight / usual)
+        weight = usual * fill_density(problem)
+    soil = _soil(loading, weight, None if own else height)
+    return problem if soil == Soil(unit_weight=weight) else with_soil(problem, soil)
+
+
+def _soil(loading: Loading, weight: float, height: float | None) -> Soil:
+    """Return what the options say the fill is made of."""
+    pressure, passive = loading.fill_pressure, loading.fill_passive
+    angle, backing = loading.fill_friction_angle, loading.backing
+    allowed = "left out, or --fill-pressure or --fill-passive beside it"
+    needed = angle is None or pressure is not None or passive is not None
+    require(needed, "--fill-friction-angle", angle, allowed)
+    turn = None if angle is None else math.radians(angle)
+    return Soil(
+        unit_weight=weight,
+        height=height,
+        regions=tuple(
+            (low, high, 1000 * heavy) for low, high, heavy in loading.fill_region or ()
+        ),
+        layers=tuple((thick, 1000 * heavy) for thick, heavy in loading.fill_layer or ()),
+        backing=None if backing is None else (backing[0], 1000 * backing[1]),
+        pressure=(0.0, 0.0) if pressure is None else coefficients(pressure, turn),
+        passive=(0.0, 0.0) if passive is None else resistance(passive, turn),
+    )
+
+
+def _said(value: object) -> str:
+    """Say a value of an option as it is given."""
+    if isinstance(value, list):
+        return "; ".join(map(_said, cast("list[object]", value)))
+    if isinstance(value, tuple):
+        return " ".join(map(_said, cast("tuple[object, ...]", value)))
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
 def under_road(problem: Problem, loading: Loading) -> Problem:
     """Put fill and loads on a structure; live loads act as they are, with a factor of 1.
 
@@ -68,21 +147,13 @@ def under_road(problem: Problem, loading: Loading) -> Problem:
     blocks = problem.assembly.blocks
     volume = sum(abs(signed_area(part)) * b.depth for b in blocks for part in b.polygons)
     density = sum(block.mass for block in blocks) * STANDARD_GRAVITY / volume
-    weights = ("fill_unit_weight", "point_load", "patch_load")
+    weights = ("fill_unit_weight", "fill_region", "fill_layer", "backing", "point_load",
+               "patch_load")  # fmt: skip
     in_kilonewtons = [name for name in loading.on_road if name in weights]
     if in_kilonewtons and density < LEAST_DENSITY:
         allowed = f"given beside {option_of(in_kilonewtons[0])}: blocks weigh {density:g} N/m3"
         raise InputError("--unit-weight", MISSING, allowed)
-    height, heavy = loading.fill, loading.fill_unit_weight
-    if heavy is not None:
-        require_unit_weight("--fill-unit-weight", heavy)
-        require(
-            height is not None, "--fill-unit-weight", heavy, "left out, or --fill beside it"
-        )
-    if height is not None:
-        maker = problem.maker
-        share = 1.0 if heavy is None or maker is None else 1000 * heavy / maker.unit_weight
-        problem = with_fill(problem, height, share)
+    problem = _filled(problem, loading, density)
     if loading.dispersal is not None:
         problem = with_dispersal(problem, loading.dispersal)
     placed = [("--point-load", (x, x, weight)) for x, weight in loading.point_load or ()]

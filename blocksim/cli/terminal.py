@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Generator
+import os
+import re
+import shutil
+import textwrap
+import time
+from collections.abc import Container, Generator, Sequence
 from contextlib import contextmanager
 
+import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table as RichTable
@@ -13,7 +19,30 @@ from blocksim.common.progress import Progress as Report
 from blocksim.common.words import printable
 
 WIDE = 128
-"""Characters in a line of the widest table."""
+"""Characters in a line of the widest table where no window says how many there are."""
+MOMENT = 0.5
+"""What takes no longer has no bar [s]."""
+COLOURS = {"STANDS": "green", "COLLAPSES": "red", "UNDECIDED": "yellow"}
+"""Of the word with which an answer begins."""
+_LABEL = re.compile(r"  \S{1,7} +(?=\S)|\s*")
+
+
+def fitted(lines: Sequence[str]) -> list[str]:
+    """Return lines as a terminal shows them: folded at its width, verdicts in colour."""
+    width = shutil.get_terminal_size().columns
+    shown: list[str] = []
+    for line in lines:
+        label = _LABEL.match(line)
+        indent = " " * (len(label[0]) if label and label[0] else 2)
+        folded = textwrap.wrap(
+            line, width, subsequent_indent=indent, break_on_hyphens=False,
+            break_long_words=False, drop_whitespace=True, replace_whitespace=False,
+        )  # fmt: skip
+        word, space, rest = (folded or [""])[0].partition(" ")
+        if word in COLOURS and "NO_COLOR" not in os.environ:
+            folded[0] = click.style(word, fg=COLOURS[word], bold=True) + space + rest
+        shown += folded or [""]
+    return shown
 
 
 @contextmanager
@@ -21,13 +50,18 @@ def bar() -> Generator[Report]:
     """Show a bar on standard error while something goes on."""
     words = TextColumn("{task.description:34}", markup=False)
     columns = (words, BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as shown:
-        task = shown.add_task("", total=1.0)
+    shown = Progress(*columns, console=Console(stderr=True), transient=True)
+    task, begun = shown.add_task("", total=1.0), time.monotonic()
 
-        def report(share: float, what: str) -> None:
-            shown.update(task, completed=share, description=printable(what))
+    def report(share: float, what: str) -> None:
+        shown.update(task, completed=share, description=printable(what))
+        if not shown.live.is_started and time.monotonic() - begun > MOMENT:
+            shown.start()
 
+    try:
         yield report
+    finally:
+        shown.stop()
 
 
 class Table(RichTable):
@@ -45,6 +79,11 @@ class Table(RichTable):
 
 
 def show(table: Table) -> None:
-    """Print a table; a narrow window wraps its lines rather than losing columns."""
-    plain = Console(width=max(Console().width, WIDE), markup=False, emoji=False)
+    """Print a table; in a narrow window its cells are folded."""
+    window = Console()
+    width = window.width if window.is_terminal else max(window.width, WIDE)
+    for column in table.columns:
+        column.no_wrap = column.no_wrap and width >= WIDE
+        column.overflow = "fold"
+    plain = Console(width=width, markup=False, emoji=False)
     plain.print(table)

@@ -143,6 +143,8 @@ MASS = Range(low=1e-36, high=1e36, unit="kg")
 INERTIA = Range(low=1e-48, high=1e48, unit="kg m2")
 FACTOR = Range(low=-1e9, high=1e9)
 """On live loads, on weights, and on motions of supports."""
+PUSH = Range(low=0, high=10, unit="g")
+"""Sideways, over the weight of each block."""
 TURN = Range(low=-1e6, high=1e6, unit="deg")
 
 

@@ -80,7 +80,7 @@ class ArchOffers(Offers):
         mode = None
         if verdict is Verdict.STANDS:
             spare = limit.slack(arch, self.problem.mu)
-            said = f"{said}; {spare:.2%} of thickness and friction could be taken away"
+            said = f"{said}; thickness and friction could both be {spare:.2%} less"
         else:
             # Its linear programmes take longer to load than an arch that stands to answer.
             from blocksim.arch.limit.mechanism import mechanism

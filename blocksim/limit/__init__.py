@@ -14,6 +14,7 @@ from blocksim.limit.programme import falling as falling
 from blocksim.limit.programme import settling as settling
 from blocksim.limit.resultants import Reaction as Reaction
 from blocksim.limit.resultants import Resultants as Resultants
+from blocksim.limit.resultants import in_world as in_world
 from blocksim.limit.resultants import reactions as reactions
 from blocksim.limit.resultants import resultants as resultants
 from blocksim.limit.statics import collapse as collapse

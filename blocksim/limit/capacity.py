@@ -17,6 +17,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.later import Library
+from blocksim.limit.bearing import Bearing, bears, settled
 from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.crushing import Crushing
 from blocksim.limit.linear import LinearProgramme, Optimum
@@ -65,6 +66,7 @@ class Capacity:
         self._dead = problem.with_load(0.0).pull()
         self._solver = LinearProgramme()
         crushes = problem.strength is not None
+        self._bearing = Bearing(problem, self.cones) if bears(problem) else None
         self._crushing = Crushing(problem, self.cones) if crushes else None
 
     def of(self, live: Array) -> Collapse:
@@ -78,6 +80,9 @@ class Capacity:
         cones = self.cones
         column = sparse.csc_array(cones.loads(live)[:, None])
         right = -cones.loads(self._dead)
+        if self._bearing is not None:
+            endless = (-math.inf, math.inf)
+            return self._collapse(self._bearing.most(column, right, endless, self._solver)[0])
         if self._crushing is not None:
             return self._collapse(self._crushing.most(column, right))
         return self._collapse(most(cones, column, right, (-math.inf, math.inf), self._solver))
@@ -151,9 +156,10 @@ def collapse(problem: Problem) -> Collapse:
     InputError
         If nothing is known that a strength could be compared with.
     """
-    capacity = Capacity(problem)
-    still = np.zeros(capacity.cones.shape)
+    still = np.zeros((len(problem.assembly.blocks), 3))
     live = sum((problem.of_load(load) for load in problem.live), still)
+    problem = settled(problem, live)
+    capacity = Capacity(problem)
     found, at_rest = capacity.of(live), problem.with_load(0.0)
     return replace(
         found,

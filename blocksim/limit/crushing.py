@@ -20,6 +20,7 @@ from blocksim.common.checks import STRENGTH, require
 from blocksim.common.conic import Cone, solved_cones
 from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
+from blocksim.limit.bearing import bears
 from blocksim.limit.cones import Cones, joint_areas
 from blocksim.limit.linear import NONE, UNBOUNDED, Optimum
 from blocksim.limit.programme import equilibrium, scaled
@@ -272,5 +273,7 @@ def require_sizes(problem: Problem) -> None:
     known = problem.weighed and problem.has_size
     value = "none" if problem.strength is None else f"{problem.strength / 1e6:g} MPa"
     require(known, "strength", value, "left out, or sizes and unit weights in m and kN/m3")
+    allowed = "left out beside --fill-passive: what soil bears is not sought with it"
+    require(not bears(problem), "strength", value, allowed)
     corners = bool(problem.assembly.joint_arrays.is_corner.any())
     require(not corners, "strength", value, "left out: a corner bears a block without a width")

@@ -24,6 +24,7 @@ from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Problem
 from blocksim.common.errors import Unsolved
 from blocksim.common.later import Library
+from blocksim.limit.bearing import settled
 from blocksim.limit.bodies import alike, widened
 from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.exact import Exact
@@ -148,6 +149,7 @@ def equilibrium(problem: Problem) -> Equilibrium:
     -------
     Equilibrium
     """
+    problem = settled(problem)
     cones, pull = Cones(problem), problem.pull()
     try:
         found = most_common(cones, pull, LinearProgramme(vertex=False))

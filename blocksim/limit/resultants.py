@@ -13,6 +13,8 @@ from blocksim.limit.cones import carried_weights, joint_areas, joint_weights
 
 FORCELESS = 1e-9
 """Pressure below which a joint carries nothing, over the weight that its blocks carry."""
+UPRIGHT = 1e-9
+"""How far gravity may be from as large as weight, and be that of a tilted table."""
 SIDES = ("left", "right")
 """Names of two supports that have none."""
 
@@ -120,6 +122,25 @@ def reactions(problem: Problem, forces: Array) -> tuple[Reaction, ...]:
         _reaction(problem, carried, bearing[key], name)
         for key, name in zip(order, names, strict=True)
     )
+
+
+def in_world(problem: Problem, forces: Array) -> Array:
+    """Return forces across and up, as the world has it, where blocks lie on a tilted table.
+
+    Parameters
+    ----------
+    problem : Problem
+        Seen as on the drawing, gravity turned. Where gravity is not as large as weight, what
+        is more of it pushes, and the drawing is upright.
+    forces : (..., 2) float
+        As on the drawing.
+    """
+    x, y, _ = problem.gravity.tolist()
+    size = math.hypot(x, y)
+    if size == 0 or abs(float(np.linalg.norm(problem.gravity)) - 1) > UPRIGHT:
+        return forces
+    across = np.array([-y, x]) / size
+    return np.stack([forces @ across, forces @ (np.array([-x, -y]) / size)], axis=-1)
 
 
 def _name_of(problem: Problem, place: int, order: list[tuple[int | None, int]]) -> str:

@@ -114,6 +114,7 @@ def follow(problem: Problem, highest: float, steps: int = 100) -> Path:
         return Path(frames=(frame,), events=(), ends="collapse")
     frame, lost = follows(blocks, frame)
     events.append(Event(what="hinges", before=frames[0], after=frame))
+    frames.append(frame)
     grid = np.linspace(0, highest, steps + 1)[1:].tolist()
     while lost is None and grid:
         ahead = blocks.carried(frame, grid[0])
@@ -146,7 +147,9 @@ def lying(problem: Problem, path: Path, value: float) -> Problem:
     """
     blocks = Displaced(problem)
     before = [each for each in path.frames if each.value <= value]
-    return blocks.problem(blocks.carried(before[-1] if before else path.frames[0], value))
+    # As built all contacts are closed.
+    last = before[-1] if before and value > 0 else path.frames[0]
+    return blocks.problem(blocks.carried(last, value))
 
 
 def _first_event(

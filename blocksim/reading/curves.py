@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from blocksim.blocks.assembly import Array
 
 TURN = math.radians(5)
-"""By which a curve turns from chord to chord, at most; there are at least two."""
+"""By which a curve turns from chord to chord, at most."""
+FEWEST = 3
+"""Chords of a curve."""
 STRAIGHT = 1e-9
 """Share of its length by which a curve may be off its chord and be a straight line."""
 SAMPLED = 65
@@ -143,7 +145,7 @@ def _chords(
     start: complex, end: complex, at: Callable[[Array], Points], area: float, turn: float
 ) -> Chords:
     """Return corners on a curve, moved across its chord until the area beside it is right."""
-    count = max(2, math.ceil(turn / TURN - 1e-9))
+    count = max(FEWEST, math.ceil(turn / TURN - 1e-9))
     chord = end - start
     # Along and across the chord, in units of its length: an area is kept times abs(chord)**2.
     inner = (at(np.arange(1, count) / count) - start) / chord

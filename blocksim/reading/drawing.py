@@ -35,7 +35,10 @@ MOST_KINDS = 8
 """Kinds of what was left out that are named, each with its number and layer."""
 UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 1e-1, "in": 0.0254, "ft": 0.3048}
 """In metres."""
-OUTLINE = "a closed outline in the plane, or on another layer"
+OUTLINE = (
+    "a closed outline in the plane, or on another layer "
+    "(blocksim convert --picture FILE draws where)"
+)
 
 Corners = list[tuple[float, float]]
 

@@ -60,7 +60,6 @@ def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRec
         "reason": answer.reason,
         "problem": problem_record(problem),
         "load_factor": answer.load_factor,
-        "factor_of_safety": _factor_of_safety(answer, carried),
         **told,
         "rest": answer.rest,
         "rest_goes_on": answer.motion and answer.motion.goes_on,
@@ -152,15 +151,6 @@ def _arch_bracket(answer: Bracket[Any]) -> ArchBracketRecord | None:
         "beta_r_deg": None if of.beta_r is None else math.degrees(of.beta_r),
         "beta_s_deg": None if of.beta_s is None else math.degrees(of.beta_s),
     }
-
-
-def _factor_of_safety(answer: Check[Any], carried: Carried | None) -> float | None:
-    """Return the factor on live loads where there are any, else the geometrical one."""
-    if answer.load_factor is not None and answer.problem.load > 0:
-        return answer.load_factor / answer.problem.load
-    if answer.problem.live:
-        return answer.load_factor
-    return carried and carried.geometrical_factor
 
 
 def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:

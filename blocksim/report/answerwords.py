@@ -23,6 +23,7 @@ from blocksim.report.problems import (
     tilt_and_lean,
     unit_lines,
 )
+from blocksim.simulation.verdict import SEEN
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer, ArchBracket
@@ -32,10 +33,13 @@ if TYPE_CHECKING:
     from blocksim.ask.ends import End
     from blocksim.blocks.assembly import Array, Assembly
     from blocksim.limit.carried import Carried
+    from blocksim.simulation.verdict import Evidence
 
 SIX = 6
 """Digits of ratios, where no more are known."""
 NONE_IN_SPACE = "none: in space forces and motions are checked in floating-point numbers"
+ASIDE = {"method": "method", "settings": "method", "reduction": "method", "note": "note"}
+"""Evidence that is told at the end, and what its line is called."""
 SHOWN = 8
 """Joints and blocks told in a line of text."""
 
@@ -49,7 +53,7 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
         if of is None
         else _arch_line(of, problem, tried=True),
         *size_lines(problem),
-        f"  because {answer.reason}",
+        *because_lines(answer.evidence),
     ]
     if answer.load_factor is not None:
         at = f", asked at {problem.load:g}" if problem.load else ""
@@ -63,9 +67,9 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
         lines.append(_exact("least  ", of))
     lines += carried_lines(carried, joint_names(problem.assembly))
     lines += unit_lines(problem) if carried else []
-    unsought = len(problem.assembly.joints) > SOUGHT and isinstance(problem, Problem)
-    if of is None and carried is None and unsought:
-        lines.append(f"  safety  not sought: there are more than {SOUGHT} joints")
+    slow = len(problem.assembly.joints) > SOUGHT and isinstance(problem, Problem)
+    if of is None and carried is None and slow:
+        lines.append(f"  safety  not asked: it takes long with more than {SOUGHT} joints")
     if answer.method == "limit":
         lines.append(f"  proof   {proof_words(answer)}")
     if rest := rest_words(answer.rest, answer.motion, asked=answer.asked_rest):
@@ -77,7 +81,7 @@ def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]
     if of is None and answer.mechanism is not None:
         movers = few(_movers(answer.mechanism, problem.assembly))
         lines.append(f"  moves   {movers} (the fastest first)")
-    return lines
+    return [*lines, *aside_lines(answer.evidence)]
 
 
 def proof_words(answer: Check[Any]) -> str:
@@ -106,7 +110,7 @@ def bracket_lines(answer: Bracket[Any]) -> list[str]:
     lines = [f"{head}  ({answer.method}, {answer.wall_s:.2g} s)"]
     if of is not None:
         lines.append(_arch_line(of, answer.problem, tried=False))
-    lines.append(f"  because {answer.reason}")
+    lines += because_lines(answer.evidence)
     if of is not None:
         lines += _arch_lines(answer, of)
     elif answer.limit is not None:
@@ -119,7 +123,24 @@ def bracket_lines(answer: Bracket[Any]) -> list[str]:
     if answer.undecided:
         what = "values" if of is None else "ratios"
         lines.append(f"  unsure  {answer.undecided} of {answer.runs} {what} undecided")
-    return lines if of is None else [*lines, *_thickness_lines(answer, of)]
+    lines += [] if of is None else _thickness_lines(answer, of)
+    return [*lines, *aside_lines(answer.evidence)]
+
+
+def because_lines(evidence: Sequence[Evidence]) -> list[str]:
+    """Return why an answer is what it is, a line a thought."""
+    seen = [each for each in evidence if each.test not in ASIDE]
+    named = {each.test for each in seen} >= SEEN
+    said = [
+        f"{each.test}: {each.found}" if named and each.test in SEEN else each.found
+        for each in seen
+    ]
+    return [f"  {'and' if k else 'because':<7} {each}" for k, each in enumerate(said)]
+
+
+def aside_lines(evidence: Sequence[Evidence]) -> list[str]:
+    """Return how it was asked, and how the file was read, a line a thought."""
+    return [f"  {ASIDE[each.test]:<7} {each.found}" for each in evidence if each.test in ASIDE]
 
 
 def ends_proved_words(answer: Bracket[Any]) -> str:
@@ -129,16 +150,22 @@ def ends_proved_words(answer: Bracket[Any]) -> str:
     if answer.problem.strength is not None:
         return UNPROVED
     if not answer.proved:
-        return "none was found of both sides"
-    return "falls to one side of each change and stands to the other, in rational arithmetic"
+        return "no proof was found for both sides of each change"
+    return (
+        "in rational arithmetic: it falls on one side of each change, and stands on the other"
+    )
 
 
 def values_tried(answer: Bracket[Any], digits: int = 9) -> str:
     """Say the two values tried."""
     if answer.low is None and answer.high is None:
-        return f"NO LIMIT OVER {answer.over.upper()}"
+        return f"NO LIMIT: {answer.over} may be anything"
     unit = f" {answer.unit}" if answer.unit else ""
     ends = (("low", answer.low), ("high", answer.high))
+    if answer.low is not None and answer.low == answer.high:
+        # Both are the end of what may be asked: whatever is more stands, or falls.
+        sides = "any above it stands" if answer.stands == "high" else "any below it stands"
+        return f"{answer.over.upper()}: {answer.low:.{digits}g}{unit} is the limit, {sides}"
     parts = [
         f"{'stands' if answer.stands == end else 'falls'} at {value:.{digits}g}{unit}"
         for end, value in ends

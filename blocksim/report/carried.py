@@ -6,12 +6,19 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from blocksim.limit import Reaction, in_world
 from blocksim.limit.carried import Carried
 
 if TYPE_CHECKING:
     from blocksim.report.schema import CarriedRecord
 
 KILO, MEGA = 1e3, 1e6
+LARGEST = 1e3
+"""Geometrical factor from which on joints need no width to speak of."""
+FAINT = 1e-9
+"""Share of the largest reaction below which a part of one is rounding."""
 FIELDS = (
     "geometrical_factor",
     "friction_factor",
@@ -66,8 +73,8 @@ def carried_record(carried: Carried | None, names: Sequence[str]) -> CarriedReco
         "reactions": [
             {
                 "support": each.name,
-                "horizontal_kN": float(each.force[0]) / KILO,
-                "vertical_kN": float(each.force[1]) / KILO,
+                "horizontal_kN": float(in_world(carried.problem, each.force)[0]) / KILO,
+                "vertical_kN": float(in_world(carried.problem, each.force)[1]) / KILO,
                 "x_m": float(each.point[0]),
                 "y_m": float(each.point[1]),
             }
@@ -96,13 +103,10 @@ def carried_lines(carried: Carried | None, names: Sequence[str]) -> list[str]:
         lines.append(f"  stress  {said} at most, where it is least: strength factor {factor}")
     if carried.joint is not None and carried.thrust is not None:
         low, high = (_force(each, carried) for each in carried.thrust)
-        lines.append(f"  thrust  {low} to {high} across joint {names[carried.joint]}")
+        said = f"{low} in every state" if low == high else f"{low} to {high}"
+        lines.append(f"  thrust  {said}, across joint {names[carried.joint]}")
     if carried.reactions:
-        told = [
-            f"{each.name} {_force(float(each.force[1]), carried)} up, "
-            f"{_force(float(each.force[0]), carried)} to the right"
-            for each in carried.reactions
-        ]
+        told = [f"{each.name}: {_borne(each, carried)}" for each in carried.reactions]
         lines.append(f"  bears   {_few(told, '; ')}, in the safest state")
     lines += _worst(carried, names)
     if not carried.problem.weighed:
@@ -113,13 +117,30 @@ def carried_lines(carried: Carried | None, names: Sequence[str]) -> list[str]:
 def _factors(carried: Carried) -> str:
     wide, rough = carried.geometrical_factor, carried.friction_factor
     least = carried.least_friction
-    said = [
-        "no thickness suffices" if wide is None else f"geometrical factor {_number(wide)}",
-        "no friction suffices" if rough is None else f"friction factor {_number(rough)}",
-    ]
-    if least is not None:
-        said[1] += f" (mu {_number(least)} is needed)"
+    if wide is None:
+        said = ["no thickness suffices"]
+    elif wide > LARGEST:
+        said = ["no joint needs its width"]
+    else:
+        said = [f"geometrical factor {_number(wide)}"]
+    if rough is None:
+        said.append("no friction suffices")
+    elif least == 0:
+        said.append("no friction is needed")
+    else:
+        needed = "" if least is None else f" (mu {_number(least)} is needed)"
+        said.append(f"friction factor {_number(rough)}{needed}")
     return ", ".join(said)
+
+
+def _borne(each: Reaction, carried: Carried) -> str:
+    """Say what a support bears, up and across as the world has it."""
+    across, up = (float(part) for part in in_world(carried.problem, each.force))
+    most = max(float(np.hypot(*other.force)) for other in carried.reactions)
+    said = f"{_force(abs(up), carried)} {'up' if up >= 0 else 'down'}"
+    if abs(across) <= FAINT * most:
+        return said
+    return f"{said}, {_force(abs(across), carried)} to the {'right' if across > 0 else 'left'}"
 
 
 def _worst(carried: Carried, names: Sequence[str]) -> list[str]:
@@ -130,12 +151,13 @@ def _worst(carried: Carried, names: Sequence[str]) -> list[str]:
     what = "width" if used.width_used[first] >= used.friction_used[first] else "friction"
     listed = _few([names[k] for k in worst], ", ")
     joints = "joint" if len(worst) == 1 else "joints"
-    share = f"{used.used[first]:.1%} of the {what}"
-    return [f"  worst   {share} is used at {joints} {listed}, in the safest state"]
+    share = f"{used.used[first]:.1%} of the {what} is used"
+    return [f"  worst   {joints} {listed}: {share}, in the safest state"]
 
 
 def _force(newton: float, carried: Carried) -> str:
     """Tell a force, over the depth where all blocks have the same."""
+    newton = 0.0 if abs(newton) <= FAINT * carried.weight else newton
     if not carried.problem.weighed:
         return f"{_number(newton / carried.weight)} W"
     if carried.depth is None:

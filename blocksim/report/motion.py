@@ -18,7 +18,7 @@ from blocksim.blocks.joints import JointState, ObservedJoint, classify
 from blocksim.blocks.problem import Problem
 from blocksim.simulation.recording import Recording
 from blocksim.studies.questions import Drawn
-from blocksim.view.arrows import forces_of
+from blocksim.view.arrows import FEW, forces_of
 from blocksim.view.drawing import HINGES, carried, state_of_any
 from blocksim.view.stage import Stage
 from blocksim.view.structure import supports_shown
@@ -231,6 +231,8 @@ def _lines(problem: Problem, low: Array, high: Array) -> list[tuple[str, Array]]
     beside the structure.
     """
     size, found = problem.assembly.size, list[tuple[str, Array]]()
+    many = sum(len(load.blocks) for load in (*problem.dead, *problem.live)) > FEW
+    long = LONG / 2 if many else LONG
 
     def beside(what: str, force: Array) -> tuple[str, Array]:
         way = LONG * force / np.hypot(*force)
@@ -244,21 +246,38 @@ def _lines(problem: Problem, low: Array, high: Array) -> list[tuple[str, Array]]
             if load.per_weight or len(load.blocks) > 1:
                 found.append(beside(what, load.force))
                 continue
-            for place, force in forces_of(problem, load):
-                tip = place / size
-                found.append((what, np.array([tip - LONG * force / np.hypot(*force), tip])))
+            for block, (place, force) in zip(
+                load.blocks, forces_of(problem, load), strict=True
+            ):
+                tip, way = place / size, force / np.hypot(*force)
+                parts = [part / size for part in problem.assembly.blocks[block].polygons]
+                # From where it meets the block on, lest it covers what moves.
+                tip = tip - way * max(_depth(part, tip, -way) for part in parts)
+                found.append((what, np.array([tip - long * way, tip])))
     pull = problem.gravity[:2]
     if abs(pull[0]) > 1e-9:
         found.append(beside("gravity", pull))
     return found
 
 
+def _depth(corners: Array, point: Array, way: Array) -> float:
+    """Return how far it is from a point within a polygon to its edge, in a direction."""
+    edge = np.roll(corners, -1, axis=0) - corners
+    arm, turn = corners - point, way[0] * edge[:, 1] - way[1] * edge[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        far = (arm[:, 0] * edge[:, 1] - arm[:, 1] * edge[:, 0]) / turn
+        share = (arm[:, 0] * way[1] - arm[:, 1] * way[0]) / turn
+    meets = np.isfinite(far) & (far > 0) & (share >= 0) & (share <= 1)
+    return float(far[meets].max(initial=0.0))
+
+
 def _arrow(what: str, line: Array) -> Arrow:
     tail, tip = line
-    along = (tip - tail) / np.hypot(*(tip - tail))
+    long = float(np.hypot(*(tip - tail)))
+    along, size = (tip - tail) / long, min(HEAD, long / 3)
     across = np.array([-along[1], along[0]])
-    back = tip - HEAD * along
-    head = np.array([tip, back + 0.4 * HEAD * across, back - 0.4 * HEAD * across])
+    back = tip - size * along
+    head = np.array([tip, back + 0.4 * size * across, back - 0.4 * size * across])
     return Arrow(what=what, shaft=_points(np.array([tail, back])), head=_points(head))
 
 

@@ -28,9 +28,18 @@ FOLLOWS = {
     "amplitude": {"shake"},
     "duration": {"shake"},
     "spread": set[str](),
+    "push": {"load"},
 }
 """What follows from each parameter that any problem may have."""
-BUILT = {"span_m", "rise_m", "thickness_m", "radius_m", "weight_kN", "fill_weight_kN"}
+BUILT = {
+    "span_m",
+    "rise_m",
+    "thickness_m",
+    "radius_m",
+    "weight_kN",
+    "fill_weight_kN",
+    "fill_is",
+}
 """What follows from the parameters of a maker."""
 
 
@@ -64,6 +73,7 @@ def problem_record(problem: Problem | SpatialProblem, over: str | None = None) -
         "weight_kN": weight_of(problem) / 1000,
         "fill_m": None if fill is None else fill.height,
         "fill_weight_kN": None if fill is None else fill.weight / 1000,
+        "fill_is": None if fill is None else list(fill.words),
         "dispersal": None if spread is None else spread.words,
         "live_weight_kN": 0.0 - _live(problem) / 1000,
     }
@@ -127,6 +137,7 @@ def size_lines(problem: Problem | SpatialProblem) -> list[str]:
     said: list[str] = []
     if fill is not None:
         said.append(f"fill {fill.height:.6g} m over the crown, {fill.weight / 1000:.6g} kN")
+        said += fill.words
     if live and any(load.point is not None for load in problem.live):
         said.append(f"live loads {live / 1000:.6g} kN times {problem.load:g}")
     if said:

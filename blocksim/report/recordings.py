@@ -10,6 +10,8 @@ from blocksim.common.words import counted
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.shaken import rocking_of
 
+ROUNDING = 1e-12
+"""What is smaller is nothing but rounding."""
 LEAST_ROTATION = 1e-3
 """Rotation of a block from which on a recording is said to have turned one [rad]."""
 
@@ -57,12 +59,16 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         lines.append("  " + ", ".join(said))
     said = []
     if kept.penetration is not None:
-        said.append(f"blocks overlap by at most {kept.penetration:.1e} {unit}")
+        said.append(
+            f"blocks overlap by at most {kept.penetration:.1e} {unit}"
+            if kept.penetration > ROUNDING
+            else "no blocks overlap"
+        )
     if kept.gain is not None:
         said.append(
             f"energy at most {kept.gain:.2%} of what fell above that at the release"
             if kept.gain
-            else "energy never above that at the release"
+            else "there was never more energy than at the release"
         )
     if said:
         lines.append("  " + ", ".join(said))

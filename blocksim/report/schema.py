@@ -42,6 +42,7 @@ class ProblemRecord(TypedDict):
     weight_kN: float | None
     fill_m: float | None
     fill_weight_kN: float | None
+    fill_is: list[str] | None
     dispersal: str | None
     live_weight_kN: float
 
@@ -169,7 +170,6 @@ class CheckRecord(CarriedRecord):
     reason: str
     problem: ProblemRecord
     load_factor: Number | None
-    factor_of_safety: Number | None
     rest: Literal["must", "can", "cannot"] | None
     rest_goes_on: bool | None
     joints: list[JointRecord]

@@ -11,10 +11,12 @@ import numpy as np
 from blocksim.arch.answers import ArchAnswer
 from blocksim.ask.check import Check
 from blocksim.blocks.joints import joint_names
+from blocksim.blocks.maker import Maker
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.road import fill_of
+from blocksim.common.fields import fields_of
 from blocksim.kinds.circular import weighed_arch
-from blocksim.limit import reactions, resultants
+from blocksim.limit import in_world, reactions, resultants
 from blocksim.limit.carried import Carried
 from blocksim.report.problems import tilt_and_lean
 from blocksim.view.arrows import forces_of
@@ -91,6 +93,40 @@ def built_facts(sheet: Sheet) -> list[Fact]:
     return facts
 
 
+def given_facts(problem: Problem) -> list[Fact]:
+    """Echo every parameter that a kind of structure was made with."""
+    return [] if problem.maker is None else _parameters(problem.maker, "")
+
+
+def _parameters(maker: Maker, path: str) -> list[Fact]:
+    found: list[Fact] = []
+    for name, known in fields_of(type(maker)).items():
+        value = getattr(maker, name)
+        if isinstance(value, Maker):
+            found.append(Fact(f"{path}{name}", value.name, known.about))
+            found += _parameters(value, f"{path}{name}.")
+        elif value is not None:
+            unit = f" {known.unit}" if known.unit and not isinstance(value, str) else ""
+            found.append(Fact(f"{path}{name}", f"{known.said(value)}{unit}", known.about))
+    return found
+
+
+def road_facts(problem: Problem) -> list[Fact]:
+    """Tell fill and what stands on the road, with its places from x = 0 on the drawing."""
+    fill, facts = fill_of(problem), list[Fact]()
+    if fill is not None:
+        facts.append(Fact("fill", length_words(fill.height), "over the crown"))
+        facts.append(Fact("weight of fill", f"{fill.weight / 1e3:.6g} kN", "on all blocks"))
+    for low, high, weight in problem.road:
+        where = f"x = {low:.6g} m" if low == high else f"x = {low:.6g} to {high:.6g} m"
+        facts.append(Fact("axle" if low == high else "patch", f"{weight / 1e3:.6g} kN", where))
+    if problem.road:
+        how = "straight down to the blocks below: fill spreads no load"
+        how = how if problem.dispersal is None else problem.dispersal.words
+        facts.append(Fact("dispersal", "none" if problem.dispersal is None else "yes", how))
+    return facts
+
+
 def _friction(problem: Problem) -> tuple[str, str]:
     if math.isinf(problem.mu):
         return "∞", "joints do not slide"
@@ -104,8 +140,10 @@ def load_words(problem: Problem) -> list[str]:
     words = ["Own weight acts at each block's centre of mass."]
     if getattr(problem.maker, "weight", "") == "centreline":
         words = ["Own weight acts at the centroid of each voussoir's part of the centreline."]
-    if fill_of(problem) is not None:
-        words.append("Fill is weight alone: it does not press from the side.")
+    if (fill := fill_of(problem)) is not None:
+        words += [f"Fill: {each}." for each in fill.words]
+        if problem.soil is None or not any(problem.soil.pressure):
+            words.append("Fill does not press from the side.")
     elif problem.dead:
         count = len(problem.dead)
         words.append(f"{count} dead load{'s' * (count > 1)} besides own weight.")
@@ -244,7 +282,11 @@ def reaction_table(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
         return [], []
     rows = [
         [first.name]
-        + [sheet.unit.number(float(part)) for each in borne for part in each[place].force]
+        + [
+            sheet.unit.number(float(part))
+            for each in borne
+            for part in in_world(problem, each[place].force)
+        ]
         for place, first in enumerate(borne[0])
     ]
     return [name for name, _ in columns], rows

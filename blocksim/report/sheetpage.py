@@ -6,13 +6,14 @@ import io
 from dataclasses import dataclass
 
 from blocksim.arch.modes import Mode
-from blocksim.ask.check import Check, check
+from blocksim.ask.check import Check, check, proof_words
 from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
 from blocksim.kinds.offers import offers_of
 from blocksim.limit import equilibrium
+from blocksim.report.answerwords import ASIDE
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
 from blocksim.report.motion import Drawing, mechanism_drawing
@@ -23,15 +24,17 @@ from blocksim.report.sheetfacts import (
     built_facts,
     factor_facts,
     force_words,
+    given_facts,
     joint_rows,
     reaction_table,
+    road_facts,
     thrust_facts,
 )
-from blocksim.simulation.verdict import Verdict
+from blocksim.simulation.verdict import Verdict, reason_of
 from blocksim.studies.questions import Drawn
 from blocksim.view import style
 from blocksim.view.drawing import save_figure, state_of_any, words_of
-from blocksim.view.sheet import Sheet, answer_sheet
+from blocksim.view.sheet import Sheet, Titles, answer_sheet
 from blocksim.view.sheetfigure import sheet_figure
 
 COLUMN = (182.0, 128.0)
@@ -53,7 +56,12 @@ class Fall:
 
 
 def structure_page(
-    answer: Check, *, mode: Mode | None = None, command: str = "", settings: str = ""
+    answer: Check,
+    *,
+    mode: Mode | None = None,
+    command: str = "",
+    settings: str = "",
+    titles: Titles | None = None,
 ) -> str:
     """Write the report on one structure.
 
@@ -64,6 +72,8 @@ def structure_page(
         In which an arch falls.
     command, settings : str
         The command line and the settings it was made with, to be printed.
+    titles : Titles, optional
+        What the title block says.
 
     Returns
     -------
@@ -71,7 +81,7 @@ def structure_page(
         HTML that loads nothing.
     """
     problem = answer.problem
-    sheet = answer_sheet(answer)
+    sheet = answer_sheet(answer, titles)
     file = io.BytesIO()
     save_figure(sheet_figure(sheet, column=COLUMN, bare=True), file, "svg")
     picture, dark = inline_picture(file.getvalue(), "sheet", "img")
@@ -87,7 +97,11 @@ def structure_page(
             answer=answer,
             mode=mode,
             verdicts=_verdicts(answer, sheet),
+            titles=dict(sheet.titles.said),
+            proof=proof_words(answer) if answer.method == "limit" else "",
             built=built_facts(sheet),
+            given=given_facts(problem),
+            road=road_facts(problem),
             assumptions=assumptions(problem),
             factors=factor_facts(answer, sheet),
             thrusts=thrust_facts(sheet),
@@ -122,7 +136,8 @@ def _verdicts(answer: Check, sheet: Sheet) -> list[tuple[str, Verdict, str]]:
     """Return method, verdict and reason: by limit analysis, and by the method asked for."""
     words = "limit analysis"
     method = words if answer.method == "limit" else answer.method
-    asked = (method, answer.verdict, answer.reason)
+    why = reason_of([each for each in answer.evidence if each.test not in ASIDE])
+    asked = (method, answer.verdict, why)
     if answer.method == "limit" or sheet.carried is None:
         return [asked]
     static = answer.forces is not None

@@ -41,6 +41,8 @@ from blocksim.simulation.onset import UNFOUND
 from blocksim.simulation.recorded import Recorded
 from blocksim.simulation.verdict import Verdict
 
+ROUNDING = 1e-12
+"""What is smaller is nothing but rounding."""
 MOVED = 2e-3
 QUIET, SOONEST = 5.0, 1.0
 LONGEST = 40.0
@@ -259,6 +261,8 @@ def words_of(
     if verdict is Verdict.COLLAPSES:
         return f"released, it moved {way}"
     if verdict is Verdict.STANDS:
+        if moved[-1] < ROUNDING:
+            return f"released, it did not move in {times[-1]:.1f} sqrt({length}/g)"
         return f"released, it stayed within {way}"
     if overlap > OVERLAP:
         return f"released, its blocks overlap by {overlap:.0%} of their motion: {way}"

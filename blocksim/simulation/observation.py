@@ -11,6 +11,7 @@ from blocksim.blocks.assembly import PLANAR, Array
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
+from blocksim.common.words import counted
 from blocksim.engines.base import Engine, TellsForces, World
 from blocksim.simulation.motion import Motion, moving_run
 from blocksim.simulation.onset import Onset, onset
@@ -250,4 +251,5 @@ def _asides(held: Held, motion: Motion[Recording] | None) -> tuple[Evidence, ...
 
 def reduced_words(by: str, blocks: int, of: int, splits: int) -> str:
     """Tell what a reduction has come to."""
-    return f"reduced by {by} (blocks: {blocks} of {of}, joints split again: {splits})"
+    again = f"; {counted(splits, 'joint')} opened after all" if splits else ""
+    return f"{blocks} instead of {of} blocks were simulated, by {by}{again}"

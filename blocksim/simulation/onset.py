@@ -59,6 +59,8 @@ from blocksim.engines.base import Engine, Settings, TakesForces, World
 from blocksim.simulation.looking import STICKS, Looking, looking_at
 from blocksim.simulation.verdict import Verdict
 
+ROUNDING = 1e-12
+"""What is smaller is nothing but rounding."""
 WORK = 0.99
 PROBE = 1e-6
 """Size of the displacement along the accelerations at which joints are looked at."""
@@ -124,6 +126,8 @@ class Onset:
                 given = "contacts keep the forces of equilibrium that they were given"
                 return f"{given}, to {size}; friction may let it move, too"
             case Verdict.STANDS:
+                if self.acceleration < ROUNDING:
+                    return f"contact forces balance the weight, found in {spent}"
                 return f"contact forces balance the weight to {size}"
             case Verdict.COLLAPSES:
                 return f"no contact forces hold it: a mechanism starts with {size}"

@@ -156,7 +156,7 @@ def outcome(recording: Recording) -> tuple[Verdict, str]:
         ended = _ended(problem.assembly, poses[-1])
         if ended:
             return Verdict.COLLAPSES, f"lies still; joints that are none any more: {ended}"
-        return Verdict.STANDS, "lies still, and every joint still is one"
+        return Verdict.STANDS, "it lies still in the end, and all joints are closed"
     sunk = _sunk(poses)
     if sunk > SUNK:
         return Verdict.COLLAPSES, f"a block sank by {sunk * problem.assembly.size:.2g} m"

@@ -14,7 +14,9 @@ import numpy as np
 from blocksim.ask.families import FAMILIES
 from blocksim.blocks.assembly import Array, Support
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.files import shipped_files, toml_of
+from blocksim.kinds import SOLID_KINDS
 from blocksim.kinds.files import structure_of
 from blocksim.suite.scene import BOUND, Scene, acting, bodies_of
 
@@ -50,6 +52,8 @@ class Family:
         Where the critical value comes from, if not from limit analysis.
     tilt_deg : float
         By which the table is tilted.
+    azimuth_deg : float
+        Of blocks in space, towards where, from x towards y.
     foot : float or None
         Depth to which supports behind springings are cut: those of an arch that is nearly a
         ring would meet [m].
@@ -63,16 +67,36 @@ class Family:
     structure: dict[str, Any]
     known: str = ""
     tilt_deg: float = 0.0
+    azimuth_deg: float = 0.0
     foot: float | None = None
 
+    @property
+    def spatial(self) -> bool:
+        """Whether its blocks lie in space."""
+        return self.structure.get("kind") in SOLID_KINDS
+
     @cached_property
-    def _built(self) -> Problem:
-        built = structure_of({"density": WEIGHT, **self.structure})
+    def _built(self) -> Problem | SpatialProblem:
+        if self.spatial:
+            built = self._solid({})
+        else:
+            built = structure_of({"density": WEIGHT, **self.structure})
         return built.tilted(math.radians(self.tilt_deg)) if self.tilt_deg else built
 
-    def at(self, value: float) -> Problem:
+    def _solid(self, changes: dict[str, float]) -> SpatialProblem:
+        said: dict[str, Any] = {**self.structure, **changes}
+        maker = SOLID_KINDS[said.pop("kind")](density=WEIGHT, **said)
+        return replace(maker.problem(), azimuth=math.radians(self.azimuth_deg))
+
+    def at(self, value: float) -> Problem | SpatialProblem:
         """Return the structure at a value of the parameter."""
         built = self._built
+        if isinstance(built, SpatialProblem):
+            if self.over == "tilt":
+                return built.tilted(math.radians(value))
+            if self.over == "mu":
+                return built.with_friction(value)
+            return self._solid({self.over: value})
         if self.over in FAMILIES:
             found = FAMILIES[self.over](built).at(value)
         else:
@@ -108,7 +132,7 @@ class Question:
         return self.family.group
 
     @cached_property
-    def problem(self) -> Problem:
+    def problem(self) -> Problem | SpatialProblem:
         """What is asked about."""
         below = self.stands == (self.family.stands == "low")
         share = self.level / 100 * (-1 if below else 1)
@@ -118,8 +142,10 @@ class Question:
     def scene(self) -> Scene:
         """What engines are given."""
         gravity, pushes = acting(self.problem)
-        masses = [block.mass for block in self.problem.assembly.blocks]
-        bound = BOUND * math.sqrt(float(np.mean(masses)) * STANDARD_GRAVITY / WEIGHT)
+        bodies = bodies_of(self.problem)
+        masses = [body.mass for body in bodies if not body.fixed]
+        volume = float(np.mean(masses)) * STANDARD_GRAVITY / WEIGHT
+        bound = BOUND * volume ** (1 / len(gravity))
         # A corner that gains speed evenly goes so far in that time.
         least = SLOWEST * self.level / 100 * STANDARD_GRAVITY
         duration = round(math.sqrt(2 * LEFT * bound / least), 2)
@@ -129,7 +155,7 @@ class Question:
             level=self.level,
             gravity=gravity,
             friction=self.problem.mu,
-            bodies=bodies_of(self.problem),
+            bodies=bodies,
             pushes=pushes,
             times=np.linspace(0.0, duration, FRAMES + 1),
             bound=bound,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +10,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
+from blocksim.blocks.space.assembly import SolidBlock
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.reading.scenes import FORMAT
 
 BOUND = 0.05
@@ -26,6 +29,8 @@ class Body:
         Corners [m]: of polygons, counter-clockwise; of polyhedra, whose hull they are.
     mass : float
         [kg]; 0 of a body that is fixed.
+    faces : tuple of tuple of tuple of int
+        Of each polyhedron the corners around each face, counter-clockwise seen from outside.
     centre : (2 or 3,) float
         Centre of mass [m].
     inertia : float or (3, 3) float
@@ -40,6 +45,7 @@ class Body:
 
     name: str
     shapes: tuple[Array, ...]
+    faces: tuple[tuple[tuple[int, ...], ...], ...] = ()
     mass: float = 0.0
     centre: Array
     inertia: float | Array = 0.0
@@ -56,8 +62,11 @@ class Body:
         """Return what the file says of it."""
         planar = len(self.centre) == 2
         shapes = [shape.tolist() for shape in self.shapes]
-        said = {"name": self.name, "fixed": self.fixed}
-        said |= {"polygons": shapes, "depth": self.depth} if planar else {"polyhedra": shapes}
+        said: dict[str, Any] = {"name": self.name, "fixed": self.fixed}
+        if planar:
+            said |= {"polygons": shapes, "depth": self.depth}
+        else:
+            said |= {"polyhedra": shapes, "faces": self.faces}
         if self.fixed:
             return said
         still = np.zeros(len(self.centre))
@@ -152,39 +161,69 @@ class Scene:
         }
 
 
-def bodies_of(problem: Problem) -> tuple[Body, ...]:
-    """Return supports and blocks of a problem in its plane."""
+def bodies_of(problem: Problem | SpatialProblem) -> tuple[Body, ...]:
+    """Return supports and blocks of a problem in its plane, or in space."""
+    if isinstance(problem, SpatialProblem):
+        return tuple(_solid(each, fixed=fixed) for fixed, each in _solids(problem))
     assembly = problem.assembly
-    names = [each.name for each in (*assembly.supports, *assembly.blocks)]
     beds = tuple(
-        Body(name=name, shapes=each.polygons, centre=np.zeros(2))
-        for name, each in zip(names, assembly.supports, strict=False)
+        Body(name=each.name, shapes=each.polygons, centre=np.zeros(2))
+        for each in assembly.supports
     )
     return beds + tuple(
         Body(
-            name=name,
+            name=each.name,
             shapes=each.polygons,
             mass=each.mass,
             centre=each.centre,
             inertia=each.inertia,
             depth=each.depth,
         )
-        for name, each in zip(names[len(beds) :], assembly.blocks, strict=True)
+        for each in assembly.blocks
     )
 
 
-def acting(problem: Problem) -> tuple[Array, tuple[Push, ...]]:
+def _solids(problem: SpatialProblem) -> Iterator[tuple[bool, SolidBlock]]:
+    """Give supports, then blocks, and whether they are fixed."""
+    yield from ((True, each) for each in problem.assembly.supports)
+    yield from ((False, each) for each in problem.assembly.blocks)
+
+
+def _solid(block: SolidBlock, *, fixed: bool) -> Body:
+    shapes = tuple(hull.corners for hull in block.hulls)
+    faces = tuple(tuple(map(tuple, hull.around)) for hull in block.hulls)
+    if fixed:
+        return Body(name=block.name, shapes=shapes, faces=faces, centre=np.zeros(3))
+    mass = block.weight / STANDARD_GRAVITY
+    return Body(
+        name=block.name,
+        shapes=shapes,
+        faces=faces,
+        mass=mass,
+        centre=block.centre,
+        inertia=mass * block.gyration,
+        spin=np.zeros(3),
+    )
+
+
+def acting(problem: Problem | SpatialProblem) -> tuple[Array, tuple[Push, ...]]:
     """Return gravity [m/s^2], with body forces on all blocks, and pushes on single ones [N]."""
+    spatial = isinstance(problem, SpatialProblem)
     blocks = problem.assembly.blocks
-    gravity, pushes = problem.gravity[:2].copy(), list[Push]()
+    gravity, pushes = problem.gravity[: 3 if spatial else 2].copy(), list[Push]()
+    weights = (
+        problem.assembly.weights
+        if spatial
+        else [STANDARD_GRAVITY * block.mass for block in problem.assembly.blocks]
+    )
     for factor, loads in ((1.0, problem.dead), (problem.load, problem.live)):
         for load in loads:
             if load.per_weight and len(load.blocks) == len(blocks):
                 gravity += factor * load.force
                 continue
-            for block in (blocks[index] for index in load.blocks):
-                weight = block.mass * STANDARD_GRAVITY if load.per_weight else 1.0
-                point = block.centre if load.point is None else load.point
+            for index in load.blocks:
+                weight = weights[index] if load.per_weight else 1.0
+                point = blocks[index].centre if load.point is None else load.point
                 force = factor * weight * load.force
-                pushes.append(Push(body=block.name, force=force, point=point))
+                pushes.append(Push(body=blocks[index].name, force=force, point=point))
     return STANDARD_GRAVITY * gravity, tuple(pushes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from blocksim.view.structure import supports_shown
 from blocksim.view.thrustlines import is_chained, near_blocks, thrust_lines, thrust_of
 from blocksim.view.units import ForceUnit, force_unit, unit_weight
 
-STEPS = (1.0, 2.0, 2.5, 5.0, 7.5)
+STEPS = (1.0, 2.0, 2.5, 5.0)
 """Scales that are drawn to, times powers of ten."""
 LARGEST = 1e3
 """Geometrical factor of safety from which on joints need no width to speak of."""
@@ -57,6 +57,23 @@ class ThrustLine:
     name: str
     words: str
     paths: tuple[Array, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Titles:
+    """What a title block says; nothing where it is empty."""
+
+    project: str = ""
+    part: str = ""
+    engineer: str = ""
+    date: str = ""
+
+    @property
+    def said(self) -> tuple[tuple[str, str], ...]:
+        """Each line of it, and what it is called."""
+        found = {"project": self.project, "part": self.part,
+                 "engineer": self.engineer, "date": self.date}  # fmt: skip
+        return tuple((name, printable(value)) for name, value in found.items() if value)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,6 +113,7 @@ class Sheet:
     joint_states: tuple[JointState, ...] | None = None
     supports: tuple[tuple[Array, ...], ...] = field(default_factory=tuple)
     carried: Carried | None = None
+    titles: Titles = field(default_factory=Titles)
 
 
 def sheet_of(
@@ -148,11 +166,11 @@ def sheet_of(
     )
 
 
-def answer_sheet(answer: Check) -> Sheet:
-    """Collect what is drawn of an answer."""
+def answer_sheet(answer: Check, titles: Titles | None = None) -> Sheet:
+    """Collect what is drawn of an answer, with what its title block says."""
     mode = answer.arch and answer.arch.mode
     named = f", mode {mode}" if mode else ""
-    return sheet_of(
+    made = sheet_of(
         answer.problem,
         verdict=f"{answer.verdict.value}{named}, by {answer.method}",
         mechanism=answer.mechanism,
@@ -160,6 +178,7 @@ def answer_sheet(answer: Check) -> Sheet:
         forces=answer.forces if answer.problem.is_planar else None,
         carried=answer.carried,
     )
+    return made if titles is None else replace(made, titles=titles)
 
 
 def _statics(problem: Problem, carried: Carried, unit: ForceUnit) -> dict[str, Any]:

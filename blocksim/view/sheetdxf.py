@@ -14,31 +14,47 @@ import numpy as np
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.outlines import signed_area
+from blocksim.blocks.road import fill_of
 from blocksim.common.errors import InputError
 from blocksim.common.later import require_library
+from blocksim.common.version import __version__
 from blocksim.common.words import printable
+from blocksim.limit import in_world
+from blocksim.view.arrows import FAINT, forces_of
 from blocksim.view.dimensions import Length, dimensions_of
 from blocksim.view.drawing import HINGES, outer_sides
-from blocksim.view.sheet import A4, Sheet, scale_for
+from blocksim.view.sheet import A4, Sheet, scale_for, scale_words
 
 LAYERS = {
-    "blocks": 7,
-    "supports": 8,
-    "joints": 9,
-    "thrust-min": 5,
-    "thrust-max": 6,
-    "thrust-safest": 30,
-    "mechanism": 3,
-    "dimensions": 7,
-    "text": 7,
+    "blocks": (7, "CONTINUOUS", 35),
+    "supports": (8, "CONTINUOUS", 50),
+    "joints": (9, "CONTINUOUS", 13),
+    "numbers": (8, "CONTINUOUS", 13),
+    "thrust-min": (5, "DASHED", 25),
+    "thrust-max": (6, "DASHDOT", 25),
+    "thrust-safest": (30, "CONTINUOUS", 35),
+    "mechanism": (3, "CONTINUOUS", 35),
+    "loads-dead": (8, "CONTINUOUS", 18),
+    "loads-live": (1, "CONTINUOUS", 25),
+    "reactions": (7, "CONTINUOUS", 25),
+    "road": (8, "DASHED2", 18),
+    "dimensions": (7, "CONTINUOUS", 13),
+    "text": (7, "CONTINUOUS", 18),
+    "title": (7, "CONTINUOUS", 25),
 }
-"""Their colours, by AutoCAD's index."""
+"""Their colours by AutoCAD's index, line types, and widths of lines [mm / 100]."""
+ARROW, LEAST, HEAD = 14.0, 4.0, 1.5
+"""Lengths of the largest and the smallest arrow of a force, and of its head [mm]."""
+TITLED = np.array([110.0, 8.0])
+"""Width of a title block and height of its lines [mm]."""
 METRES = 6
 """Of $INSUNITS."""
 LETTERS, HINGE = 2.5, 1.2
 """Height of letters and radius of the mark of a hinge, on paper [mm]."""
 ROOM = np.array([0.75, 0.55])
 """Shares of a page of A4 that what is drawn takes."""
+DASH = 0.4
+"""Factor on the dashes of line types, whose own are in inches [mm]."""
 MEETS = 1e-9
 """Share of a side within which ends of sides are the same corner."""
 
@@ -65,8 +81,8 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     document: Any = cast(Any, ezdxf).new("R2010", setup=True)
     document.units = METRES
     document.header["$MEASUREMENT"] = 1
-    for name, colour in LAYERS.items():
-        document.layers.add(name, color=colour)
+    for name, (colour, dashes, width) in LAYERS.items():
+        document.layers.add(name, color=colour, linetype=dashes, lineweight=width)
     space: Any = document.modelspace()
     problem = sheet.problem
     corners = [
@@ -93,9 +109,15 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     span = np.ptp(shown, axis=0)
     paper = np.array([A4[0].width, A4[0].height])
     scale = scale_for(span, ROOM * paper)
+    # Dashes are of paper.
+    document.header["$LTSCALE"] = DASH * scale / 1e3
+    _numbers(space, sheet, scale)
+    _forces(space, sheet, scale)
+    _road(space, sheet, shown)
     _states(space, sheet, scale)
     _dimensions(space, sheet, shown, scale)
-    _words(space, sheet, shown, scale)
+    foot = _words(space, sheet, shown, scale)
+    _title(space, sheet, float(shown[:, 0].max()), foot, scale)
     text = io.StringIO()
     document.write(text)
     file.write(text.getvalue().encode(document.output_encoding, "dxfreplace"))
@@ -171,8 +193,8 @@ def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         made.render()
 
 
-def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
-    """Write title and facts below, and forces where they act."""
+def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> float:
+    """Write title and facts below, and forces where they act; return how far down."""
     from ezdxf.enums import TextEntityAlignment
 
     mm = scale / 1e3
@@ -183,8 +205,11 @@ def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
         text.set_placement(tuple(at), align=TextEntityAlignment.RIGHT if before else None)
 
     for each in sheet.reactions:
-        across, up = (unit.words(float(part)) for part in each.force)
-        below = np.array([each.point[0], float(shown[:, 1].min()) - 5 * mm])
+        borne = in_world(sheet.problem, each.force)
+        across, up = (unit.words(float(part)) for part in borne)
+        # Left of an arrow that comes from the left or from below, right of another.
+        side = -22.0 if each.force[0] >= 0 else 8.0
+        below = np.array([each.point[0] + side * mm, float(shown[:, 1].min()) - 5 * mm])
         write(f"H = {across}", below)
         write(f"V = {up}", below - [0, 4 * mm])
     if sheet.thrust is not None:
@@ -198,6 +223,77 @@ def _words(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:
     for line in said:
         at = at - [0, 5 * mm]
         write(line, at)
+    return float(at[1])
+
+
+def _numbers(space: Any, sheet: Sheet, scale: float) -> None:
+    """Write names of blocks on them, smaller where they have less room."""
+    from ezdxf.enums import TextEntityAlignment
+
+    for index, block in enumerate(sheet.problem.assembly.blocks):
+        name = _literal(block.name or str(index))
+        sides = np.ptp(block.vertices, axis=0)
+        room = min(float(sides.min()) / 3, float(sides.max()) / len(name))
+        height = min(LETTERS * scale / 1e3, room)
+        text = space.add_text(name, height=height, dxfattribs={"layer": "numbers"})
+        text.set_placement(tuple(block.centre), align=TextEntityAlignment.MIDDLE_CENTER)
+
+
+def _forces(space: Any, sheet: Sheet, scale: float) -> None:
+    """Draw loads and reactions as arrows that end where they act, those of a kind to scale."""
+    problem = sheet.problem
+    loads = {
+        f"loads-{name}": [each for load in given for each in forces_of(problem, load)]
+        for name, given in (("dead", problem.dead), ("live", problem.live))
+    }
+    arrows = loads | {"reactions": [(each.point, each.force) for each in sheet.reactions]}
+    for layer, found in arrows.items():
+        largest = max((float(np.hypot(*force)) for _, force in found), default=0.0)
+        for tip, force in found:
+            size = float(np.hypot(*force))
+            if size <= FAINT * largest:
+                continue
+            way = force / size
+            mm = scale / 1e3
+            tail = tip - way * max(LEAST, ARROW * size / largest) * mm
+            back, across = tip - way * HEAD * mm, np.array([-way[1], way[0]]) * HEAD / 3 * mm
+            space.add_line(tuple(tail), tuple(back), dxfattribs={"layer": layer})
+            head = [tuple(tip), tuple(back + across), tuple(back - across)]
+            space.add_solid(head, dxfattribs={"layer": layer})
+
+
+def _road(space: Any, sheet: Sheet, shown: Array) -> None:
+    """Draw the level of the road over fill, and where x is 0 on it."""
+    fill = fill_of(sheet.problem)
+    if fill is None and not sheet.problem.road:
+        return
+    blocks = sheet.problem.assembly.blocks
+    top = max(float(block.vertices[:, 1].max()) for block in blocks)
+    top += 0.0 if fill is None else fill.height
+    low, high = float(shown[:, 0].min()), float(shown[:, 0].max())
+    layer = {"layer": "road"}
+    space.add_line((low, top), (high, top), dxfattribs=layer)
+    space.add_point((0.0, top), dxfattribs=layer)
+    height = (high - low) / 80
+    text = space.add_text("x = 0", height=height, dxfattribs=layer)
+    text.set_placement((0.0, top + height / 2))
+
+
+def _title(space: Any, sheet: Sheet, right: float, foot: float, scale: float) -> None:
+    """Draw a title block below the words, to the right, a line for each thing that it says."""
+    said = [*sheet.titles.said, ("drawing", sheet.title), ("scale", scale_words(scale)),
+            ("made by", f"blocksim {__version__}")]  # fmt: skip
+    mm, layer = scale / 1e3, {"layer": "title"}
+    wide, high = TITLED * mm
+    top, left, split = foot - high, right - wide, right - 0.75 * wide
+    for row, (name, value) in enumerate(said):
+        level = top - row * high
+        corners = [(left, level), (right, level), (right, level - high), (left, level - high)]
+        space.add_lwpolyline(corners, close=True, dxfattribs=layer)
+        for at, words in ((left, name), (split, value)):
+            text = space.add_text(_literal(words)[:60], height=LETTERS * mm, dxfattribs=layer)
+            text.set_placement((at + 2 * mm, level - 0.7 * high))
+    space.add_line((split, top), (split, top - len(said) * high), dxfattribs=layer)
 
 
 def _literal(words: str) -> str:

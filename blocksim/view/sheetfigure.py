@@ -18,7 +18,10 @@ from matplotlib.patches import Arc, Patch
 from matplotlib.transforms import Bbox
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.outlines import signed_area
 from blocksim.common.version import __version__
+from blocksim.common.words import printable
+from blocksim.limit import in_world
 from blocksim.view.arrows import arrow, draw_forces, draw_gravity, draw_loads
 from blocksim.view.dimensions import Angle, Length, dimensions_of, half_angle_of
 from blocksim.view.drawing import literal, round_length
@@ -39,10 +42,12 @@ SCREEN = (190.0, 150.0)
 """Width and most height of a drawing in a notebook [mm]."""
 REACTION = 14.0
 """Length of the arrow of the largest reaction [mm]."""
-LONG = 26.0
+LONG = 34.0
 """Dimension lines from which on words stand along them [mm]."""
-SMALL, SMALLER = 8.0, 7.5
+SMALL, SMALLER, NUMBERED = 8.0, 7.5, 5.0
 """Sizes of letters [points]."""
+NUMBER, DIGIT = 2.4, 1.1
+"""Height of a block that has room for its number, and width of a letter of that [mm]."""
 LINES = {"min": (0, (6, 2)), "max": (0, (1, 1.2)), "safest": "-"}
 """Dashes of each line of thrust."""
 
@@ -105,6 +110,7 @@ def sheet_figure(
                 _draw_length(axes, each, layout)
             else:
                 _draw_angle(axes, each, layout)
+        _draw_numbers(axes, sheet, layout)
         _draw_thrust(axes, sheet, layout, float(high[1]))
         _draw_reactions(axes, sheet, layout, float(low[1]))
         _draw_words(figure, axes, sheet, layout, bare=bare)
@@ -160,7 +166,8 @@ def _draw_length(axes: Axes, each: Length, layout: Layout) -> None:
         layout.write(axes, middle + np.array([0.0, side]) * mm, each.words, (0.0, side),
                      ha="center", va="bottom" if side > 0 else "top", gid=gid)  # fmt: skip
     elif long > LONG:
-        layout.write(axes, middle - np.array([mm, 0.0]), each.words, (-1.0, 0.0), ha="right",
+        # Along the line, lest they go into what is drawn beside it.
+        layout.write(axes, middle - np.array([mm, 0.0]), each.words, (0.0, 1.0), ha="right",
                      va="center", rotation=90, gid=gid)  # fmt: skip
     else:
         layout.write(axes, middle + np.array([1.5 * mm, 0.0]), each.words, (1.0, 0.0),
@@ -189,6 +196,27 @@ def _draw_angle(axes: Axes, each: Angle, layout: Layout) -> None:
     below = 0.55 * each.value > math.pi / 2
     layout.write(axes, where, each.words, (1.0, 0.0), ha="left",
                  va="top" if below else "bottom", gid=f"{gid}-words")  # fmt: skip
+
+
+def _draw_numbers(axes: Axes, sheet: Sheet, layout: Layout) -> None:
+    """Write names of blocks on them, where they have room; and where x is 0 on the road."""
+    problem, mm = sheet.problem, layout.mm
+    for index, block in enumerate(problem.assembly.blocks):
+        name = printable(block.name or str(index))
+        area = sum(signed_area(part) for part in block.polygons)
+        wide = float(np.ptp(block.vertices, axis=0).min())
+        # As wide as a block of the same area and the larger side would be.
+        room = min(wide, area / float(np.ptp(block.vertices, axis=0).max()))
+        if room < NUMBER * mm or room < len(name) * DIGIT * mm:
+            continue
+        x, y = block.centre.tolist()
+        axes.text(x, y, literal(name), ha="center", va="center", fontsize=NUMBERED,
+                  color=QUIET, zorder=7, gid=f"number-{index}", clip_on=True)  # fmt: skip
+    if problem.road:
+        top = max(float(block.vertices[:, 1].max()) for block in problem.assembly.blocks)
+        axes.plot(0.0, top, marker=7, ms=5, color=INK, zorder=9, gid="origin")
+        layout.write(axes, np.array([0.0, top + 2 * mm]), "x = 0", (0.0, 1.0), ha="center",
+                     va="bottom", fontsize=SMALLER, gid="origin-words")  # fmt: skip
 
 
 def _draw_thrust(axes: Axes, sheet: Sheet, layout: Layout, top: float) -> None:
@@ -224,11 +252,12 @@ def _draw_reactions(axes: Axes, sheet: Sheet, layout: Layout, low: float) -> Non
             arrow(axes, np.array([tail, each.point]), INK, f"reaction-{index}", zorder=9)
         else:
             tail = np.array([each.point[0], low])
-        across, up = (unit.words(float(part)) for part in np.abs(each.force))
-        side = "\N{RIGHTWARDS ARROW}" if each.force[0] >= 0 else "\N{LEFTWARDS ARROW}"
-        rise = "\N{UPWARDS ARROW}" if each.force[1] >= 0 else "\N{DOWNWARDS ARROW}"
+        borne = in_world(sheet.problem, each.force)
+        across, up = (unit.words(float(part)) for part in np.abs(borne))
+        side = "\N{RIGHTWARDS ARROW}" if borne[0] >= 0 else "\N{LEFTWARDS ARROW}"
+        rise = "\N{UPWARDS ARROW}" if borne[1] >= 0 else "\N{DOWNWARDS ARROW}"
         words = f"{rise} {up}"
-        if abs(each.force[0]) > 1e-6 * largest:
+        if abs(borne[0]) > 1e-6 * largest:
             words += f"\n{side} {across}"
         style: dict[str, Any] = {"linespacing": 1.15, "gid": f"reaction-{index}-words"}
         if abs(way[0]) > 2 * abs(way[1]):

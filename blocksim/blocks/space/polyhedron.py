@@ -127,6 +127,12 @@ class Polyhedron:
         outwards = [face for face in found if face.normal @ middle < face.offset]
         return tuple(outwards)
 
+    @property
+    def around(self) -> list[list[int]]:
+        """Places of the corners of each face among `corners`, in the order of the face."""
+        places = {tuple(each): at for at, each in enumerate(self.corners.tolist())}
+        return [[places[tuple(each)] for each in face.corners.tolist()] for face in self.faces]
+
     @cached_property
     def planes(self) -> tuple[Array, Array]:
         """Normals, (faces, 3), and offsets, (faces,), of its faces."""

@@ -13,7 +13,7 @@ function faces(n) {
 main({
   name: "cannon-es",
   version: "0.20",
-  dimensions: [2],
+  dimensions: [2, 3],
   settings: {
     documented: ["its defaults: 1/60 s, 10 iterations, stiffness 1e7, relaxation 3", { step: 1 / 60 }],
     best: ["1/480 s, 100 iterations, tolerance 0, stiffness 1e9", { step: 1 / 480, sweeps: 100, stiffness: 1e9 }],
@@ -31,18 +31,21 @@ main({
     return {
       add(given) {
         // Its hulls have to contain their origin; a fixed body has one, and no centre of its own.
-        given.centre ??= [0, 1].map((axis) => given.polygons[0].reduce((sum, each) => sum + each[axis] / given.polygons[0].length, 0));
+        const shapes = given.polygons ?? given.polyhedra;
+        given.centre ??= shapes[0][0].map((_, axis) => shapes[0].reduce((sum, each) => sum + each[axis] / shapes[0].length, 0));
         const body = new CANNON.Body({ mass: given.fixed ? 0 : given.mass, position: vector(given.centre) });
         body.linearDamping = body.angularDamping = 0;
-        for (const polygon of given.polygons) {
-          const vertices = prism(given, polygon).map(vector);
-          body.addShape(new CANNON.ConvexPolyhedron({ vertices, faces: faces(polygon.length) }));
-        }
+        shapes.forEach((shape, at) => {
+          const vertices = prism(given, shape).map(vector);
+          body.addShape(new CANNON.ConvexPolyhedron({ vertices, faces: given.faces?.[at] ?? faces(shape.length) }));
+        });
         if (!given.fixed) {
           body.velocity.copy(vector(given.velocity));
-          body.angularVelocity.set(0, 0, given.spin);
-          body.linearFactor.set(1, 1, 0);
-          body.angularFactor.set(0, 0, 1);
+          body.angularVelocity.set(...(given.spin.length ? given.spin : [0, 0, given.spin]));
+          if (given.polygons) {
+            body.linearFactor.set(1, 1, 0);
+            body.angularFactor.set(0, 0, 1);
+          }
           body.inertia.copy(vector(inertia(given)));
           body.invInertia.set(...inertia(given).map((each) => 1 / each));
           body.updateInertiaWorld(true);
@@ -53,8 +56,9 @@ main({
       push: (body, force, lever) => body.applyForce(vector(force), body.quaternion.vmult(vector(lever))),
       step: () => world.step(settings.step),
       pose(body, late) {
-        const { position: at, velocity: speed } = body;
-        return [at.x + speed.x * late, at.y + speed.y * late, angle(body.quaternion) + body.angularVelocity.z * late];
+        const { position: at, velocity: speed, quaternion: q } = body;
+        if (scene.dimensions === 3) return [at.x, at.y, at.z, q.w, q.x, q.y, q.z];
+        return [at.x + speed.x * late, at.y + speed.y * late, angle(q) + body.angularVelocity.z * late];
       },
     };
   },

@@ -1,0 +1,153 @@
+"""Pushes sideways, both ways: how much is borne, and how that falls as it moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from blocksim.blocks.acting import Load
+from blocksim.blocks.problem import Problem
+from blocksim.common.checks import PUSH, require
+from blocksim.limit.capacity import collapse
+from blocksim.limit.displaced import Displaced
+
+WAYS = {"right": 1.0, "left": -1.0}
+"""Names and signs of the two ways."""
+WAY = 5e-3
+"""Way of the fastest corner in one step of a curve [size]."""
+STEPS = 400
+"""Most points of a curve."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """How much of its weight pushes blocks sideways in equilibrium, as they move.
+
+    Parameters
+    ----------
+    way : {"right", "left"}
+    moved : tuple of float
+        How far the centre of mass of all blocks has moved that way [m].
+    pushes : tuple of float
+        Over the weight of each block [g]; the first is what is borne as built.
+    ends : str
+        `none` where nothing is borne any more; `slides`, `parts` or `closes` where a joint does
+        what is not followed; `range` where no end came; `never` where any push is borne.
+    """
+
+    way: str
+    moved: tuple[float, ...]
+    pushes: tuple[float, ...]
+    ends: str
+
+
+def across(problem: Problem, share: float) -> Load:
+    """Return a push on all blocks, to the right, by a share of the weight of each."""
+    blocks = tuple(range(len(problem.assembly.blocks)))
+    return Load(force=np.array([share, 0.0]), blocks=blocks, per_weight=True)
+
+
+def asked(problem: Problem, way: str) -> Problem:
+    """Return a problem of which the live load is a push by the weight of each block.
+
+    What acts on it, live loads times their factor too, stays.
+    """
+    live = tuple(replace(load, force=problem.load * load.force) for load in problem.live)
+    return replace(
+        problem,
+        dead=(*problem.dead, *(live if problem.load else ())),
+        live=(across(problem, WAYS[way]),),
+        load=1.0,
+        road=(),
+    )
+
+
+def borne(problem: Problem) -> dict[str, float]:
+    """Return the push that is borne each way, by name [g]; below 0 where it falls without.
+
+    Raises
+    ------
+    InputError
+        If gravity leans out of the plane, or the ground shakes.
+    """
+    require(problem.has_statics, "push", "given", "left out where it leans, or shakes")
+    found = {way: collapse(asked(problem, way)).load_factor for way in WAYS}
+    return {way: -np.inf if each is None else float(each) for way, each in found.items()}
+
+
+def pushed(problem: Problem, share: float) -> Problem:
+    """Return a problem that is pushed sideways by a share of the weight of each block.
+
+    To the side to which it bears less; a note says what it bears both ways.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane, on ground at rest.
+    share : float
+        [g]
+
+    Raises
+    ------
+    InputError
+        If the share is out of range.
+    """
+    PUSH.require("push", share)
+    both = borne(problem)
+    worst = min(both, key=lambda way: (both[way], way == "left"))
+    said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
+    note = f"pushed by {share:g} g to the {worst}, of both ways the worse: it bears {said}"
+    if min(both.values()) == -np.inf:
+        note = f"pushed by {share:g} g to the {worst}: it bears no push either way"
+    dead = (*problem.dead, across(problem, WAYS[worst] * share))
+    return replace(problem, dead=dead, notes=(*problem.notes, note))
+
+
+def curve(problem: Problem, way: str) -> Curve:
+    """Follow the mechanism of blocks that are pushed as hard as they bear, until none is borne.
+
+    The blocks turn about the hinges with which they begin to fall, however far, and by virtual
+    work the push that balances them is known at each place. Other hinges might ask for less.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+    way : {"right", "left"}
+    """
+    given = asked(problem, way)
+    lying, found = Displaced(given), collapse(given)
+    factor, rates = found.load_factor, found.mechanism
+    if factor is None or not np.isfinite(factor) or factor <= 0 or rates is None:
+        return Curve(way=way, moved=(), pushes=(), ends="never" if factor else "none")
+    masses = np.array([block.mass for block in problem.assembly.blocks])
+    share = WAYS[way] * problem.assembly.size * masses / masses.sum()
+    now, lost = lying.opened(lying.start, rates, 0.0)
+    moved, pushes, gone = [0.0], [factor], 0.0
+    live = given.of_load(given.live[0])
+    while lost is None and len(moved) < STEPS:
+        step = WAY / lying.fastest(rates)
+        ahead = lying.carried(now, 0.0, now.poses + step * rates)
+        rates = ahead.poses - now.poses
+        middle = lying.problem(replace(now, poses=(now.poses + ahead.poses) / 2))
+        push = -float((middle.with_load(0.0).pull() * rates).sum()) / float(
+            (live * rates).sum()
+        )
+        far = float(share @ rates[:, 0])
+        moved.append(gone + far / 2)
+        pushes.append(push)
+        gone, now = gone + far, ahead
+        if push <= 0:
+            return Curve(
+                way=way, moved=_to_none(moved, pushes), pushes=(*pushes[:-1], 0.0), ends="none"
+            )
+        if lying.closing(now) < 0:
+            lost = "closes"
+    return Curve(way=way, moved=tuple(moved), pushes=tuple(pushes), ends=lost or "range")
+
+
+def _to_none(moved: list[float], pushes: list[float]) -> tuple[float, ...]:
+    """Return the places with the last where the push vanishes, along a straight line."""
+    (one, other), (start, end) = moved[-2:], pushes[-2:]
+    return (*moved[:-1], one + (other - one) * start / (start - end))

@@ -1,0 +1,130 @@
+"""Soil that bears more where blocks move into it: how much of that is mobilised.
+
+Each side of a block may be pressed by any share of what the soil there bears. Blocks can rest
+where forces exist at some shares. With the shares of the best state the soil presses by forces
+that are known, and the largest load factor, or margin, of the structure under them is that of
+the whole: by its mechanism the soil that it moves into bears all it can, and other soil nothing
+more. So what is left is a structure of blocks under dead loads, of which all else can be asked.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.road import soil_bearing
+from blocksim.common.later import Library
+from blocksim.limit.cones import Cones
+from blocksim.limit.linear import LinearProgramme, Optimum
+
+if TYPE_CHECKING:
+    from scipy import sparse
+else:
+    sparse = Library("scipy.sparse")
+
+LEAST = 1e-9
+"""Share of what soil bears that is none."""
+
+
+class Bearing:
+    """What soil bears more at most, as columns of a programme.
+
+    Parameters
+    ----------
+    problem : Problem
+    cones : Cones
+        Of the problem.
+    """
+
+    def __init__(self, problem: Problem, cones: Cones) -> None:
+        self._loads, self._cones = soil_bearing(problem), cones
+        columns = [cones.loads(problem.of_load(load)) for load in self._loads]
+        self._columns: Any = sparse.csc_array(np.array(columns).reshape(len(columns), -1).T)
+
+    def most(
+        self,
+        column: Any,
+        right: Array,
+        bounds: tuple[float, float],
+        solver: LinearProgramme | None = None,
+    ) -> tuple[Optimum, Array]:
+        """Make the factor on a column as large as the balance of forces allows.
+
+        Returns
+        -------
+        Optimum
+            As of `blocksim.limit.programme.most`.
+        shares : (loads,) float
+            Of what soil bears; empty where nothing balances.
+        """
+        cones, count = self._cones, len(self._loads)
+        low, high = cones.bounds
+        ends = (
+            np.concatenate([low, np.zeros(count), bounds[:1]]),
+            np.concatenate([high, np.ones(count), bounds[1:]]),
+        )
+        cost = np.append(np.zeros(cones.count + count), -1.0)
+        matrix = sparse.hstack([cones.balance, self._columns, column], format="csc")
+        found = (solver or LinearProgramme()).solve(cost, matrix, (right, right), ends)
+        if not found.exists:
+            return found, np.zeros(0)
+        parts, shares, factor = np.split(found.values, [cones.count, cones.count + count])
+        return replace(found, values=np.append(parts, factor)), shares
+
+    def added(self, problem: Problem, shares: Array) -> Problem:
+        """Return a problem on which soil presses by shares of what it bears, and no more."""
+        assert problem.soil is not None  # noqa: S101 - it bears
+        more = tuple(
+            replace(load, force=share * load.force)
+            for load, share in zip(self._loads, shares.tolist(), strict=True)
+            if share > LEAST
+        )
+        soil = replace(problem.soil, passive=(0.0, 0.0))
+        used, most = (
+            sum(float(np.hypot(*load.force)) for load in loads) for loads in (more, self._loads)
+        )
+        note = (
+            f"where it is moved into the fill bears {used / 1e3:.4g} kN more than it presses, "
+            f"of {most / 1e3:.4g} kN that it may bear"
+        )
+        return replace(
+            problem, soil=soil, dead=(*problem.dead, *more), notes=(*problem.notes, note)
+        )
+
+
+def bears(problem: Problem) -> bool:
+    """Tell whether soil bears more where blocks move into it."""
+    return problem.soil is not None and any(problem.soil.passive)
+
+
+def settled(problem: Problem, live: Array | None = None) -> Problem:
+    """Return a problem on which soil presses by what is mobilised of what it bears.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+    live : (blocks, 3) float, optional
+        Loads of which the factor is made largest; by default it is the margin of all contacts
+        under what acts.
+    """
+    if not bears(problem):
+        return problem
+    cones = Cones(problem)
+    bearing = Bearing(problem, cones)
+    if live is None:
+        column, pull = cones.balance @ cones.bounded[:, None], problem.pull()
+        bounds = (-1e3, 1.0)
+    else:
+        column, pull = cones.loads(live)[:, None], problem.with_load(0.0).pull()
+        bounds = (-math.inf, math.inf)
+    found, shares = bearing.most(sparse.csc_array(column), -cones.loads(pull), bounds)
+    if not found.exists:
+        # Whatever the factor, or nothing at all: either is so without it.
+        shares = np.zeros(len(soil_bearing(problem)))
+    return bearing.added(problem, shares)

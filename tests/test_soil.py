@@ -1,0 +1,254 @@
+"""Fill as soil, held against integrals and linear programmes of a bridge put together apart."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from own_bridge import Bridge
+from running import inside
+from scipy.integrate import quad
+from scipy.optimize import linprog
+
+from blocksim.blocks.road import with_fill, with_soil
+from blocksim.blocks.soil import Soil, coefficients, resistance
+from blocksim.kinds.circular import CircularArch
+
+BRIDGE = Bridge(span=8.0, rise=3.0, thick=0.45, count=30, fill=0.5, heavy_fill=18.0)
+"""A joint at the crown: no voussoir has soil on both of its sides."""
+ANGLE = 30.0
+ACTIVE, PASSIVE = 1 / 3, 3.0
+"""Rankine's numbers of 30 degrees, (1 - 1/2) / (1 + 1/2) and its inverse."""
+WHEEL = ("--point-load", "2.01", "50")
+LIVE = 50 * BRIDGE.wheel(2.01)
+
+
+def limit(*options: str) -> float:
+    """The load factor by command."""
+    done = inside("bracket", *BRIDGE.options(), *WHEEL, "--over", "load", "--json", *options)
+    assert done.returncode == 0, done.stderr
+    return float(json.loads(done.stdout)["limit"])
+
+
+def across(bridge: Bridge, left: float, right: float) -> np.ndarray:
+    """What soil does from the side, over the weight above: exact integrals over heights."""
+    found = np.zeros((bridge.count, 3))
+    for k in range(bridge.count):
+        low, high = bridge.high[k, 1], bridge.high[k + 1, 1]
+        share = left if high > low else right
+        force = share * bridge.heavy_fill * quad(lambda y: bridge.road - y, low, high)[0]
+        turn = share * bridge.heavy_fill * quad(lambda y: y * (bridge.road - y), low, high)[0]
+        found[k] = force, 0.0, -turn
+    return found
+
+
+@pytest.mark.parametrize(
+    ("words", "left", "right"),
+    [
+        ("at-rest", 0.5, 0.5),
+        ("active", ACTIVE, ACTIVE),
+        ("0.2", 0.2, 0.2),
+        ("at-rest,active", 0.5, ACTIVE),
+        ("0,0.4", 0.0, 0.4),
+    ],
+)
+def test_fill_presses_from_the_side(words: str, left: float, right: float) -> None:
+    dead = BRIDGE.dead() + across(BRIDGE, left, right)
+    angle = ("--fill-friction-angle", str(ANGLE)) if "a" in words else ()
+    found = limit("--fill-pressure", words, *(angle or ()))
+    assert found == pytest.approx(BRIDGE.factor(LIVE, dead), rel=1e-7)
+
+
+@pytest.mark.parametrize("shares", [(0.33, 0.33), (1.0, 0.0), (0.0, 0.5)])
+@pytest.mark.parametrize("pressure", [0.0, ACTIVE])
+def test_fill_bears_what_the_arch_moves_into(
+    shares: tuple[float, float], pressure: float
+) -> None:
+    """A programme with a share of what each voussoir's soil bears as unknowns of its own."""
+    least = across(BRIDGE, pressure, pressure)
+    most = [share * PASSIVE for share in shares]
+    more = across(BRIDGE, *(each - pressure if each else 0.0 for each in most))
+    columns = np.array([np.eye(BRIDGE.count)[k][:, None] * more for k in range(BRIDGE.count)])
+    balance = BRIDGE.columns()
+    matrix = np.hstack(
+        [balance, columns.reshape(BRIDGE.count, -1).T, LIVE.reshape(-1, 1)],
+    )
+    cost = np.zeros(matrix.shape[1])
+    cost[-1] = -1.0
+    bounds = [(0, None)] * balance.shape[1] + [(0, 1)] * BRIDGE.count + [(0, None)]
+    dead = BRIDGE.dead() + least
+    own: Any = linprog(cost, A_eq=matrix, b_eq=-dead.ravel(), bounds=bounds)
+    asked = ["--fill-passive", ",".join(map(str, shares)), "--fill-friction-angle", str(ANGLE)]
+    if pressure:
+        asked += ["--fill-pressure", "active"]
+    found = limit(*asked)
+    assert found == pytest.approx(-own.fun, rel=1e-7)
+    # A wheel on the right pushes the arch into the soil on the left.
+    assert (found > BRIDGE.factor(LIVE, dead) * (1 + 1e-6)) is (shares[0] > 0)
+
+
+def test_what_fill_bears_is_told_and_proved() -> None:
+    """At the load factor's edge: within it proved to stand, beyond it proved to fall."""
+    asked = ("--fill-passive", "0.33", "--fill-friction-angle", "30")
+    most = limit(*asked)
+    for share, code in ((0.999, 0), (1.001, 1)):
+        done = inside(
+            "check", *BRIDGE.options(), *WHEEL, *asked, "--load", repr(share * most), "--json"
+        )
+        assert done.returncode == code
+        record = json.loads(done.stdout)
+        assert record["proved"]
+        assert record["load_factor"] == pytest.approx(most, rel=1e-7)
+        assert "the fill bears" in record["reason"]
+
+
+def chorded(bridge: Bridge, heavy: Any) -> np.ndarray:
+    """Weight of soil above the chords of the extrados, of a unit weight of x and y."""
+    found = np.zeros((bridge.count, 3))
+    for k in range(bridge.count):
+        (x0, y0), (x1, y1) = bridge.high[k : k + 2]
+
+        def above(x: float) -> float:
+            y = y0 + (y1 - y0) * (x - x0) / (x1 - x0)  # noqa: B023
+            steps = np.linspace(y, bridge.road, 1001)
+            middle = (steps[1:] + steps[:-1]) / 2
+            return float(np.mean([heavy(x, each) for each in middle]) * (bridge.road - y))
+
+        middle = x0 + (x1 - x0) * (np.arange(40) + 0.5) / 40
+        weights = np.array([above(float(x)) for x in middle]) * (x1 - x0) / 40
+        down, turn = weights.sum(), weights @ middle
+        found[k] = 0.0, -down, -turn
+    return found
+
+
+def test_layers_backing_and_regions_weigh_what_they_are() -> None:
+    """Weights summed by brute force, and the reactions of the whole."""
+    low = float(BRIDGE.high[:, 1].min())
+
+    def heavy(_: float, y: float) -> float:
+        if y > BRIDGE.road - 0.2:
+            return 24.0 - 18.0
+        return 23.0 - 18.0 if y < low + 1.0 else 0.0
+
+    dead = BRIDGE.dead() + chorded(BRIDGE, heavy)
+    layered = limit("--backing", "1", "23", "--fill-layer", "0.2", "24")
+    assert layered == pytest.approx(BRIDGE.factor(LIVE, dead), rel=2e-4)
+    # A region that ends at a joint is another unit weight of all above the voussoirs there.
+    half = CircularArch(span=8.0, rise=3.0, thickness=0.45, voussoirs=30, friction=0.6)
+    filled = with_fill(half.but(density=2e4).problem(), 0.5, 0.9)
+    soil = Soil(unit_weight=18e3, regions=((0.0, 100.0, 15e3),))
+    more = with_soil(filled, soil)
+    chords = chorded(BRIDGE, lambda x, _: -3.0 if x > 0 else 0.0)
+    loads = more.loads()[:, 1] - filled.loads()[:, 1]
+    assert loads * more.unit_force / 1e3 == pytest.approx(chords[:, 1], rel=1e-6, abs=1e-9)
+
+
+def test_soil_stays_on_an_arch_of_another_thickness() -> None:
+    arch = CircularArch(span=8.0, rise=3.0, thickness=0.45, friction=0.6, density=2e4)
+    soil = Soil(
+        unit_weight=2e4, layers=((0.1, 24e3),), backing=(0.5, 23e3), pressure=(0.3, 0.4)
+    )
+    changed = with_soil(with_fill(arch.problem(), 0.5, 1.0), soil).but(thickness=0.3)
+    made = with_soil(with_fill(arch.but(thickness=0.3).problem(), 0.5, 1.0), soil)
+    assert len(changed.dead) == len(made.dead)
+    assert changed.pull() == pytest.approx(made.pull(), rel=1e-12)
+
+
+WEDGE: dict[str, Any] = {
+    "blocks": [
+        {"id": "ground", "vertices": [[-5, -1], [9, -1], [9, 0], [-5, 0]], "fixed": True},
+        {"id": "wedge", "vertices": [[0, 0], [4, 0], [3, 2], [0, 2]], "depth": 0.5},
+    ],
+    "friction": 5.0,
+    "density": 20e3,
+}
+
+
+def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
+    """A level top of 3 m and a slope of 1 m across and 2 m down, under a metre of fill."""
+    place = tmp_path / "wedge.json"
+    place.write_text(json.dumps(WEDGE))
+    asked = ("--fill", "1", "--fill-unit-weight", "18", "--fill-pressure", "0,0.4")
+    done = inside("check", str(place), *asked, "--json")
+    assert done.returncode == 0, done.stderr
+    record = json.loads(done.stdout)
+    # Weight of fill: 3 m of 1 m, and 1 m of 2 m on average; the side from 1 to 3 m deep.
+    fill = 18.0 * 0.5 * (3 * 1 + 1 * 2)
+    assert record["problem"]["fill_weight_kN"] == pytest.approx(fill)
+    side = 0.4 * 18 * 0.5 * (3**2 - 1**2) / 2
+    reaction = record["reactions"][0]
+    assert reaction["vertical_kN"] == pytest.approx(fill + 20 * 0.5 * 7)
+    assert reaction["horizontal_kN"] == pytest.approx(side)
+    # The upright side on the left is pressed as deep, by a lever of another height.
+    both = inside("check", str(place), *asked[:4], "--fill-pressure", "0.4", "--json")
+    reaction = json.loads(both.stdout)["reactions"][0]
+    assert reaction["horizontal_kN"] == pytest.approx(0.0, abs=1e-9)
+    # A vehicle, and what spreads it: less than half the way down the slope on each side.
+    for dispersal in ((), ("--dispersal", "1:2")):
+        crossed = inside(
+            "bracket", str(place), *asked[:4], "--vehicle", "10@0", *dispersal, "--json"
+        )
+        assert crossed.returncode == 0, crossed.stderr
+    spread = inside(
+        "check",
+        str(place),
+        *asked[:4],
+        "--point-load",
+        "1",
+        "10",
+        "--dispersal",
+        "1:2",
+        "--json",
+    )
+    told = json.loads(spread.stdout)
+    assert told["problem"]["live_weight_kN"] == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("words", ["at-rest", "active", "0.1,x", "1,2,3", ""])
+def test_pressures_that_are_none_are_refused(words: str) -> None:
+    done = inside("check", *BRIDGE.options(), "--fill-pressure", words)
+    assert done.returncode == 2
+    assert done.stderr.startswith("blocksim: --fill-pressure")
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (("--fill-passive", "0.5"), "--fill-passive"),
+        (("--fill-friction-angle", "30"), "--fill-friction-angle"),
+        (("--fill-passive", "1.5", "--fill-friction-angle", "30"), "--fill-passive"),
+        (("--fill-layer", "-1", "20"), "--fill-layer"),
+        (("--fill-region", "3", "1", "20"), "--fill-region"),
+        (("--backing", "1", "0"), "--backing"),
+        (
+            ("--fill-passive", "1", "--fill-friction-angle", "30", "--method", "direct"),
+            "--method",
+        ),
+        (
+            ("--fill-passive", "1", "--fill-friction-angle", "30", "--strength", "5"),
+            "--strength",
+        ),
+    ],
+)
+def test_soil_that_cannot_be_is_refused(options: tuple[str, ...], named: str) -> None:
+    done = inside("check", *BRIDGE.options(), *options)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"blocksim: {named}"), done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_soil_without_fill_is_refused() -> None:
+    done = inside("check", "wall", "--mu", "0.6", "--unit-weight", "20", "--fill-pressure", "1")
+    assert done.returncode == 2
+    assert done.stderr.startswith("blocksim: --fill-pressure")
+
+
+def test_numbers_of_rankine_and_jaky() -> None:
+    angle = math.radians(ANGLE)
+    assert coefficients("at-rest,active", angle) == pytest.approx((0.5, ACTIVE))
+    assert resistance("0.5", angle) == pytest.approx((1.5, 1.5))
