@@ -5,6 +5,7 @@ dome has seven courses and an eye of 8 degrees. Limit analysis in space brackets
 the mechanism just below says what joints do. Beside it the continuous hemisphere with open
 meridians, usually given as 0.042 to 0.043 of the radius (Heyman 1967, Lau 2006).
 """
+# pyright: reportUnknownMemberType=false
 
 from __future__ import annotations
 

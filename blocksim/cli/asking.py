@@ -11,6 +11,7 @@ from blocksim.ask.bracket import bracket as ask_bracket
 from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
 from blocksim.blocks.joints import joint_names
+from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.arguments import Option
 from blocksim.cli.crossing import cross
@@ -151,7 +152,7 @@ def bracket(
             progress=report,
         )
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
-    if crossed.out is not None:
+    if crossed.out is not None and isinstance(problem, Problem):
         write_curves(problem, answer.over, crossed.out, silent=as_json)
     record = bracket_record(answer) if as_json else dict[str, object]()
     answer_with(record, [] if as_json else bracket_lines(answer), as_json=as_json)
