@@ -1,8 +1,9 @@
 """What engines say of the suite's scenes: error against time, and how near they stay right.
 
-`python -m analysis.referee OUT --answers FOLDER` scores the files of answers in a folder. It
-writes a row a scene and engine (`referee.csv.gz`), the scores that `blocksim suite score` shows
-beside a new one (`known.json`), and the figure. Without answers all is made of rows kept here.
+`python -m analysis.referee OUT` makes of the rows kept here (`referee.csv.gz`, one a scene and
+engine) the scores that `blocksim suite score` shows beside a new one (`known.json`), and the
+figure. With `--answers FOLDER` answers in files replace those of the same engine, settings and
+scene. Scenes that an engine was not asked about are left out of its score, by dimensions.
 """
 
 from __future__ import annotations
@@ -113,6 +114,14 @@ def drawn(scores: list[Score]) -> Figure:
     return figure
 
 
+def _renewed(kept: list[Score], new: list[Score]) -> list[Score]:
+    """Put new rows in the place of those of the same engine, settings and scene."""
+    found: dict[Head, dict[str, Row]] = {}
+    for score in (*kept, *new):
+        found.setdefault(score.head, {}).update({row.scene: row for row in score.rows})
+    return [Score(head=head, rows=tuple(rows.values())) for head, rows in found.items()]
+
+
 def _level(score: Score, group: str) -> float:
     if not score.of(group):
         return np.nan
@@ -128,11 +137,11 @@ def main(
 ) -> list[dict[str, Any]]:
     """Score answers, or read what is kept, and draw."""
     make_folder(out)
-    rows = KEPT
+    kept = read(KEPT)
     if answers is not None:
-        rows = out / KEPT.name
-        write_rows(rows, [row for score in scores_of(answers) for row in rows_of(score)])
-    scores = sorted(read(rows), key=lambda each: (each.nearest() or NONE, each.wrong))
+        kept = _renewed(kept, scores_of(answers))
+        write_rows(out / KEPT.name, [row for score in kept for row in rows_of(score)])
+    scores = sorted(kept, key=lambda each: (each.nearest() or NONE, each.wrong))
     records = [score.record() for score in scores]
     (out / "known.json").write_text(json.dumps(records, separators=(",", ":")) + "\n")
     figure = drawn(scores)

@@ -10,7 +10,7 @@ import csv
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import click
 from format_tables import of_format
@@ -21,6 +21,7 @@ from blocksim.cli import app
 from blocksim.common.fields import fields_of
 from blocksim.kinds import KINDS
 from blocksim.report.referee import known_scores, level_words
+from blocksim.suite.families import families
 
 ROOT = Path(__file__).resolve().parent.parent
 ROWS = ROOT / "analysis" / "figures"
@@ -194,14 +195,29 @@ def _suite(_: str) -> str:
             f"{each['engine']} {each['version']}",
             each["settings"],
             level_words(each["nearest_level"]),
-            f"{100 * (1 - each['wrong']):.1f} %",
+            _right(each["groups"], in_space=False),
+            _right(each["groups"], in_space=True),
             "-" if each["median_drift"] is None else f"{each['median_drift']:.1g}",
             f"{each['seconds']:.0f} s",
         ]
         for each in known_scores()
     ]
-    names = ["engine", "settings", "right to", "right of all", "drift of what stands", "time"]
+    names = ["engine", "settings", "right to", "right in the plane", "right in space",
+             "drift of what stands", "time"]  # fmt: skip
     return table(names, rows)
+
+
+def _right(groups: dict[str, Any], *, in_space: bool) -> str:
+    """Share of scenes and levels that are right; a dash where none was answered."""
+    spatial = {each.group for each in families() if each.spatial}
+    counts = [
+        count
+        for name, group in groups.items()
+        if (name in spatial) == in_space
+        for count in group["levels"].values()
+    ]
+    every = sum(map(sum, counts))
+    return f"{100 * sum(count[0] for count in counts) / every:.1f} %" if every else "-"
 
 
 TABLES: dict[str, Callable[[str], str]] = {

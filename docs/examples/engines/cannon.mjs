@@ -30,14 +30,17 @@ main({
     }
     return {
       add(given) {
-        // Its hulls have to contain their origin; a fixed body has one, and no centre of its own.
+        // Its hulls have to contain their origin, so each has its own.
         const shapes = given.polygons ?? given.polyhedra;
-        given.centre ??= shapes[0][0].map((_, axis) => shapes[0].reduce((sum, each) => sum + each[axis] / shapes[0].length, 0));
+        given.centre ??= shapes[0][0].map(() => 0);
         const body = new CANNON.Body({ mass: given.fixed ? 0 : given.mass, position: vector(given.centre) });
         body.linearDamping = body.angularDamping = 0;
         shapes.forEach((shape, at) => {
-          const vertices = prism(given, shape).map(vector);
-          body.addShape(new CANNON.ConvexPolyhedron({ vertices, faces: given.faces?.[at] ?? faces(shape.length) }));
+          const corners = prism(given, shape);
+          const middle = [0, 1, 2].map((axis) => corners.reduce((sum, each) => sum + each[axis] / corners.length, 0));
+          const vertices = corners.map((corner) => vector(corner.map((each, axis) => each - middle[axis])));
+          const hull = new CANNON.ConvexPolyhedron({ vertices, faces: given.faces?.[at] ?? faces(shape.length) });
+          body.addShape(hull, vector(middle));
         });
         if (!given.fixed) {
           body.velocity.copy(vector(given.velocity));
