@@ -8,6 +8,7 @@ import gzip
 import itertools
 import json
 import math
+import re
 from collections import Counter
 from dataclasses import replace
 from importlib import import_module
@@ -42,6 +43,23 @@ def study(name: str) -> ModuleType:
 def test_every_study_finds_what_it_takes_from_blocksim(path: Path) -> None:
     """Those that are long are run with `-m long`; a name that has gone is seen at once."""
     assert study(path.stem)
+
+
+@pytest.mark.long
+def test_pictures_of_pages_are_drawn_again_by_one_command(tmp_path: Path) -> None:
+    """Each goes to its own place; the drawing by a command is the one that is committed."""
+    made = study("pictures").main(tmp_path, quick=True)
+    assert made[:2] == ["docs/sketch.svg", "docs/arch.svg"]
+    assert made[2].startswith("docs/examples/")
+    root = STUDIES.parent
+    for each in made:
+        assert (root / each).exists()
+        assert (tmp_path / each).stat().st_size > 1000
+    # What is drawn, by name: places may differ in their last digits.
+    drawn = [(place / made[1]).read_text(encoding="utf-8") for place in (root, tmp_path)]
+    words = [re.findall(r'id="([a-z]+-[a-z0-9-]+)"', each) for each in drawn]
+    assert words[0]
+    assert words[0] == words[1]
 
 
 @pytest.mark.parametrize("end", ["", "/", "//"])

@@ -20,6 +20,7 @@ from blocksim.kinds.known import load_known
 from blocksim.kinds.portal import Portal
 from blocksim.view.placing import distance_of
 from blocksim.view.sheet import answer_sheet
+from blocksim.view.sheetfigure import sheet_figure
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -57,6 +58,23 @@ def test_a_line_of_thrust_leaves_a_gable_along_its_reaction() -> None:
     way = path[1] - path[0]
     angles = [np.degrees(np.arctan2(each[1], each[0])) for each in (way, reaction)]
     assert angles[0] == pytest.approx(angles[1], abs=1e-6)
+
+
+def test_the_band_along_a_line_of_thrust_is_as_wide_as_the_force() -> None:
+    """Of an arch under its own weight: thrust, the same everywhere, and weight above."""
+    arch = CircularArch(half_angle_deg=70, eta=0.25, friction=0.7, voussoirs=14)
+    sheet = answer_sheet(check(arch, method="limit"))
+    (axes,) = sheet_figure(sheet).axes
+    (band,) = [each for each in axes.collections if each.get_gid() == "force-band-0"]
+    widths = np.asarray(band.get_linewidths())
+    weight = sheet.carried.weight
+    horizontal = abs(sheet.reactions[0].force[0])
+    middles = np.array([each.mean(axis=0) for each in band.get_segments()])
+    # At each end of the line half of all weight is borne; at the crown's joint none.
+    ends = np.hypot(horizontal, weight / 2), horizontal
+    crown = widths[np.abs(middles[:, 0]).argmin()]
+    assert widths.max() / crown == pytest.approx(ends[0] / ends[1], rel=1e-6)
+    assert widths[0] == widths[-1] == widths.max()
 
 
 def test_the_sketch_points_at_its_line_of_thrust() -> None:

@@ -308,7 +308,8 @@ def test_usual_scales() -> None:
 def test_a_legend_is_of_what_is_there() -> None:
     assert legend(drawn("wall")[1]) == {"support", "contact force, largest 0.48 N"}
     assert legend(drawn("column")[1]) == {
-        "support", "line of thrust: greatest margin", "reaction at greatest margin"
+        "support", "line of thrust: greatest margin", "reaction at greatest margin",
+        "force along it: this wide at 3.600 N/m",
     }  # fmt: skip
     falls = legend(drawn("falls")[1])
     assert falls == {
@@ -317,7 +318,7 @@ def test_a_legend_is_of_what_is_there() -> None:
     }  # fmt: skip
     assert "slides" in legend(drawn("slides")[1])
     stands = legend(drawn("engineer's")[1])
-    assert len(stands) == 5
+    assert len(stands) == 6
     assert not [each for each in stands if "hinge" in each or "mechanism" in each]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from space_cases import NAMES, asked
 
@@ -34,3 +35,24 @@ def test_no_case_is_told_falsely(case: str, name: str) -> None:
     for problem, verdict in asked(case, 0.01):
         seen = observe_in_space(problem, get_engine(name), moving=False)
         assert seen.verdict in (verdict, Verdict.UNDECIDED)
+
+
+@pytest.mark.parametrize("case", ["tower_102", "twist_6", "arch_15_skew_30_crown"])
+def test_bullet_finds_one_contact_at_each_corner(case: str) -> None:
+    """Where limit analysis has its points."""
+    pytest.importorskip("pybullet", exc_type=ImportError)
+    from blocksim.engines.bulletsolids import Spatial
+    from blocksim.engines.bulletspace import Space
+
+    (problem, _), *_ = asked(case, 0.5)
+    parts = Spatial(problem)
+    space = Space(parts.frame, parts.breaking)
+    parts.linked(space)
+    space.find_contacts()
+    found = np.array([each.place for each in space.contacts()])
+    joints = problem.assembly.joints
+    known = np.concatenate([each.points for each in joints]) / problem.assembly.size
+    assert len(found) == len(known)
+    apart = np.linalg.norm(found[:, None] - known, axis=2)
+    assert apart.min(axis=0).max() < 2e-6
+    assert apart.min(axis=1).max() < 2e-6

@@ -170,3 +170,40 @@ def test_files_of_other_brackets_are_refused() -> None:
     done = inside("bracket", "column", "--mu", "0.6", "--over", "tilt", "--out", "a.csv")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("blocksim: --out = 'a.csv'")
+
+
+def test_a_wall_that_leans_tips_at_its_width_over_its_height() -> None:
+    """One block wide, 0.4 m over 1.2 m: at atan(1/3) = 18.43 deg."""
+    slim = ("--with", "length=0.4", "--with", "block_length=0.4", "--with", "bond=1")
+    wall = ("wall", "--mu", "0.7", "--unit-weight", "20", *slim)
+    limit = math.degrees(math.atan(0.4 / 1.2))
+    found = asked("bracket", *wall, "--over", "tilt")["limit"]
+    assert found == pytest.approx(limit, rel=1e-9)
+    for tilt, code in ((limit - 0.01, 0), (limit + 0.01, 1)):
+        assert asked("check", *wall, "--tilt", repr(tilt), code=code)["proved"]
+
+
+def test_a_portal_under_fill_stands_on_its_weight() -> None:
+    """Weights by hand: two piers, half a ring, and fill up to a level road."""
+    told = asked(
+        "check",
+        "portal",
+        "--mu",
+        "0.6",
+        "--unit-weight",
+        "20",
+        "--fill",
+        "0.4",
+        "--joint",
+        "13-14",
+    )
+    # Centreline of 1 m, 0.2 m thick; piers of 0.6 m from the intrados on, 1 m high.
+    ring = math.pi / 2 * (1.1**2 - 0.9**2)
+    wide = 2 * (0.9 + 0.6)
+    fill = wide * 1.5 - math.pi / 2 * 1.1**2
+    whole = 20 * (ring + 2 * 0.6 * 1.0 + fill)
+    borne = told["reactions"]
+    assert sum(each["vertical_kN"] for each in borne) == pytest.approx(whole, rel=1e-9)
+    left, right = (each["horizontal_kN"] for each in borne)
+    assert left == pytest.approx(-right, rel=1e-6)
+    assert told["thrust_min_kN"] <= abs(left) <= told["thrust_max_kN"]

@@ -112,7 +112,7 @@ def road_of(problem: Problem) -> float | None:
     arch = getattr(maker, "arch", maker)
     height = getattr(arch, "fill", None)
     if height is not None:
-        return arch.top + height
+        return getattr(maker, "road", arch.top + height)
     if problem.soil is None or problem.soil.height is None:
         return None
     return float(profile_of(problem.assembly).ends[:, :, 1].max()) + problem.soil.height

@@ -1,27 +1,61 @@
-"""Arcades: several spans on free piers, between fixed abutments."""
+"""Arcades and viaducts: several spans on free piers, between fixed abutments."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from blocksim.blocks.given import Body
 from blocksim.blocks.made import Fill, Made
-from blocksim.blocks.maker import Maker, count, metres, parameter
+from blocksim.blocks.maker import FARTHEST, Maker, Table, count, metres, parameter
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
+from blocksim.common.fields import fields_of
 from blocksim.kinds.archkind import ArchKind
 from blocksim.kinds.blockwork import floor, pier
 from blocksim.kinds.portal import LEVEL, SEMICIRCLE, require_bearing
 
 
 @dataclass(frozen=True, kw_only=True)
+class Span(Table):
+    """What is another of one span than of the others."""
+
+    span: float | None = parameter(None, "its span", unit="m", high=FARTHEST, optional=True)
+    rise: float | None = parameter(None, "its rise", unit="m", high=FARTHEST, optional=True)
+    thickness: float | None = parameter(
+        None, "its thickness", unit="m", high=FARTHEST, optional=True
+    )
+    voussoirs: int | None = parameter(
+        None, "number of its voussoirs", whole=True, low=2, high=10_000, optional=True
+    )
+    fill_density: float | None = parameter(
+        None, "density of its fill over that of the blocks", high=1e3, optional=True
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pier(Table):
+    """What is another of one pier than of the others."""
+
+    width: float | None = parameter(None, "its width", unit="m", high=FARTHEST, optional=True)
+    height: float | None = parameter(None, "its height", unit="m", high=FARTHEST, optional=True)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Arcade(Maker):
-    """Equal arches side by side; the origin is the middle of its springing line."""
+    """Arches side by side; the origin is the middle of its springing line.
+
+    They are equal but for what `each_span` and `each_pier` say, from the left. Springings are
+    as high as those of the arch, and the road is level: fill is as high over the highest.
+    """
 
     name: ClassVar[str] = "arcade"
-    about: ClassVar[str] = "several equal arches on free piers, between fixed abutments"
+    about: ClassVar[str] = "several arches on free piers, between fixed abutments"
+    row_types: ClassVar[Mapping[str, type[Table]]] = {"each_span": Span, "each_pier": Pier}
 
     arch: ArchKind = parameter(  # noqa: RUF009 - a frozen arch
         SEMICIRCLE, "the arch: a table with its kind and parameters", nested="table"
@@ -30,6 +64,21 @@ class Arcade(Maker):
     pier_width: float = metres(0.6, "width of the piers", stands="high")
     pier_height: float = metres(3.0, "height of the piers", stands="low")
     pier_courses: int = count(1, "blocks of each pier")
+    each_span: tuple[Span, ...] = parameter(
+        (), "tables of what is another of each span, from the left", nested="tables"
+    )
+    each_pier: tuple[Pier, ...] = parameter(
+        (), "tables of what is another of each pier, from the left", nested="tables"
+    )
+
+    def __post_init__(self) -> None:
+        """Check the parameters, and the number of tables."""
+        super().__post_init__()
+        for name, many, most in (
+            ("each_span", len(self.each_span), self.spans),
+            ("each_pier", len(self.each_pier), self.spans - 1),
+        ):
+            require(many <= most, name, f"{many} tables", f"{most} at most")
 
     def limits(self, name: str) -> tuple[float, float]:
         """Range of a parameter: springings lie wholly on the piers."""
@@ -39,89 +88,179 @@ class Arcade(Maker):
             low = left[0, 0] - left[1, 0] + right[1, 0] - right[0, 0]
         return low, high
 
+    @cached_property
+    def arches(self) -> tuple[ArchKind, ...]:
+        """The arches from the left, with fill up to one level."""
+        rows = [*self.each_span, *[Span()] * (self.spans - len(self.each_span))]
+        found: list[ArchKind] = []
+        for place, row in enumerate(rows):
+            given = {name: value for name, value in row.table().items() if value is not None}
+            known = fields_of(type(self.arch))
+            for name, value in given.items():
+                allowed = f"left out: a {self.arch.name} has no {name}"
+                require(name in known, f"each_span[{place}].{name}", value, allowed)
+            found.append(self.arch.but(**given) if given else self.arch)
+        if self.arch.fill is None:
+            return tuple(found)
+        over = [each.top - _spring(each) for each in found]
+        road = max(over) + self.arch.fill
+        return tuple(
+            each if each is self.arch and high == max(over) else each.but(fill=road - high)
+            for each, high in zip(found, over, strict=True)
+        )
+
+    @property
+    def road(self) -> float | None:
+        """Height of the road [m]; None without fill."""
+        one = self.arches[0]
+        if one.fill is None:
+            return None
+        return _spring(self.arch) + one.top - _spring(one) + one.fill
+
+    @cached_property
+    def piers(self) -> tuple[tuple[float, float], ...]:
+        """Width and height of the piers from the left [m]."""
+        rows = [*self.each_pier, *[Pier()] * (self.spans - 1 - len(self.each_pier))]
+        return tuple(
+            (
+                self.pier_width if row.width is None else row.width,
+                self.pier_height if row.height is None else row.height,
+            )
+            for row in rows
+        )
+
     def made(self, density: float) -> Made:
-        """Make floor, abutments, piers and voussoirs; joints are found."""
-        faces = self.arch.stones.faces[[0, -1]]
-        require_bearing(self.arch, faces)
-        (left, right), thick = faces.tolist(), self.arch.thickness
-        level = abs(left[0][1] - right[0][1]) <= LEVEL * thick
-        level = level and abs(left[1][1] - right[1][1]) <= LEVEL * thick
-        if not level:
-            raise InputError("arch", self.arch.name, "one whose springings are as high")
-        wide, spring = right[0][0] - left[0][0], left[0][1]
-        pitch = wide + self.pier_width
-        ground, middle = spring - self.pier_height, (left[0][0] + right[0][0]) / 2
-        centres = pitch * (np.arange(self.spans) - (self.spans - 1) / 2)
-        bodies: list[Body] = []
-        fills: list[Fill] = []
-        outside = centres[0] - wide / 2, centres[-1] + wide / 2
+        """Make floors, abutments, piers and voussoirs; joints are found."""
+        spring = _spring(self.arch)
+        faces = [_level_faces(arch, spring) for arch in self.arches]
+        wides = [right[0][0] - left[0][0] for left, right in faces]
+        widths = [width for width, _ in self.piers]
+        pitches = [wide + width for wide, width in zip(wides, widths, strict=False)]
+        starts = np.cumsum([0.0, *pitches])
+        first, last = faces[0][0], faces[-1][1]
+        whole = starts[-1] + wides[-1]
+        starts = starts - whole / 2
+        outside, ground = (starts[0], starts[-1] + wides[-1]), spring - self.pier_height
         fixed = [
-            _abutment("left", outside[0], -self.pier_width, ground, left, thick),
-            _abutment("right", outside[1], self.pier_width, ground, right, thick),
+            _abutment(
+                "left", outside[0], -self.pier_width, ground, first, self.arches[0].thickness
+            ),
+            _abutment(
+                "right", outside[1], self.pier_width, ground, last, self.arches[-1].thickness
+            ),
         ]
         reach = 2 * self.pier_width
-        fixed.append(floor(outside[0] - reach, outside[1] + reach, ground, reach / 2))
-        for index, centre in enumerate(centres[:-1] + pitch / 2):
-            ends = centre - self.pier_width / 2, centre + self.pier_width / 2
-            name = f"pier {index + 1}"
-            bodies += pier(name, ends, ends, ground, spring, self.pier_courses, self.arch.depth)
-            bodies += self._saddle(name, ends, left, right, spring)
-            fills += self._over(density, ends, left, right, len(fixed) + len(bodies) - 1)
+        levels = {height for _, height in self.piers} or {self.pier_height}
+        if levels == {self.pier_height}:
+            fixed.append(floor(outside[0] - reach, outside[1] + reach, ground, reach / 2))
+        bodies: list[Body] = []
+        fills: list[Fill] = []
+        for place, (width, height) in enumerate(self.piers):
+            ends = float(starts[place + 1] - width), float(starts[place + 1])
+            low = spring - height
+            name = f"pier {place + 1}"
+            if levels != {self.pier_height}:
+                fixed.append(_own_floor(name, ends, low, reach / 2))
+            before, after = faces[place][1], faces[place + 1][0]
+            _require_wide(name, width, before, after)
+            bodies += pier(name, ends, ends, low, spring, self.pier_courses, self.arch.depth)
+            bodies += _saddle(name, ends, before, after, spring, self.arch)
+            fills += self._over(density, place, ends, before, after, len(bodies) - 1)
         bodies = [*fixed, *bodies]
-        stones = self.arch.bodies(density)
-        for index, centre in enumerate(centres):
-            shift = np.array([centre - middle, 0.0])
-            first = len(bodies)
-            bodies += [_moved(stone, shift, f"{index + 1}.{stone.name}") for stone in stones]
+        fills = [replace(each, body=each.body + len(fixed)) for each in fills]
+        for place, arch in enumerate(self.arches):
+            at = np.array([starts[place] - arch.stones.faces[0, 0, 0], spring - _spring(arch)])
+            begin = len(bodies)
+            bodies += [
+                _moved(each, at, f"{place + 1}.{each.name}") for each in arch.bodies(density)
+            ]
             fills += [
-                Fill(
-                    body=each.body,
-                    weight=each.weight,
-                    point=(each.point[0] + shift[0], each.point[1]),
-                )
-                for each in self.arch.fills(density, first)
+                replace(each, point=(each.point[0] + at[0], each.point[1] + at[1]))
+                for each in arch.fills(density, begin)
             ]
         return Made(bodies=tuple(bodies), fills=tuple(fills))
 
     def _over(
         self,
         density: float,
+        place: int,
         ends: tuple[float, float],
-        left: list[list[float]],
-        right: list[list[float]],
+        before: Face,
+        after: Face,
         body: int,
     ) -> list[Fill]:
         """Return the weight of the fill over a pier, between two springings."""
-        arch = self.arch
-        if arch.fill is None:
+        road = self.road
+        if road is None:
             return []
-        edges = ends[0] + right[1][0] - right[0][0], ends[1] - left[0][0] + left[1][0]
-        area = (edges[1] - edges[0]) * (arch.top + arch.fill - left[1][1])
-        weight = density * arch.fill_density * arch.depth * area
-        point = (edges[0] + edges[1]) / 2, left[1][1]
-        return [Fill(body=body, weight=weight, point=point)] if area > 0 else []
+        edges = ends[0] + before[1][0] - before[0][0], ends[1] - after[0][0] + after[1][0]
+        # The top of a saddle is straight between both springings.
+        deep = road - (before[1][1] + after[1][1]) / 2
+        area = (edges[1] - edges[0]) * deep
+        if area <= 0:
+            return []
+        heavy = (self.arches[place].fill_density + self.arches[place + 1].fill_density) / 2
+        lean = (before[1][1] - after[1][1]) / 2
+        middle = (edges[0] + edges[1]) / 2 + (edges[1] - edges[0]) * lean / (6 * deep)
+        weight = density * heavy * self.arch.depth * area
+        return [Fill(body=body, weight=weight, point=(middle, max(before[1][1], after[1][1])))]
 
-    def _saddle(
-        self,
-        name: str,
-        ends: tuple[float, float],
-        left: list[list[float]],
-        right: list[list[float]],
-        spring: float,
-    ) -> list[Body]:
-        """Make the block between the head of a pier and two inclined springings."""
-        high = left[1][1]
-        if high - spring <= LEVEL * self.arch.thickness:
-            return []
-        corners = [
-            [ends[0], spring],
-            [ends[1], spring],
-            [ends[1] - (left[0][0] - left[1][0]), high],
-            [ends[0] + (right[1][0] - right[0][0]), high],
-        ]
-        return [
-            Body(polygons=(np.array(corners),), name=f"{name} saddle", depth=self.arch.depth)
-        ]
+
+Face = list[list[float]]
+"""Inner and outer end of a springing [m]."""
+
+
+def _spring(arch: ArchKind) -> float:
+    """Height of the springings of an arch in its own coordinates [m]."""
+    return float(arch.stones.faces[0, 0, 1])
+
+
+def _level_faces(arch: ArchKind, spring: float) -> tuple[Face, Face]:
+    """Return both springings of an arch, moved up to a height; they are as high."""
+    ends = arch.stones.faces[[0, -1]].copy()
+    require_bearing(arch, ends)
+    ends[:, :, 1] += spring - _spring(arch)
+    left, right = ends.tolist()
+    near = LEVEL * arch.thickness
+    if abs(left[0][1] - right[0][1]) > near or abs(left[1][1] - right[1][1]) > near:
+        raise InputError("arch", arch.name, "one whose springings are as high")
+    return left, right
+
+
+def _require_wide(name: str, width: float, before: Face, after: Face) -> None:
+    """Raise `InputError` unless two springings lie wholly on a pier."""
+    least = before[1][0] - before[0][0] + after[0][0] - after[1][0]
+    require(width >= least, "each_pier", f"{name}, {width:g} m wide", f"{least:.6g} m or wider")
+
+
+def _own_floor(name: str, ends: tuple[float, float], ground: float, deep: float) -> Body:
+    """Make what a pier stands on, of its own height."""
+    left, right = ends
+    corners = np.array(
+        [[left, ground - deep], [right, ground - deep], [right, ground], [left, ground]]
+    )
+    return Body(polygons=(corners,), name=f"floor of {name}", fixed=True)
+
+
+def _saddle(
+    name: str,
+    ends: tuple[float, float],
+    before: Face,
+    after: Face,
+    spring: float,
+    arch: ArchKind,
+) -> list[Body]:
+    """Make the block between the head of a pier and two springings, one at least inclined."""
+    near = LEVEL * arch.thickness
+    if max(before[1][1], after[1][1]) - spring <= near:
+        return []
+    corners = [
+        [ends[0], spring],
+        [ends[1], spring],
+        [ends[1] - (after[0][0] - after[1][0]), after[1][1]],
+        [ends[0] + (before[1][0] - before[0][0]), before[1][1]],
+    ]
+    return [Body(polygons=(np.array(corners),), name=f"{name} saddle", depth=arch.depth)]
 
 
 def _abutment(

@@ -12,6 +12,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Patch
@@ -35,6 +36,7 @@ from blocksim.view.structure import (
     edge_width,
 )
 from blocksim.view.style import FONT, INK, QUIET, THRUST
+from blocksim.view.thrustlines import force_sizes
 
 INCH = 25.4
 """In millimetres."""
@@ -46,6 +48,8 @@ LONG = 34.0
 """Dimension lines from which on words stand along them [mm]."""
 SMALL, SMALLER, NUMBERED = 8.0, 7.5, 5.0
 """Sizes of letters [points]."""
+BAND = 9.0
+"""Width of the band of the largest force along a line of thrust [points]."""
 NUMBER, DIGIT = 2.4, 1.1
 """Height of a block that has room for its number, and width of a letter of that [mm]."""
 LINES = {"min": (0, (6, 2)), "max": (0, (1, 1.2)), "safest": "-"}
@@ -92,6 +96,7 @@ def sheet_figure(
             shown += draw_forces(axes, problem, sheet.forces, extent)
         shown += draw_loads(axes, problem, extent)
         shown += draw_gravity(axes, problem, np.concatenate(shown))
+        _draw_band(axes, sheet)
         for line in sheet.lines:
             _draw_line(axes, line.name, line.words, line.paths)
             shown += line.paths
@@ -127,6 +132,26 @@ def _entries(axes: Axes) -> dict[str, Patch | Line2D]:
     """Legend of what is there, each once."""
     handles, names = axes.get_legend_handles_labels()
     return dict(zip(names, handles, strict=True))  # type: ignore[arg-type]
+
+
+def _draw_band(axes: Axes, sheet: Sheet) -> None:
+    """Draw a band along the safest line of thrust, as wide as the force is large."""
+    carried = sheet.carried
+    if carried is None or carried.forces is None or not carried.stands:
+        return
+    paths = [path for line in sheet.lines if line.name == "safest" for path in line.paths]
+    if not paths:
+        return
+    sizes = [force_sizes(sheet.problem, carried.forces, path) for path in paths]
+    largest = max(float(each.max()) for each in sizes)
+    words = f"force along it: this wide at {sheet.unit.words(largest)}"
+    for index, (path, each) in enumerate(zip(paths, sizes, strict=True)):
+        pieces = list(np.stack([path[:-1], path[1:]], axis=1))
+        axes.add_collection(
+            LineCollection(pieces, colors=THRUST, alpha=0.22, capstyle="butt", zorder=7.5,
+                           linewidths=BAND * each / largest, gid=f"force-band-{index}")
+        )  # fmt: skip
+    axes.plot([], [], color=THRUST, alpha=0.22, lw=BAND, label=words, solid_capstyle="butt")
 
 
 def _draw_line(axes: Axes, name: str, words: str, paths: tuple[Array, ...]) -> None:

@@ -137,6 +137,27 @@ def _paths(links: dict[int, list[int]], passed: set[int]) -> list[list[int]]:
     return paths
 
 
+def force_sizes(problem: Problem, forces: Array, path: Array) -> Array:
+    """Return how large the force is along the pieces of a line of thrust, (k - 1,) [N].
+
+    It is that of the joint which is nearest to the middle of each piece.
+
+    Parameters
+    ----------
+    problem : Problem
+    forces : (joints, 2, 2) float
+        As of `Equilibrium` [mean weights].
+    path : (k, 2) float
+        A line of `thrust_lines` [m].
+    """
+    carried = resultants(problem, forces)
+    loaded = ~np.isnan(carried.point[:, 0])
+    points, sizes = carried.point[loaded], np.hypot(*carried.force[loaded].T)
+    middles = (path[1:] + path[:-1]) / 2
+    apart = np.hypot(*(middles[:, None] - points).transpose(2, 0, 1))
+    return sizes[apart.argmin(axis=1)]
+
+
 def near_blocks(problem: Problem, paths: Sequence[Array]) -> bool:
     """Whether lines that leave the blocks stay near them."""
     corners = np.concatenate([block.vertices for block in problem.assembly.blocks])

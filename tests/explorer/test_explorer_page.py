@@ -656,3 +656,91 @@ def test_few_voussoirs_are_not_said_to_stand_any_number_of_times(page: playwrigh
             assert float(times[1]) == pytest.approx(0.3 / exact.eta, rel=0.1)
             compared += 1
     assert compared > 1
+
+
+def shown(page: playwright.Page) -> list[float]:
+    """Part of the map that is shown, from the address."""
+    wait_until(page, lambda: "view=" in page.evaluate("location.hash"))
+    page.wait_for_timeout(250)
+    view = re.search(r"view=([^&]+)", page.evaluate("location.hash"))[1]  # type: ignore[index]
+    whole = {"whole": [0.0, 4.0, 0.0, 2.0]}
+    return whole.get(view) or [float(each) for each in view.replace("%2C", ",").split(",")]
+
+
+def test_the_wheel_and_the_keys_enlarge_the_map_about_a_point(page: playwright.Page) -> None:
+    """What is under the pointer stays there; the map is never left; 0 shows all of it."""
+    x, y = place(page, 1.0, 0.5)
+    page.mouse.move(x, y)
+    page.mouse.wheel(0, -600)
+    settle(page)
+    low, high, bottom, top = shown(page)
+    assert high - low == pytest.approx(1.0, rel=1e-3)
+    assert top - bottom == pytest.approx(0.5, rel=1e-3)
+    assert (low, high) == (pytest.approx(0.75, abs=0.02), pytest.approx(1.75, abs=0.02))
+    page.mouse.click(x, y)
+    settle(page)
+    assert float(page.input_value("#mu-number")) == pytest.approx(1.0, abs=0.01)
+    assert float(page.input_value("#eta-number")) == pytest.approx(0.5, abs=0.005)
+    # Far back again, and beyond: the whole map, and the wheel is the page's.
+    page.mouse.wheel(0, 5000)
+    settle(page)
+    assert shown(page) == [0, 4, 0, 2]
+    page.mouse.dblclick(*place(page, 3.0, 1.0))
+    settle(page)
+    low, high, *_ = shown(page)
+    assert high - low == pytest.approx(4 / 1.6, rel=1e-3)
+    page.focus("#map")
+    page.keyboard.press("+")
+    settle(page)
+    assert np.diff(shown(page)[:2])[0] == pytest.approx(4 / 1.6**2, rel=1e-3)
+    address = page.evaluate("location.hash")
+    page.keyboard.press("0")
+    settle(page)
+    assert shown(page) == [0, 4, 0, 2]
+    page.evaluate(f"location.hash = {address!r}")
+    settle(page)
+    assert np.diff(shown(page)[:2])[0] == pytest.approx(4 / 1.6**2, rel=1e-3)
+    assert page.input_value("#view") == "part"
+    for _ in range(12):
+        page.click("#nearer", force=True) if page.is_enabled("#nearer") else None
+    settle(page)
+    assert np.diff(shown(page)[:2])[0] == pytest.approx(4 / 16, rel=1e-2)
+
+
+def test_the_right_button_shifts_the_map_and_leaves_the_arch(page: playwright.Page) -> None:
+    x, y = place(page, 2.0, 1.0)
+    page.mouse.move(x, y)
+    page.mouse.wheel(0, -600)
+    settle(page)
+    before, arch = shown(page), page.input_value("#mu-number")
+    page.mouse.down(button="right")
+    page.mouse.move(x + 60, y - 40, steps=6)
+    page.mouse.up(button="right")
+    settle(page)
+    after = shown(page)
+    assert after[0] < before[0] - 0.05
+    assert after[2] < before[2] - 0.02
+    assert np.diff(after) == pytest.approx(np.diff(before), abs=0.6)
+    assert after[1] - after[0] == pytest.approx(before[1] - before[0], rel=1e-3)
+    assert page.input_value("#mu-number") == arch
+
+
+def test_two_fingers_enlarge_the_map(open_page: Open) -> None:
+    page = open_page(390, 780, has_touch=True, is_mobile=True)
+    page.locator("#map").scroll_into_view_if_needed()
+    x, y = place(page, 2.0, 1.0)
+    session = page.context.new_cdp_session(page)
+
+    def touch(kind: str, *apart: float) -> None:
+        points = [{"x": x + way, "y": y, "id": at} for at, way in enumerate(apart)]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", -20, 20)
+    for way in (30, 40, 50, 60, 70, 80):
+        touch("touchMove", -way, way)
+        settle(page)
+    touch("touchEnd")
+    settle(page)
+    low, high, *_ = shown(page)
+    assert high - low == pytest.approx(1.0, rel=0.15)
+    assert (low + high) / 2 == pytest.approx(2.0, abs=0.15)

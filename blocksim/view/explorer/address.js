@@ -14,7 +14,7 @@ const address = (() => {
     }).toString();
 
   /** What an address says, as a change of the state; what it says wrongly is left out. */
-  function read(hash, ranges, views) {
+  function read(hash, ranges, isView) {
     const said = new URLSearchParams(hash.slice(1));
     const change = {};
     const take = (name, key, value) => {
@@ -29,7 +29,7 @@ const address = (() => {
     else take("mu", "mu", Number(said.get("mu")));
     if (said.has("arch")) change.asBuilt = said.get("arch") === "built";
     if (["centreline", "sector"].includes(said.get("weight"))) change.weight = said.get("weight");
-    if (views.includes(said.get("view"))) change.view = said.get("view");
+    if (said.has("view") && isView(said.get("view"))) change.view = said.get("view");
     return change;
   }
 

@@ -14,6 +14,31 @@ const mapPicture = (() => {
     thin: { mu: [0, 1], eta: [0, 0.25] },
   };
 
+  const MOST = 16; // times that the map is enlarged
+
+  /** The part of the map that a view shows: one with a name, or "least mu,most mu,least eta,most eta". */
+  function boxOf(view) {
+    if (VIEWS[view]) return VIEWS[view];
+    const ends = view.split(",").map(Number);
+    if (ends.length !== 4 || ends.some((end) => !(end >= 0 && end <= 4))) return null;
+    const box = { mu: ends.slice(0, 2), eta: ends.slice(2) };
+    const wide = ([least, most], all) => most - least > 0.99 * all / MOST && most <= all;
+    return wide(box.mu, 4) && wide(box.eta, 2) ? box : null;
+  }
+
+  /** The view that shows a part of the map `times` as large, or shifted, kept on the map.
+      A point stays where it is seen: `mu` and `eta`, at shares of the picture. */
+  function viewAround({ mu, eta }, [acrossShare, upShare], per) {
+    const part = (all, value, share) => {
+      const size = Math.min(all, Math.max(all / MOST, all * per));
+      const least = Math.min(all - size, Math.max(0, value - share * size));
+      return [least, least + size].map((end) => +end.toFixed(6));
+    };
+    const [friction, thickness] = [part(4, mu, acrossShare), part(2, eta, upShare)];
+    if (friction[1] - friction[0] > 3.999) return "whole";
+    return [...friction, ...thickness].join(",");
+  }
+
   /** Places on a picture of this width, and what lies there. */
   function frameOf(width, view, tallest) {
     const narrow = width < 480;
@@ -22,10 +47,11 @@ const mapPicture = (() => {
     const across = width - left - gap - strip - right;
     const up = height - top - bottom;
     const stripLeft = left + across + gap;
-    const { mu: [leastMu, mostMu], eta: [leastEta, mostEta] } = VIEWS[view];
+    const box = boxOf(view) ?? VIEWS.whole;
+    const { mu: [leastMu, mostMu], eta: [leastEta, mostEta] } = box;
     const [perMu, perEta] = [across / (mostMu - leastMu), up / (mostEta - leastEta)];
     return {
-      width, height, left, top, across, up, strip, stripLeft, narrow, ...VIEWS[view],
+      width, height, left, top, across, up, strip, stripLeft, narrow, ...box,
       x: (mu) => (mu === Infinity ? stripLeft + strip / 2 : left + (mu - leastMu) * perMu),
       y: (eta) => top + up - (eta - leastEta) * perEta,
       muAt: (x) => (x > left + across + gap / 2 ? Infinity : leastMu + (x - left) / perMu),
@@ -137,9 +163,10 @@ const mapPicture = (() => {
 
   /** Four or five round numbers in a range. */
   function ticks([least, most]) {
-    const step = [0.05, 0.1, 0.2, 0.25, 0.5, 1].find((size) => (most - least) / size <= 6);
-    const count = Math.floor((most - least) / step + 1e-9);
-    return Array.from({ length: count + 1 }, (_, i) => +(least + i * step).toFixed(2));
+    const step = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1].find((size) => (most - least) / size <= 6);
+    const first = Math.ceil(least / step - 1e-9);
+    const count = Math.floor(most / step + 1e-9) - first;
+    return Array.from({ length: count + 1 }, (_, i) => +((first + i) * step).toFixed(3));
   }
 
   /** What changes: results, the line of equal half-angle, the point looked at. */
@@ -181,5 +208,5 @@ const mapPicture = (() => {
     }
   }
 
-  return { VIEWS, frameOf, drawBase, drawPoint };
+  return { VIEWS, boxOf, viewAround, frameOf, drawBase, drawPoint };
 })();

@@ -11,7 +11,9 @@
   const FALLING = 2200, RESTING = 700, RETURNING = 500; // the motion shown, again and again [ms]
   const LINE_POINTS = 120;
   const TALLEST = 560, LOW = 520; // of the map, and a window called low [pixels]
+  const PHONE = 600; // widest window that is a phone's [pixels]
   const STRIDES = 200; // of an arrow key across the map
+  const CLOSER = 1.6; // times the map is larger after a click on +
   const NEAR = 12; // pixels within which a result is meant
   const RANGES = { alpha: [1, 178], mu: [0.001, 1000], eta: [1e-6, 2], voussoirs: [3, 10000] }; // of arches
   const ON_MAP = { mu: [0.01, data.largestMu], eta: [1e-4, 2] };
@@ -133,7 +135,11 @@
     find("unbounded").checked = state.mu === Infinity;
     find(state.asBuilt ? "built" : "continuous").checked = true;
     if (document.activeElement !== find("voussoirs")) find("voussoirs").value = state.voussoirs;
-    find("view").value = state.view;
+    const named = state.view in mapPicture.VIEWS;
+    find("view").value = named ? state.view : "part";
+    find("part").hidden = named;
+    find("nearer").disabled = per() < 1.01 / 16;
+    find("farther").disabled = state.view === "whole";
     find("weight").value = state.weight;
     find("least").disabled = !seen.critical.eta;
     const off = !frame.shows(state.mu, state.eta);
@@ -174,7 +180,8 @@
   function drawMap() {
     const box = find("map-box");
     // Where the window is low, the whole map is to be seen at once.
-    const tallest = innerHeight < LOW ? Math.max(220, innerHeight - 60) : TALLEST;
+    const upright = innerWidth <= PHONE && innerHeight > innerWidth;
+    const tallest = innerHeight < LOW ? Math.max(220, innerHeight - 60) : upright ? Math.max(240, 0.4 * innerHeight) : TALLEST;
     frame = mapPicture.frameOf(box.clientWidth, state.view, tallest);
     drawn = { weight: state.weight, view: state.view };
     layer = mapPicture.drawBase(find("map"), frame, data.maps[state.weight], data.modes, results());
@@ -266,9 +273,87 @@
     tip.style.top = `${Math.max(0, point.y - height - 10)}px`;
   }
 
+  /** Share of the map that is shown, along friction. */
+  const per = () => (frame.mu[1] - frame.mu[0]) / data.largestMu;
+
+  /** A place of the picture: what is there, and at which shares of it. */
+  function spotAt({ x, y }) {
+    const shares = [(x - frame.left) / frame.across, (frame.top + frame.up - y) / frame.up].map((share) => within([0, 1], share));
+    const [{ mu, eta }] = [frame];
+    return { mu: mu[0] + shares[0] * (mu[1] - mu[0]), eta: eta[0] + shares[1] * (eta[1] - eta[0]), shares };
+  }
+
+  /** Where zooming keeps the map still: the point looked at if it is shown, else the middle. */
+  const middleOfView = () => spotAt(frame.shows(state.mu, state.eta) && state.mu < Infinity
+    ? { x: frame.x(state.mu), y: frame.y(state.eta) }
+    : { x: frame.left + frame.across / 2, y: frame.top + frame.up / 2 });
+
+  /** Show the map so many times larger; a spot of it goes to these shares of the picture. */
+  function zoom(times, spot, shares = spot.shares) {
+    const before = state.view;
+    update({ view: mapPicture.viewAround(spot, shares, per() / times) });
+    if (state.view === before) return false;
+    drawMap(); // what follows before the page is drawn again reckons with it
+    update({});
+    return true;
+  }
+
+  /** Zoom by the wheel, by two fingers and by a double click; shift by two fingers or the right button. */
+  function listenToZoom(map) {
+    const placeOf = (event) => {
+      const box = map.getBoundingClientRect();
+      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+    map.addEventListener("wheel", (event) => {
+      if (!pointAt(event).inside) return;
+      // At the ends the page scrolls.
+      if (zoom(2 ** (-event.deltaY / (event.deltaMode ? 10 : 300)), spotAt(placeOf(event)))) event.preventDefault();
+    }, { passive: false });
+    map.addEventListener("dblclick", (event) => {
+      if (pointAt(event).inside) zoom(event.shiftKey ? 1 / CLOSER : CLOSER, spotAt(placeOf(event)));
+    });
+    map.addEventListener("contextmenu", (event) => pointAt(event).inside && event.preventDefault());
+    const down = new Map();
+    let held = null;
+    /** Middle of the fingers or of the mouse, and how far they are apart. */
+    const grasp = () => {
+      const places = [...down.values()];
+      const [one, other] = [places[0], places.at(-1)];
+      return { x: (one.x + other.x) / 2, y: (one.y + other.y) / 2, apart: Math.hypot(one.x - other.x, one.y - other.y) };
+    };
+    const hold = () => {
+      const now = down.size ? grasp() : null;
+      held = now && { ...now, spot: spotAt(now) };
+    };
+    map.addEventListener("pointerdown", (event) => {
+      if (event.pointerType !== "touch" && event.button !== 2) return;
+      if (!pointAt(event).inside) return;
+      down.set(event.pointerId, placeOf(event));
+      map.setPointerCapture(event.pointerId);
+      hold();
+    });
+    map.addEventListener("pointermove", (event) => {
+      if (!down.has(event.pointerId)) return;
+      down.set(event.pointerId, placeOf(event));
+      if (event.pointerType === "touch" && down.size !== 2) return;
+      const now = grasp();
+      const spread = down.size === 2 && held.apart > 0 ? now.apart / held.apart : 1;
+      zoom(spread, held.spot, spotAt(now).shares);
+      held = { ...now, spot: held.spot };
+    });
+    for (const end of ["pointerup", "pointercancel"]) {
+      map.addEventListener(end, (event) => {
+        down.delete(event.pointerId);
+        hold();
+      });
+    }
+    return () => down.size > 1;
+  }
+
   function listenToMap() {
     const map = find("map");
     let [dragging, dragged] = [false, false];
+    const pinching = listenToZoom(map);
     const pick = (event) => {
       const { mu, eta } = pointAt(event);
       choose(mu, eta);
@@ -284,9 +369,10 @@
     // say that of a part of a picture.
     map.addEventListener("touchstart", (event) => {
       const point = pointAt(event.touches[0]);
-      if (event.touches.length === 1 && point.inside && !resultsNear(point).length) event.preventDefault();
+      if (point.inside && !resultsNear(point).length) event.preventDefault();
     }, { passive: false });
     map.addEventListener("pointermove", (event) => {
+      if (pinching()) dragging = false;
       if (dragging) pick(event);
       if (dragging || event.pointerType !== "touch") tell(event);
     });
@@ -305,6 +391,9 @@
       else pick(event);
     });
     map.addEventListener("keydown", (event) => {
+      const closer = { "+": CLOSER, "=": CLOSER, "-": 1 / CLOSER }[event.key];
+      if (closer) zoom(closer, middleOfView());
+      if (event.key === "0") update({ view: "whole" });
       const [right, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
       if (!right && !up) return;
       event.preventDefault();
@@ -343,7 +432,9 @@
       update({ mu: event.target.checked ? Infinity : lastFriction }));
     find("least").addEventListener("click", () => update({ eta: seen.critical.eta }));
     find("weight").addEventListener("change", (event) => update({ weight: event.target.value }));
-    find("view").addEventListener("change", (event) => update({ view: event.target.value }));
+    find("view").addEventListener("change", (event) => event.target.value !== "part" && update({ view: event.target.value }));
+    find("nearer").addEventListener("click", () => zoom(CLOSER, middleOfView()));
+    find("farther").addEventListener("click", () => zoom(1 / CLOSER, middleOfView()));
     find("whole").addEventListener("click", () => update({ view: "whole" }));
     for (const button of document.querySelectorAll("[data-save]")) {
       const picture = button.dataset.save;
@@ -369,7 +460,7 @@
 
   /** Take the arch from the page's address; without one, the widest that stands at the point. */
   function arrive() {
-    Object.assign(state, FIRST, address.read(location.hash, RANGES, Object.keys(mapPicture.VIEWS)));
+    Object.assign(state, FIRST, address.read(location.hash, RANGES, mapPicture.boxOf));
     state.halfAngle ??= theory.atPoint(state.eta, state.mu, state.weight).halfAngle;
     if (state.mu < Infinity) lastFriction = state.mu;
   }
