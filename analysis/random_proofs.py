@@ -6,12 +6,11 @@ decades, joints get a friction of their own from 0 to without bound, and dead lo
 turn act off centre. Each verdict by limit analysis has to have a proof that `blocksim.verify`
 accepts, which shares no code with what found it.
 
-`python -m analysis.random_proofs OUT` writes `random_proofs.csv`, a row a problem.
+`python -m analysis.random_proofs OUT` writes `random_proofs.csv.gz`, a row a problem.
 """
 
 from __future__ import annotations
 
-import csv
 import itertools
 import json
 import math
@@ -25,6 +24,7 @@ from numpy.random import Generator
 
 from analysis.command import run
 from analysis.random_problems import Case, drawn
+from analysis.rows import write_rows
 from blocksim.arch.circular import Arch
 from blocksim.ask.check import check
 from blocksim.blocks.assembly import SUPPORT, Array, Assembly, Block, Joint
@@ -212,7 +212,7 @@ def asked(index: int) -> Row:
         verdict=found.verdict.value,
         proved=proof is not None,
         verified=holds,
-        margin=math.nan if found.static is None else found.static.margin,
+        margin=math.nan if found.static is None else float(f"{found.static.margin:.3g}"),
         seconds=round(seconds, 4),
     )
 
@@ -220,10 +220,7 @@ def asked(index: int) -> Row:
 def main(out: Path, *, quick: bool = False) -> Result:
     """Ask 10,000 problems, or 40."""
     rows = [asked(index) for index in range(40 if quick else 10_000)]
-    with (out / "random_proofs.csv").open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(Row.__dataclass_fields__)
-        table.writerows([list(vars(row).values()) for row in rows])
+    write_rows(out / "random_proofs.csv.gz", [vars(row) for row in rows])
     return counted(rows)
 
 

@@ -1,3 +1,4 @@
+# pyright: basic, reportPrivateImportUsage=false, reportArgumentType=false
 """Files and options that nobody in his right mind would give: hypothesis strategies.
 
 Each file is a good one of its format in which something was changed. Questions are small, so
@@ -284,8 +285,9 @@ PEER = {
 SVG = (
     b'<svg xmlns="http://www.w3.org/2000/svg" width="400mm" height="300mm" '
     b'viewBox="0 0 4 3"><g id="supports" transform="translate(0, 0) rotate(0) scale(1)">'
-    b'<polygon points="0,2 4,2 4,3 0,3"/></g><g class="blocks"><rect x="1" y="1" width="1" '
-    b'height="1"/><path d="M 1 0 L 2 0 2 1 H 1 Z"/></g><text x="1" y="1">a</text></svg>'
+    b'<polygon points="0,2 4,2 4,3 0,3"/></g><g class="blocks"><rect id="r" x="1" y="1" '
+    b'width="1" height="1"/><path d="M 1 0 A .5 .5 0 0 1 2 0 L 2 1 H 1 Z"/>'
+    b'<use href="#r" x="1.5"/></g><text x="1" y="1">a</text></svg>'
 )
 CSV = b"time_s,acceleration_g\n0,0\n0.05,0.2\n0.1,-0.1\n0.2,0\n"
 
@@ -303,12 +305,20 @@ def _dxf() -> bytes:
 @cache
 def _plain_dxf() -> bytes:
     """Entities alone, in which a change is sure to matter."""
-    lines = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1015", "0", "ENDSEC"]
+    lines = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1015"]
+    lines += ["9", "$INSUNITS", "70", "6", "0", "ENDSEC"]
     lines += ["0", "SECTION", "2", "ENTITIES"]
     for layer, corners in (("supports", _box(-1, -1, 4, 1)), ("blocks", _box(0, 0, 1, 1))):
         lines += ["0", "LWPOLYLINE", "100", "AcDbEntity", "8", layer]
         lines += ["100", "AcDbPolyline", "90", "4", "70", "1"]
         lines += [word for x, y in corners for word in ("10", str(x), "20", str(y))]
+    # A block of three lines and an arc.
+    for a, b, c, d in ((2, 1, 2, 0), (2, 0, 3, 0), (3, 0, 3, 1)):
+        lines += ["0", "LINE", "100", "AcDbEntity", "8", "blocks", "100", "AcDbLine"]
+        ends = ("10", a), ("20", b), ("11", c), ("21", d)
+        lines += [str(word) for pair in ends for word in pair]
+    lines += ["0", "ARC", "100", "AcDbEntity", "8", "blocks", "100", "AcDbCircle"]
+    lines += ["10", "2.5", "20", "1", "40", "0.5", "100", "AcDbArc", "50", "0", "51", "180"]
     return "\n".join([*lines, "0", "ENDSEC", "0", "EOF", ""]).encode()
 
 

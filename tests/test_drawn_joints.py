@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import json
 import math
+import re
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import ezdxf
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from running import inside
 
-from blocksim import Assembly, InputError, Problem, Verdict, ask, structure_of
+from blocksim import Assembly, InputError, Problem, Verdict, ask, bracket, structure_of
 from blocksim.blocks import regions
 from blocksim.view.sheet import sheet_of
 from blocksim.view.sheetfigure import sheet_figure
@@ -198,3 +201,43 @@ def test_the_first_overlap_is_enough(monkeypatch: pytest.MonkeyPatch):
     with pytest.raises(InputError, match="overlap of blocks 0 and 1"):
         Assembly.of_polygons([square] * 2000, fixed=[0])
     assert sum(pairs) <= 4 * 2000
+
+
+def test_closed_gaps_are_marked_in_dxf(tmp_path: Path):
+    """A line and a size for each joint that closes one; it is read as the same structure."""
+    drawing = tmp_path / "wall.json"
+    drawing.write_text(json.dumps(drawn(spread(bricks(3, 3), 0.003), 7.0, 15, tolerance=0.005)))
+    written = tmp_path / "wall.dxf"
+    assert inside("render", str(drawing), "--out", str(written)).returncode == 0
+    space = ezdxf.readfile(written).modelspace()
+    kinds = Counter(each.dxftype() for each in space.query('*[layer=="gaps"]'))
+    assert kinds == {"LINE": 16, "TEXT": 16}
+    assert {each.dxf.text for each in space.query('TEXT[layer=="gaps"]')} == {"+3 mm"}
+
+
+@pytest.mark.parametrize("method", ["limit", "direct"])
+def test_a_bracket_says_what_closing_can_do(method: str):
+    """A brick 3 mm above its bed is pushed, and tips about an end of its joint.
+
+    That is 3 mm farther out with blocks grown, and nearer with blocks shrunk.
+    """
+    bed = [(-1.0, -0.2), (1.0, -0.2), (1.0, 0.0), (-1.0, 0.0)]
+    brick = [(0.0, 0.003), (0.1, 0.003), (0.1, 0.303), (0.0, 0.303)]
+    table = drawn([bed, brick], 0.0, 15, tolerance=0.005, live=[{"body": [1, 0]}])
+    found = bracket(structure_of(table), over="load", method=method)
+    assert found.limit
+    arm = 0.05 / found.limit  # of the centre above the joint, which is within the gap
+    assert 0.15 < arm < 0.153
+    said = found.reason.split("the drawing leaves ")[1]
+    values = [float(each) for each in re.findall(r"0\.\d+", said)[:3]]
+    assert values == pytest.approx([0.05 / arm, 0.053 / arm, 0.047 / arm], rel=1e-5)
+
+
+@pytest.mark.parametrize("method", ["direct", "pymunk"])
+def test_engines_say_what_closing_can_do(method: str):
+    bed = [(-1.0, -0.2), (0.1231, -0.2), (0.1231, 0.0), (-1.0, 0.0)]
+    brick = [(0.0, 0.003), (0.25, 0.003), (0.25, 0.128), (0.0, 0.128)]
+    problem = structure_of(drawn([bed, brick], 0.0, 15, tolerance=0.005))
+    found = ask.check(problem, method=method)
+    assert found.verdict is Verdict.COLLAPSES
+    assert "leaves it open: stands with blocks grown" in found.reason

@@ -1,3 +1,4 @@
+# pyright: basic
 """How right a motion by `direct` is, at its usual step and finer.
 
 Truth: blocks that rock from impact to impact (`rocking`), integrated to 1e-10.
@@ -7,16 +8,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from rocking import G, rocks
 
+from analysis import housner
+from blocksim.ask.check import check
+from blocksim.ask.simulate import simulate
+from blocksim.blocks.assembly import displacement
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import Shaking, table_of
 from blocksim.engines.direct import ENGINE, Blocks
+from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.files import structure_of
+from blocksim.report.answers import check_record as answer_record
+from blocksim.report.recordings import recording_lines
 from blocksim.simulation.shaken import shake
+from blocksim.simulation.simulated import Simulation
 from blocksim.simulation.verdict import Verdict
 
 LONG = pytest.mark.long
@@ -143,3 +153,106 @@ def test_a_finer_step_refines_what_moves_slowly() -> None:
     errors = np.abs(np.array(turned) - wanted)
     assert errors[0] < 1e-3 * wanted
     assert (turned[0] - turned[1]) / (turned[1] - turned[2]) == pytest.approx(4.0, rel=0.3)
+
+
+def sine(amplitude: float) -> Problem:
+    """A block under one period of a second; from 0.37286 g on it overturns."""
+    return replace(
+        block(), shaking=Shaking(shape="full-sine", amplitude=amplitude, duration=1.0)
+    )
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "verdict"), [(0.374, Verdict.UNDECIDED), (0.376, Verdict.COLLAPSES)]
+)
+def test_what_hangs_on_the_step_is_undecided(amplitude: float, verdict: Verdict) -> None:
+    """At a step of 0.1 it overturns from 0.3748 g on, at twice the step from 0.3781 g."""
+    seen = shake(sine(amplitude), "direct", settings={"step": 0.1})
+    assert seen.verdict is verdict
+    once = shake(sine(0.374), "direct", settings={"step": 0.1}, repeat=False)
+    assert once.verdict is Verdict.STANDS
+    if verdict is Verdict.UNDECIDED:
+        assert "collapses at a step of 0.05" in seen.reason
+        assert "stands at 0.1" in seen.reason
+
+
+@LONG
+def test_a_shaken_block_says_how_right_it_is() -> None:
+    """Estimates are no less than the errors, by the integrator, and of their size."""
+    amplitude = 0.3
+
+    def ground(time: float) -> float:
+        return amplitude * math.sin(2 * math.pi * time) if 0 <= time <= 1 else 0.0
+
+    wanted = rocks(1.0, 4.0, ground, shaken=1.0)
+    problem = sine(amplitude)
+    seen = shake(problem, "direct", until=6.0 / problem.seconds)
+    told = answer_record(check(problem, method="direct"))["shaken"]
+    assert told is not None
+    assert seen.first_impact_s is not None
+    turned, late_most = told["largest_rotation_error_deg"], told["first_impact_error_s"]
+    assert turned is not None
+    assert late_most is not None
+    off = abs(seen.rocking.rotation - wanted.largest)
+    late = abs(seen.first_impact_s - wanted.impacts[0])
+    assert off <= math.radians(turned) < 0.01 * wanted.largest
+    assert late <= late_most < 1e-3
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
+def test_the_first_impact_is_as_right_as_asked(accuracy: float) -> None:
+    """Of a block let go at 0.15 rad, by the time from the top to the ground."""
+    problem, radius = block(), math.hypot(1.0, 4.0) / 2
+    alpha, squared = math.atan2(1.0, 4.0), 3 * G / (4 * radius)
+    spin = math.sqrt(2 * squared * (math.cos(alpha - 0.15) - math.cos(alpha)))
+    simulation = Simulation.of(problem, "direct", settings={"accuracy": accuracy})
+    step = simulation.settings.step
+    world = Blocks(problem, simulation.settings)
+    world.hold(1)
+    turn, half = spin * problem.seconds, np.array([1.0, 4.0]) / 2 / problem.assembly.size
+    world.push(np.array([[-turn * half[1], turn * half[0], turn]]))
+    turns = [0.0]
+    while len(turns) < 4 or turns[-1] > 1e-6:
+        world.advance(1)
+        turns.append(float(world.poses()[0, 2]))
+    # The parabola through the last ends of steps before the impact.
+    times = step * np.arange(len(turns))
+    a, b, c = np.polyfit(times[-4:-1] - times[-2], turns[-4:-1], 2)
+    lands = times[-2] + (-b - math.sqrt(b * b - 4 * a * c)) / (2 * a)
+    # It comes down as it went up.
+    wanted = 2 * rocks(1.0, 4.0, angle=0.15, most=1).impacts[0]
+    assert lands * problem.seconds == pytest.approx(wanted, rel=accuracy)
+
+
+def test_a_recording_says_how_long_it_is_known() -> None:
+    """A collapse to the ground: the error at half the step is within what was said."""
+    arch = CircularArch(half_angle_deg=65, eta=0.02, friction=0.35, voussoirs=7)
+    recording = simulate(arch, method="direct", duration=2.0)
+    finer = simulate(arch, method="direct", duration=2.0, settings={"accuracy": 1e-5})
+    kept = recording.quality
+    until = recording.times[-1] if kept.known is None else kept.known
+    at = np.isclose(finer.times[:, None], recording.times[recording.times <= until]).any(axis=1)
+    there = recording.times <= until
+    off = displacement(finer.poses[at] - recording.poses[there], recording.assembly)
+    assert kept.error is not None
+    assert off.max() <= kept.error <= 0.01
+    assert recording.overlap_share is not None
+    assert 0 < recording.overlap_share < 0.01
+    assert any("twice the step" in line for line in recording_lines(recording, "r"))
+
+
+@LONG
+def test_direct_says_of_sines_what_the_equation_says(tmp_path: Path) -> None:
+    """By two integrators: that of the study agrees with the one of the tests."""
+    told = housner.main(tmp_path, quick=True)
+    assert [row["differ"] for row in told] == [0] * 4
+    assert all(row["overturn"] not in (0, row["pulses"]) for row in told)
+    draw = np.random.default_rng(1)
+    durations, amplitudes = draw.uniform(0.2, 2.0, 20), 0.25 * draw.uniform(1.02, 5.0, 20)
+    said = housner.overturned(4.0, "half-sine", durations, amplitudes)
+    for duration, amplitude, falls in zip(durations, amplitudes, said, strict=True):
+
+        def ground(now: float, size: float = amplitude, long: float = duration) -> float:
+            return size * math.sin(math.pi * now / long) if 0 <= now <= long else 0.0
+
+        assert rocks(1.0, 4.0, ground, shaken=duration, until=20.0).overturns == falls

@@ -12,12 +12,15 @@ from arches import arch_at
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from structure_cases import case, names, of_each_kind, scenes
+from test_drawn_joints import bricks, drawn
 
+from blocksim.ask.check import check
 from blocksim.blocks.problem import Load, Problem
 from blocksim.blocks.structure import structure_of
 from blocksim.common.errors import Unsolved
 from blocksim.kinds.circular import CircularArch
-from blocksim.limit import collapse, equilibrium, least_motion, linear
+from blocksim.limit import collapse, equilibrium, least_motion, linear, programme
+from blocksim.limit.cones import Cones
 
 frictions = st.one_of(st.floats(0.05, 2.0), st.just(math.inf))
 lengths = st.floats(0.2, 5.0)
@@ -342,3 +345,27 @@ def test_a_programme_that_is_not_taken_is_no_structure_that_falls(factor: float)
     with pytest.raises(Unsolved, match="undecided"):
         programme.solve(np.ones(2), np.array([[1.0, factor]]), rows, ends)
     assert programme.solve(np.ones(2), np.array([[1.0, 1e3]]), rows, ends).exists
+
+
+@pytest.mark.parametrize(("degrees", "mu"), [(0, 0.6), (29, 0.6), (40, 0.6), (5, 0.0)])
+def test_large_structures_are_answered_as_small_ones_are(
+    degrees: float, mu: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a wall of 145 bricks, by the interior point and by the simplex; both are proved."""
+    wall = structure_of(drawn(bricks(10, 15), degrees, 15, mu=mu))
+    assert Cones(wall).count > linear.MANY * (mu > 0)
+    found = equilibrium(wall)
+    monkeypatch.setattr(programme, "MANY", math.inf)
+    vertex = equilibrium(wall)
+    assert found.margin == pytest.approx(vertex.margin, abs=1e-6)
+    for each in (found, vertex):
+        assert each.proof is not None
+        assert each.proof.claim == ("stands" if degrees == 0 else "collapses")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("degrees", [0, 40])
+def test_a_wall_of_ten_thousand_bricks_is_proved(degrees: float) -> None:
+    """It slides where its bed is steeper than friction."""
+    found = check(structure_of(drawn(bricks(80, 130), degrees, 15)), method="limit")
+    assert (found.verdict.value, found.proved) == ("collapses" if degrees else "stands", True)

@@ -14,12 +14,14 @@ from running import inside as blocksim
 from blocksim.arch.circular import Arch
 from blocksim.arch.limit.statics import least_thickness
 from blocksim.ask.check import check
+from blocksim.ask.rest import FAR, SPEED, let_go
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.structure import structure_of, structure_record
 from blocksim.common.errors import InputError
 from blocksim.kinds.circular import CircularArch
 from blocksim.limit import equilibrium
 from blocksim.limit.starting import Start, may_start, rates_of
+from blocksim.view.sheet import answer_sheet
 
 HALF_ANGLE = math.radians(155)
 
@@ -85,6 +87,41 @@ def test_a_block_that_hangs_by_friction_may_fall(mu: float) -> None:
     assert hangs.power == pytest.approx(1.0, abs=1e-6)
     assert equilibrium(between_walls(-0.9 * angle, mu)).exists
     assert not equilibrium(between_walls(-1.1 * angle, mu)).exists
+
+
+def test_the_motion_is_recorded_and_drawn() -> None:
+    """What hangs by friction may fall freely; let go slowly, it is caught again at once."""
+    found = check(between_walls(-0.9 * math.atan(0.6), 0.6), must_rest=True, method="limit")
+    assert found.motion is not None
+    gone = let_go(found.problem, found.motion.accelerations)
+    fallen = gone.poses[0, 0, 1] - gone.poses[:, 0, 1]
+    assert (fallen <= gone.times**2 / 2 + SPEED * gone.times + 1e-9).all()
+    assert not found.motion.goes_on
+    assert np.abs(fallen).max() < FAR
+    sheet = answer_sheet(found)
+    assert sheet.mechanism == pytest.approx(np.array([[0.0, -1.0, 0.0]]), abs=1e-6)
+    assert any("friction may let it move as well" in fact for fact in sheet.facts)
+
+
+@pytest.mark.long
+def test_a_film_shows_the_motion_that_friction_lets_begin(tmp_path: Path) -> None:
+    """An arch that can rest falls to the ground along it; of one that must none is made."""
+    arch = ("render", "--alpha", "155", "--mu", "3", "--voussoirs", "7", "--must-rest")
+    out = tmp_path / "fall.gif"
+    assert (
+        blocksim(*arch, "--ratio", "1.2", "--height", "360", "--out", str(out)).returncode == 0
+    )
+    found = check(
+        CircularArch.of(Arch(half_angle=HALF_ANGLE, eta=1.46972, voussoirs=7), 3.0),
+        must_rest=True,
+        method="limit",
+    )
+    assert found.motion is not None
+    poses = let_go(found.problem, found.motion.accelerations).poses
+    assert (poses[-1, :, 1] < poses[0, :, 1] - 0.3).sum() >= 4
+    refused = blocksim(*arch, "--ratio", "1.6", "--out", str(out))
+    assert refused.returncode == 2
+    assert "it must rest" in refused.stderr
 
 
 @pytest.mark.parametrize("mu", [0.2, 0.6])

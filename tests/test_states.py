@@ -13,8 +13,8 @@ import pytest
 from running import inside
 from scipy.optimize import linprog
 
+from blocksim.ask.moved import spread_by, thrusts_over
 from blocksim.ask.push import borne, curve, pushed
-from blocksim.ask.spread import spread_by, thrusts_over
 from blocksim.kinds import KINDS
 from blocksim.kinds.circular import CircularArch
 from blocksim.kinds.column import Column

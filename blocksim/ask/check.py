@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Unpack, overload
 
 from blocksim.ask.carried import carried_of
+from blocksim.ask.closed import closing_of_verdict
 from blocksim.ask.methods import choose, chosen_words, reduces
 from blocksim.ask.options import Asked, AskedInSpace, Of, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
@@ -335,7 +336,12 @@ def _general(problem: Problem | SpatialProblem, chosen: Method, given: Taken) ->
         return _Found(answer, exists, moved=False, static=static)
     answer, seen = _simulated(problem, None, chosen, given)
     joints = observed(problem, seen.rates) if known else answer.joints
-    answer = replace(answer, joints=joints, load_factor=factor)
+    closing: tuple[Evidence, ...] = ()
+    if isinstance(problem, Problem) and exists is not None:
+        closing = closing_of_verdict(problem, stands=exists)
+    answer = replace(
+        answer, joints=joints, load_factor=factor, evidence=(*answer.evidence, *closing)
+    )
     return _Found(answer, exists, moved=seen.moved, static=static)
 
 

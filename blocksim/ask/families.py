@@ -39,6 +39,8 @@ class Family(Generic[Of]):
 
     Parameters
     ----------
+    problem : Problem
+        Of which it is.
     name, unit : str
     at : callable
         Value to problem.
@@ -57,6 +59,7 @@ class Family(Generic[Of]):
         Where the parameter is the motion of supports.
     """
 
+    problem: Of
     name: str
     at: Callable[[float], Of]
     high: float
@@ -86,6 +89,10 @@ class Family(Generic[Of]):
             for each in found
             if each.low < self.high and each.high >= self.low
         )
+
+    def of(self, problem: Of) -> Family[Of]:
+        """Return the same family of another problem."""
+        return family_of(problem, self.name)
 
     def exact(self) -> float | None:
         """Return the first value at which limit analysis sees the change.
@@ -135,6 +142,7 @@ def _over_load(problem: Problem | SpatialProblem) -> Family[Any]:
     if not problem.live:
         raise InputError("--over", "load", "another parameter: the structure has no live loads")
     return Family(
+        problem=problem,
         name="load",
         at=problem.with_load,
         high=HIGHEST_FACTOR,
@@ -155,6 +163,7 @@ def _over_tilt(problem: Problem | SpatialProblem) -> Family[Any]:
         )
 
     return Family(
+        problem=problem,
         name="tilt",
         unit="deg",
         at=lambda value: problem.tilted(math.radians(value)),
@@ -165,6 +174,7 @@ def _over_tilt(problem: Problem | SpatialProblem) -> Family[Any]:
 
 def _over_lean(problem: Problem) -> Family:
     return Family(
+        problem=problem,
         name="lean",
         unit="deg",
         at=lambda value: problem.leaning(math.radians(value)),
@@ -174,6 +184,7 @@ def _over_lean(problem: Problem) -> Family:
 
 def _over_mu(problem: Problem | SpatialProblem) -> Family[Any]:
     return Family(
+        problem=problem,
         name="mu",
         at=problem.with_friction,
         high=LARGEST_FRICTION,
@@ -188,6 +199,7 @@ def _over_spread(problem: Problem) -> Family:
 
     spreading = Spreading(problem)
     return Family(
+        problem=problem,
         name="spread",
         unit="m",
         at=spreading.at,
@@ -211,6 +223,7 @@ def _over_push(problem: Problem) -> Family:
     given = asked(problem, worst)
     said = ", ".join(f"{each:.6g} g to the {way}" for way, each in both.items())
     return Family(
+        problem=problem,
         name="push",
         unit="g",
         at=given.with_load,
@@ -223,6 +236,7 @@ def _over_push(problem: Problem) -> Family:
 def _over_amplitude(problem: Problem) -> Family:
     shaking = _shaking(problem, "amplitude")
     return Family(
+        problem=problem,
         name="amplitude",
         unit="g",
         at=lambda value: replace(problem, shaking=shaking.with_amplitude(value)),
@@ -234,6 +248,7 @@ def _over_amplitude(problem: Problem) -> Family:
 def _over_duration(problem: Problem) -> Family:
     shaking = _shaking(problem, "duration")
     return Family(
+        problem=problem,
         name="duration",
         unit="s",
         at=lambda value: replace(problem, shaking=shaking.with_duration(value)),
@@ -275,6 +290,7 @@ def _over_parameter(problem: Problem | SpatialProblem, name: str) -> Family[Any]
     ends = max(low, now / WIDEST), min(high, now * WIDEST)
     scan = Scan(lambda value: problem.but(**{name: value}), ends, now)
     return Family(
+        problem=problem,
         name=name,
         unit=known.unit,
         at=scan.at,

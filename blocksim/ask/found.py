@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from blocksim.ask.closed import closing_of_value
 from blocksim.ask.ends import Ask, Within, around, changes_of, tried_ends
 from blocksim.ask.families import Family
 from blocksim.ask.methods import choose, reduces
@@ -145,7 +146,8 @@ def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found
     exact = family.exact() if known else None
     found, ask = _sought(family, probe, chosen, given, (low, high), exact)
     remark = family.remark() if known else ""
-    evidence = (Evidence("search", found.reason), *aside("limit analysis", remark))
+    closing = closing_of_value(family) if known and isinstance(probe, Problem) else ()
+    evidence = (Evidence("search", found.reason), *aside("limit analysis", remark), *closing)
     most = len(probe.assembly.blocks)
     if (
         reduces(chosen, given.reduce, probe)

@@ -15,6 +15,7 @@ from functools import partial
 
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.later import Later
 from blocksim.engines import ENGINES, NAMES, engine_named, make_known
@@ -112,6 +113,9 @@ def choose(
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     require_settings(rung, settings)
+    accuracy = settings.get("accuracy") if isinstance(problem, SpatialProblem) else None
+    allowed = "left out in space: there settings.step says how fine a motion is"
+    require(accuracy is None, "settings.accuracy", accuracy, allowed)
     return rung
 
 

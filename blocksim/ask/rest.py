@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from blocksim.blocks.assembly import Array, displacement
-from blocksim.blocks.groups import groups_of
+from blocksim.blocks.groups import Group, groups_of
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from blocksim.engines.direct import Blocks
+    from blocksim.simulation.recording import Recording
 
 SPEED, FAR, STILL = 1e-3, 0.05, 1e-6
 """Speed with which blocks are let go along a motion [size/sqrt(size/g)], the way that counts as
@@ -102,28 +107,66 @@ def rest_of(
     if start.accelerations is None:
         return (None if start.moves is None else "must"), None
     way = start.accelerations
-    # What moves is let go without what rests, which may be heavier by far.
-    goes_on = any(
-        _goes_on(group.problem, way[group.blocks])
-        for group in groups_of(problem)
-        if way[group.blocks].any()
-    )
-    return "can", Moving(accelerations=way, goes_on=goes_on)
+    gone = let_go(problem, way, until=FAR, progress=progress)
+    return "can", Moving(accelerations=way, goes_on=bool(gone.displacement[-1] > FAR))
 
 
-def _goes_on(problem: Problem, way: Array) -> bool:
-    """Let blocks go slowly along a motion, and tell whether it goes on."""
-    from blocksim.engines.direct import Blocks, rule
+def let_go(
+    problem: Problem, way: Array, *, until: float = math.inf, progress: Progress = silent
+) -> Recording:
+    """Let blocks go slowly along a motion in `direct`, and record them until they rest.
+
+    What moves is let go without what rests, which may be heavier by far.
+
+    Parameters
+    ----------
+    problem : Problem
+        In its plane.
+    way : (blocks, 3) float
+        Velocities or accelerations in proportion to those with which they begin.
+    until : float
+        Displacement at which it ends [size].
+    progress : Progress, optional
+    """
+    from blocksim.engines.direct import ENGINE, Blocks
+    from blocksim.simulation.recording import Recording
 
     assembly = problem.assembly
-    world = Blocks(problem, rule(assembly))
-    built = world.poses()
-    world.push(way * SPEED / float(displacement(way, assembly)))
-    steps = round(LONG / rule(assembly).step / LOOKS)
-    for _ in range(LOOKS):
-        world.advance(steps)
-        if float(displacement(world.poses() - built, assembly)) > FAR:
-            return True
-        if float(displacement(world.velocities, assembly)) < STILL:
+    settings = ENGINE.rule(assembly)
+    moving = [group for group in groups_of(problem) if way[group.blocks].any()]
+    worlds = [Blocks(group.problem, settings) for group in moving]
+    built = assembly.built[:-1]
+    start = way * SPEED / float(displacement(way, assembly))
+    for group, world in zip(moving, worlds, strict=True):
+        world.push(start[group.blocks])
+    steps = round(LONG / settings.step / LOOKS)
+    times, poses = [0.0], [_poses(built, moving, worlds)]
+    for look in range(LOOKS):
+        speeds = np.zeros_like(built)
+        for group, world in zip(moving, worlds, strict=True):
+            world.advance(steps)
+            speeds[group.blocks] = world.velocities
+        times.append(times[-1] + steps * settings.step)
+        poses.append(_poses(built, moving, worlds))
+        progress((look + 1) / LOOKS, "let go along a motion")
+        gone = float(displacement(poses[-1] - built, assembly)) > until
+        if gone or float(displacement(speeds, assembly)) < STILL:
             break
-    return False
+    qualities = [world.quality() for world in worlds]
+    return Recording(
+        problem=problem,
+        engine=ENGINE.name,
+        engine_version=ENGINE.version,
+        settings=settings,
+        times=np.array(times),
+        poses=np.array(poses),
+        quality=max(qualities, key=lambda each: each.residual or 0.0),
+    )
+
+
+def _poses(built: Array, moving: list[Group], worlds: list[Blocks]) -> Array:
+    """Return where blocks are: those of no world as built."""
+    poses = built.copy()
+    for group, world in zip(moving, worlds, strict=True):
+        poses[group.blocks] = world.poses()
+    return poses

@@ -121,7 +121,8 @@ def shaken(
 
     def judge(value: float) -> Answer:
         # Nothing leads from how it falls to where it stands: the bracket is halved.
-        return Answer(shake(family.at(value), engine, settings=given.settings).verdict, 0.0)
+        seen = shake(family.at(value), engine, repeat=False, settings=given.settings)
+        return Answer(seen.verdict, 0.0)
 
     search, falls, stands = _sought(
         judge,
@@ -132,13 +133,21 @@ def shaken(
         more_is_safer=family.stands == "high",
         progress=given.progress,
     )
+    confirmed, words = None, ""
+    if given.confirm and falls is not None and stands is not None:
+        confirmed = all(
+            shake(family.at(value), engine, settings=given.settings).verdict is verdict
+            for value, verdict in ((falls, Verdict.COLLAPSES), (stands, Verdict.STANDS))
+        )
+        words = f"; at both ends {'' if confirmed else 'not '}the same at another step"
     return Search(
         falls=falls,
         stands=stands,
+        confirmed=confirmed,
         runs=search.runs,
         undecided=search.undecided,
         reason=f"shaken at {search.runs} values, each time until all lay still; this is one "
-        "change from standing to falling, and beyond it blocks may stand again",
+        f"change from standing to falling, and beyond it blocks may stand again{words}",
     )
 
 

@@ -70,4 +70,4 @@ def simulate(
         return seen.recording
     from blocksim.ask.engines import held
 
-    return held(problem, engine, given).release(duration, given.progress).recording
+    return held(problem, engine, given).record(duration, given.progress)

@@ -20,7 +20,6 @@ from blocksim.engines.moving import DEEP, OnMovingSupports
 from blocksim.engines.stepping import UNSOLVED
 from blocksim.kinds.circular import CircularArch
 from blocksim.limit.bearing import bears
-from blocksim.limit.margins import crown, thrust_range
 from blocksim.limit.spreading import Path, follow, lying
 from blocksim.simulation.motion import FRAME
 from blocksim.simulation.recording import Recording
@@ -163,7 +162,7 @@ class Spreading:
     @property
     def words(self) -> str:
         """Say what happens on the way."""
-        return "".join(f"; {_words(event)}" for event in self.events)
+        return "".join(f"; {happening_words(event)}" for event in self.events)
 
     @property
     def events(self) -> tuple[Happening, ...]:
@@ -278,63 +277,6 @@ class Spreading:
         )
 
 
-def spread_by(problem: Problem, value: float) -> Problem:
-    """Return a problem as it lies where its supports have moved so far [m].
-
-    A note says what happened on the way, and how much farther they can move. Where blocks fall
-    before that it is the problem as it lies where they have gone on falling so far.
-
-    Raises
-    ------
-    InputError
-        If nothing says how supports move, or they cannot be followed so far.
-    """
-    spreading = Spreading(problem)
-    try:
-        _ = spreading.problem
-    except InputError as error:
-        if error.field != "--over":
-            raise
-        allowed = "left out, or `move` in the file: which of its supports moves has to be said"
-        raise InputError("spread", value, allowed) from None
-    path, exact = spreading.path, spreading.exact
-    followed = exact is not None or value <= path.value
-    require(followed, "spread", value, f"at most {path.value:.6g} m: farther is not followed")
-    require(value <= spreading.farthest, "spread", value, f"at most {spreading.farthest:.6g} m")
-    said = [_words(each) for each in spreading.events if each.value <= value]
-    left = math.inf if exact is None else exact - value
-    if exact is None:
-        said.append(f"it is followed up to {path.value:.6g} m")
-    elif math.isfinite(left):
-        more = f"it falls {left:.6g} m farther" if left >= 0 else f"it fell at {exact:.6g} m"
-        said.append(more)
-    lies = spreading.at(value)
-    note = f"supports moved by {value:g} m: {'; '.join(said)}"
-    return replace(lies, moves=(), notes=(*lies.notes, note))
-
-
-def thrusts_over(problem: Problem, points: int = 40) -> tuple[tuple[float, float, float], ...]:
-    """Return how far supports have moved [m], and least and greatest thrust there [N].
-
-    Evenly up to where blocks first fall, or as far as they are followed; at the crown. nan
-    where there is none.
-    """
-    spreading = Spreading(problem)
-    exact = spreading.exact
-    most = exact if exact is not None and math.isfinite(exact) else spreading.path.value
-    found: list[tuple[float, float, float]] = []
-    for value in np.linspace(0.0, most, points).tolist():
-        lies = spreading.at(value)
-        joint = crown(lies)
-        ends = None if joint is None else thrust_range(lies, joint)
-        unit = lies.unit_force
-        low, high = (
-            (math.nan, math.nan) if ends is None else (each.thrust * unit for each in ends)
-        )
-        found.append((value, low, high))
-    return tuple(found)
-
-
 _At = tuple[float, Array]
 """How far the supports are [m], and poses of blocks and supports."""
 
@@ -372,7 +314,8 @@ def _last(frames: Sequence[_At], stays: Callable[[_At], bool]) -> tuple[int, int
     return low, runs
 
 
-def _words(event: Happening) -> str:
+def happening_words(event: Happening) -> str:
+    """Say what happens, and where."""
     said = ", ".join(f"{joint.a}-{joint.b} {joint.state}" for joint in event.joints)
     return f"at {event.value:.6g} m {_WORDS[event.what]}: {said}"
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from blocksim.ask.closed import closing_of_verdict
 from blocksim.blocks.assembly import Array, displacement
-from blocksim.blocks.closing import closed_gaps, resized
 from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.limit import Equilibrium
-from blocksim.limit.crushing import Needed, exists
+from blocksim.limit.crushing import Needed
 from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
@@ -54,7 +53,7 @@ def static_evidence(
     """Say what limit analysis found."""
     if isinstance(problem, Problem) and isinstance(static, Equilibrium):
         found = Evidence("limit analysis", _words(static))
-        return (found, *_closing(problem, static.exists))
+        return (found, *closing_of_verdict(problem, stands=static.exists))
     assert not isinstance(static, Equilibrium)  # noqa: S101
     return (Evidence("limit analysis", _words_in_space(static)),)
 
@@ -105,7 +104,7 @@ def crushing_evidence(
     """Say whether forces of equilibrium exist within the strength of blocks that crush."""
     verdict, said = _crushing(needed, problem.strength or 0.0)
     found = Evidence("limit analysis", said)
-    return verdict, (found, *_closing(problem, verdict is Verdict.STANDS))
+    return verdict, (found, *closing_of_verdict(problem, stands=verdict is Verdict.STANDS))
 
 
 def _crushing(needed: Needed | None, strength: float) -> tuple[Verdict, str]:
@@ -119,21 +118,3 @@ def _crushing(needed: Needed | None, strength: float) -> tuple[Verdict, str]:
         said = f"forces of equilibrium exist, and all crush a joint: {least} are needed"
         return Verdict.COLLAPSES, said
     return Verdict.UNDECIDED, f"the strength that is needed is between {least} and {most}"
-
-
-def _closing(problem: Problem, stands: bool) -> tuple[Evidence, ...]:
-    """Say what gaps that were closed can do to the verdict: blocks are grown and shrunk."""
-    gaps = closed_gaps(problem.assembly)
-    if not gaps:
-        return ()
-    most = 1000 * max(map(abs, gaps.values()))
-    for sign, words in ((1, "grown"), (-1, "shrunk")):
-        assembly = resized(problem.assembly, sign)
-        if exists(replace(problem, assembly=assembly)) != stands:
-            other = Verdict.COLLAPSES if stands else Verdict.STANDS
-            found = f"the drawing leaves it open: {other} with blocks {words} by what was "
-            return (Evidence("gaps closed", f"{found}closed at joints, {most:.3g} mm at most"),)
-    found = (
-        "the verdict is the same with blocks grown and shrunk by what was closed at joints, "
-    )
-    return (Evidence("gaps closed", f"{found}{most:.3g} mm at most"),)

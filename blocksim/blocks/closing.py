@@ -12,11 +12,23 @@ from blocksim.blocks.rows import column
 LEAST = 0.1
 """Share of its length that a joint keeps where blocks are shrunk."""
 
+SEEN = 1e-3
+"""Share of a joint's length from which on the gap it closes is marked."""
+
 
 def closed_gaps(assembly: Assembly) -> dict[int, float]:
     """Gaps that were closed, below 0 where blocks overlap [m], by the index of the joint."""
     gaps = np.array(column(assembly.joints, "gap"), dtype=float)
     return {int(index): float(gaps[index]) for index in np.flatnonzero(gaps)}
+
+
+def marked_gaps(assembly: Assembly) -> dict[int, float]:
+    """Return closed gaps that drawings mark, not those of rounding [m]; the largest first."""
+    gaps = closed_gaps(assembly)
+    seen = [
+        index for index, gap in gaps.items() if abs(gap) > SEEN * assembly.joints[index].length
+    ]
+    return {index: gaps[index] for index in sorted(seen, key=lambda index: -abs(gaps[index]))}
 
 
 def resized(assembly: Assembly, sign: int) -> Assembly:

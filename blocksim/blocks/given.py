@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -115,58 +116,16 @@ def as_given(
     found: list[tuple[Touch, float | None]] = []
     off, farthest = list[str](), 0.0
     for index, joint in enumerate(joints):
-        field, ends, normal = f"joints[{index}]", joint.ends, joint.normal
         between = f"blocks {names[joint.a]} and {names[joint.b]}"
-        one, other = _face(outlines[joint.a], ends), _face(outlines[joint.b], ends)
-        nearest, size = min(one[0], other[0]), float(min(sizes[joint.a], sizes[joint.b]))
-        tolerance = share * size
-        require(
-            nearest <= OFF * size,
-            f"{field}.ends",
-            ends.tolist(),
-            f"on a face of {between}: it is {nearest:.3g} m off both",
-        )
-        if nearest > tolerance:
+        faces = _face(outlines[joint.a], joint.ends), _face(outlines[joint.b], joint.ends)
+        nearest, size = min(far for far, _ in faces), float(min(sizes[joint.a], sizes[joint.b]))
+        laid = _Laid(joint, f"joints[{index}]", between, faces, share * size)
+        allowed = f"on a face of {between}: it is {nearest:.3g} m off both"
+        require(nearest <= OFF * size, f"{laid.field}.ends", joint.ends.tolist(), allowed)
+        if nearest > laid.tolerance:
             farthest = max(farthest, nearest)
             off.append(between)
-        if normal is not None:
-            way = float(np.hypot(*normal))
-            require(way > 0, f"{field}.normal", normal.tolist(), "a direction, not 0, 0")
-            normal = normal / way
-        if len(ends) == 1:
-            if normal is None:
-                raise InputError(f"{field}.normal", MISSING, "given for a corner on a face")
-            found.append(
-                (_corner(joint, ends[0], one, other, normal, tolerance), joint.friction)
-            )
-            continue
-        along = ends[1] - ends[0]
-        length = float(np.hypot(*along))
-        require(length > tolerance, f"{field}.ends", ends.tolist(), "two points that differ")
-        across = np.array([along[1], -along[0]]) / length
-        # From a to b: as the faces say on which it lies, or else as the normal says.
-        out = _outward(one[1]) if one[0] <= other[0] else -_outward(other[1])
-        if normal is not None and abs(float(across @ normal)) < SQUARE:
-            notes.append(
-                f"joint of {between}: its normal is not square, so each end is a corner"
-            )
-            for end in ends:
-                on, beside = (_face(outlines[body], end[None]) for body in (joint.a, joint.b))
-                touch = _corner(joint, end, on, beside, normal, tolerance)
-                found.append((touch, joint.friction))
-            continue
-        if normal is not None and float(normal @ out) < 0:
-            if nearest <= tolerance:
-                notes.append(f"joint of {between}: normal turned, it pointed from b to a")
-            else:
-                out = normal
-        if float(across @ out) < 0:
-            ends = ends[::-1]
-        faces = [
-            ends if face[0] > tolerance else _in_sense(face[1], ends) for face in (one, other)
-        ]
-        known = np.stack(faces) if joint.faces is None else joint.faces
-        found.append((Touch(joint.a, joint.b, ends, known), joint.friction))
+        found += [(touch, joint.friction) for touch in _touches(laid, outlines, notes)]
     if off:
         notes.append(
             f"{len(off)} joints given lie off their faces, by up to {farthest:.3g} m, "
@@ -175,7 +134,67 @@ def as_given(
     return found
 
 
-def _face(outlines: Sequence[Array], ends: Array) -> tuple[float, Array]:
+_Near = tuple[float, Array]
+"""How far a joint lies off a face [m], and the face."""
+
+
+class _Laid(NamedTuple):
+    """A joint, its name in the file and in words, and the faces it is nearest to."""
+
+    joint: GivenJoint
+    field: str
+    between: str
+    faces: tuple[_Near, _Near]
+    tolerance: float
+
+    @property
+    def normal(self) -> Array | None:
+        """The normal that is given, of length 1."""
+        given = self.joint.normal
+        if given is None:
+            return None
+        way = float(np.hypot(*given))
+        require(way > 0, f"{self.field}.normal", given.tolist(), "a direction, not 0, 0")
+        return given / way
+
+
+def _touches(
+    laid: _Laid, outlines: Sequence[Sequence[Array]], notes: list[str]
+) -> Iterator[Touch]:
+    """Return where blocks touch at a joint: along a face, or at one or two corners."""
+    joint, (one, other), tolerance = laid.joint, laid.faces, laid.tolerance
+    ends, normal = joint.ends, laid.normal
+    if len(ends) == 1:
+        if normal is None:
+            raise InputError(f"{laid.field}.normal", MISSING, "given for a corner on a face")
+        yield _corner(joint, ends[0], one, other, normal, tolerance)
+        return
+    along = ends[1] - ends[0]
+    length = float(np.hypot(*along))
+    require(length > tolerance, f"{laid.field}.ends", ends.tolist(), "two points that differ")
+    across = np.array([along[1], -along[0]]) / length
+    # From a to b: as the faces say on which it lies, or else as the normal says.
+    out = _outward(one[1]) if one[0] <= other[0] else -_outward(other[1])
+    if normal is not None and abs(float(across @ normal)) < SQUARE:
+        words = f"joint of {laid.between}: its normal is not square, so each end is a corner"
+        notes.append(words)
+        for end in ends:
+            on, beside = (_face(outlines[body], end[None]) for body in (joint.a, joint.b))
+            yield _corner(joint, end, on, beside, normal, tolerance)
+        return
+    if normal is not None and float(normal @ out) < 0:
+        if min(one[0], other[0]) <= tolerance:
+            notes.append(f"joint of {laid.between}: normal turned, it pointed from b to a")
+        else:
+            out = normal
+    if float(across @ out) < 0:
+        ends = ends[::-1]
+    faces = [ends if far > tolerance else _in_sense(face, ends) for far, face in (one, other)]
+    known = np.stack(faces) if joint.faces is None else joint.faces
+    yield Touch(joint.a, joint.b, ends, known)
+
+
+def _face(outlines: Sequence[Array], ends: Array) -> _Near:
     """Return the face nearest to a joint, and how far the joint's farther end is off it."""
     start = np.concatenate(outlines)
     finish = np.concatenate([following(outline) for outline in outlines])
@@ -203,8 +222,8 @@ def _in_sense(face: Array, ends: Array) -> Array:
 def _corner(
     joint: GivenJoint,
     at: Array,
-    one: tuple[float, Array],
-    other: tuple[float, Array],
+    one: _Near,
+    other: _Near,
     normal: Array,
     tolerance: float,
 ) -> Touch:

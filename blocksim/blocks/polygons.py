@@ -115,6 +115,42 @@ def assembly_of_bodies(
         In one line, naming the blocks: fewer than three corners, a polygon that crosses
         itself, a weight not above zero, an overlap, a block that nothing holds.
     """
+    raw, size = _sound(bodies, size)
+    notes: list[str] = []
+    if rounding is None:
+        rounding = step_of(np.concatenate([each.ravel() for of in raw for each in of]))
+    measured = extents(raw)
+    exact = np.maximum(TOLERANCE * measured.wide / 2, _ROUNDING * measured.far)
+    fixed_ones = np.array([body.fixed for body in bodies])
+    slack = _slack(measured, exact, fixed_ones, rounding, tolerance)
+    shapes = shapes_of(raw, bodies, exact, notes)
+    if joints is None:
+        _require_apart(shapes, bodies, fixed_ones, slack)
+        found = [(touch, None) for touch in _found(shapes, bodies, slack, notes)]
+        notes += _said(found, bodies, slack, rounding, tolerance)
+    else:
+        deep = overlaps([shape.parts for shape in shapes], fixed_ones, slack, SHOWN)
+        if deep:
+            pairs = [(one, other) for one, other, _ in deep]
+            notes.append(f"overlaps taken, as joints are given: {_pairs(bodies, pairs)}")
+        outlines = [shape.outlines for shape in shapes]
+        names = [name_of(bodies, index) for index in range(len(bodies))]
+        found = as_given(joints, outlines, names, exact / TOLERANCE, TOLERANCE, notes)
+        notes.append(f"{counted(len(found), 'joint')} as given")
+    _require_held([touch for touch, _ in found], bodies)
+    moving, fixed = np.flatnonzero(~fixed_ones).tolist(), np.flatnonzero(fixed_ones).tolist()
+    blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
+    place = {index: at for at, index in enumerate(moving)}
+    bed = {index: at for at, index in enumerate(fixed)}
+    supports = tuple(Support(shapes[index].parts, bodies[index].name) for index in fixed)
+    made = [_joint(touch, own, place, bed) for touch, own in found]
+    if joints is None:
+        made.sort(key=_order)
+    return Assembly(blocks, tuple(made), size, supports), tuple(notes)
+
+
+def _sound(bodies: Sequence[Body], size: float | None) -> tuple[list[tuple[Array, ...]], float]:
+    """Return polygons of bodies, and the characteristic length, where they may be built."""
     require(0 < len(bodies) <= MOST_BLOCKS, "blocks", len(bodies), f"1 to {MOST_BLOCKS}")
     raw = [finite(body, index) for index, body in enumerate(bodies)]
     moving = [index for index, body in enumerate(bodies) if not body.fixed]
@@ -134,50 +170,25 @@ def assembly_of_bodies(
         f"below {TOLERANCE * size / _ROUNDING:.3g} m for this size: "
         "move the drawing to its origin",
     )
-    notes: list[str] = []
-    fixed_ones = np.array([body.fixed for body in bodies])
-    if rounding is None:
-        rounding = step_of(np.concatenate([each.ravel() for of in raw for each in of]))
-    measured = extents(raw)
-    exact = np.maximum(TOLERANCE * measured.wide / 2, _ROUNDING * measured.far)
-    slack = _slack(measured, exact, fixed_ones, rounding, tolerance)
-    shapes = shapes_of(raw, bodies, exact, notes)
-    parts = [shape.parts for shape in shapes]
-    if joints is None:
-        for one, other, depth in overlaps(parts, fixed_ones, slack, 1):
-            most = float(slack.at(one, other).close)
-            raise InputError(
-                f"overlap of blocks {name_of(bodies, one)} and {name_of(bodies, other)}",
-                f"{depth:.3g} m",
-                f"at most {most:.3g} m: move one of them, give the joints, or --tolerance",
-            )
-        found = [(touch, None) for touch in _found(shapes, bodies, slack, notes)]
-        notes += _said(found, bodies, slack, rounding, tolerance)
-    else:
-        deep = overlaps(parts, fixed_ones, slack, SHOWN)
-        if deep:
-            pairs = [(one, other) for one, other, _ in deep]
-            notes.append(f"overlaps taken, as joints are given: {_pairs(bodies, pairs)}")
-        outlines = [shape.outlines for shape in shapes]
-        names = [name_of(bodies, index) for index in range(len(bodies))]
-        found = as_given(joints, outlines, names, exact / TOLERANCE, TOLERANCE, notes)
-        notes.append(f"{counted(len(found), 'joint')} as given")
-    _require_held([touch for touch, _ in found], bodies)
-    blocks = tuple(_block(bodies[index], shapes[index], index, density) for index in moving)
-    place = {index: at for at, index in enumerate(moving)}
-    fixed = [index for index, body in enumerate(bodies) if body.fixed]
-    bed = {index: at for at, index in enumerate(fixed)}
-    supports = tuple(Support(shapes[index].parts, bodies[index].name) for index in fixed)
-    made = [_joint(touch, own, place, bed) for touch, own in found]
-    if joints is None:
-        made.sort(
-            key=lambda joint: (
-                joint.before,
-                joint.after,
-                -1 if joint.support is None else joint.support,
-            )
+    return raw, size
+
+
+def _require_apart(
+    shapes: Sequence[Shape], bodies: Sequence[Body], fixed: NDArray[np.bool_], slack: Slack
+) -> None:
+    """Raise `InputError` where bodies overlap; the first overlap is enough."""
+    for one, other, depth in overlaps([shape.parts for shape in shapes], fixed, slack, 1):
+        most = float(slack.at(one, other).close)
+        raise InputError(
+            f"overlap of blocks {name_of(bodies, one)} and {name_of(bodies, other)}",
+            f"{depth:.3g} m",
+            f"at most {most:.3g} m: move one of them, give the joints, or --tolerance",
         )
-    return Assembly(blocks, tuple(made), size, supports), tuple(notes)
+
+
+def _order(joint: Joint) -> tuple[int, int, int]:
+    """Order found joints: by the blocks before and after, and by their support."""
+    return joint.before, joint.after, -1 if joint.support is None else joint.support
 
 
 def _slack(

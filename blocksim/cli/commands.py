@@ -32,6 +32,7 @@ from blocksim.cli.options import (
     OWN,
     Given,
     Loading,
+    MustRest,
     Scene,
     Set,
     named_options,
@@ -129,6 +130,7 @@ def render(
     time: Time = None,
     height: Height = None,
     method: EngineOption = None,
+    must_rest: MustRest = False,
 ) -> None:
     """Draw what is built to scale, or film its motion.
 
@@ -137,7 +139,8 @@ def render(
     continuous arch at its least, with its lines of thrust and friction, in each of its
     collapse modes. Everything else is drawn from a recording: a film, a view in 3d, a frame
     of an .npz file, an animated model (glTF), tables. A scenario is simulated first, 1 % below
-    its least thickness where none is given.
+    its least thickness where none is given. With --must-rest a picture shows the motion that
+    friction lets begin, and a film the blocks let go along it in direct.
     """
     if scene is None:
         question(scene, given, out=out)
@@ -151,9 +154,10 @@ def render(
         if kind in MODELS and is_structure(scene):
             asked = anything_asked(scene, given, loading)
             if isinstance(asked, SpatialProblem):
+                require(not must_rest, "--must-rest", must_rest, "left out in space")
                 model_in_space(out, kind, asked, method)
                 return
-        export(out, kind, *recordings(scene, given, loading, method, None))
+        export(out, kind, *recordings(scene, given, loading, method, None, must_rest=must_rest))
         return
     filmed = kind in FILMS or view == "3d" or beside is not None
     if filmed or (scene is not None and scene.endswith(".npz")):
@@ -164,13 +168,15 @@ def render(
         if kind in FILMS and is_structure(scene):
             asked = anything_asked(scene, given, loading)
             if isinstance(asked, SpatialProblem):
+                require(not must_rest, "--must-rest", must_rest, "left out in space")
                 film_in_space(out, asked, method, shown, beside)
                 return
-        film(out, recordings(scene, given, loading, method, beside, asked), shown)
+        runs = recordings(scene, given, loading, method, beside, asked, must_rest=must_rest)
+        film(out, runs, shown)
     else:
         for name, value in (("slow", slow), ("time", time)):
             require(value is None, f"--{name}", value, "left out: the picture is of no motion")
         if height is not None:
             require(kind == "png", "--height", height, f"left out: a .{kind} has no pixels")
             require_height(height)
-        write_still(out, kind, scene, given, loading, method, height)
+        write_still(out, kind, scene, given, loading, method, height, must_rest=must_rest)

@@ -47,7 +47,7 @@ def write_curves(problem: Problem, over: str, out: Sequence[Path], *, silent: bo
         lines = [Line(f"to the {each.way}", each.moved, each.pushes) for each in found]
         axes = "way of the centre of mass [m]", "push over weight [g]"
     else:
-        from blocksim.ask.spread import thrusts_over
+        from blocksim.ask.moved import thrusts_over
 
         points = thrusts_over(problem)
         names = ["spread_m", "thrust_min_kN", "thrust_max_kN"]

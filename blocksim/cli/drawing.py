@@ -26,6 +26,8 @@ def write_still(
     loading: Loading,
     method: str | None,
     height: int | None,
+    *,
+    must_rest: bool,
 ) -> None:
     """Draw what stands still: a sheet of what is built, or the arch at its least thickness.
 
@@ -38,13 +40,15 @@ def write_still(
     if asked is None or (not asked.lean and asked.has_thickness):
         problem = anything_asked(scene, given, loading, thick=True)
         if isinstance(problem, SpatialProblem):
+            require(not must_rest, "--must-rest", must_rest, "left out in space")
             _write_perspective(out, kind, problem, method, height)
         else:
             require(kind != "html", "--out", str(out), flat)
-            _write_sheet(out, kind, problem, method, height)
+            _write_sheet(out, kind, problem, method, height, must_rest=must_rest)
         return
     require(kind != "html", "--out", str(out), flat)
     require(method is None, "--method", method, "left out: the picture is of no motion")
+    require(not must_rest, "--must-rest", must_rest, "left out: nothing is built in its plane")
     flat = "a .png, .svg or .pdf: it leans" if asked.lean else (
         "a .png, .svg or .pdf where no thickness is given"
     )  # fmt: skip
@@ -66,7 +70,13 @@ def write_still(
 
 
 def _write_sheet(
-    out: Path, kind: str, problem: Problem, method: str | None, height: int | None
+    out: Path,
+    kind: str,
+    problem: Problem,
+    method: str | None,
+    height: int | None,
+    *,
+    must_rest: bool,
 ) -> None:
     """Draw a problem to scale, with its answer."""
     as_built = "limit or an engine: it is drawn as built"
@@ -77,7 +87,7 @@ def _write_sheet(
     from blocksim.view.sheetfigure import sheet_figure
 
     with named_options(), progress() as report:
-        answer = check(problem, method=method or "auto", progress=report)
+        answer = check(problem, method=method or "auto", must_rest=must_rest, progress=report)
     sheet = answer_sheet(answer)
     if kind == "dxf":
         write_whole(out, lambda file: write_dxf(sheet, file))

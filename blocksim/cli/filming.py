@@ -8,7 +8,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
+from blocksim.ask.check import check
 from blocksim.ask.methods import choose
+from blocksim.ask.rest import let_go, rest_words
 from blocksim.ask.simulate import simulate
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.cli.arguments import Option
@@ -16,6 +18,7 @@ from blocksim.cli.options import OWN, Given, Loading, named_options, option_of
 from blocksim.cli.output import progress, say
 from blocksim.cli.subject import problem_asked
 from blocksim.common.checks import Range, require
+from blocksim.common.errors import InputError
 from blocksim.common.files import write_whole
 from blocksim.common.words import counted
 from blocksim.engines import NAMES
@@ -104,19 +107,38 @@ def recordings(
     method: str | None,
     beside: Path | None,
     problem: Problem | None = None,
+    *,
+    must_rest: bool = False,
 ) -> list[Recording]:
-    """Read recordings, or simulate the scenario; `problem` is that, where it is read."""
+    """Read recordings, or simulate the scenario; `problem` is that, where it is read.
+
+    Where it is asked whether it must rest, blocks are let go along the motion that is found.
+    """
     second = [] if beside is None else [load_recording(beside)]
     if scene is not None and scene.endswith(".npz"):
         said = {**asdict(given), **asdict(loading), "method": method}
+        said["must_rest"] = must_rest or None
         for name, value in said.items():
             require(value is None, option_of(name), value, "left out: the recording says it")
         return [load_recording(Path(scene)), *second]
     problem = problem or problem_asked(scene, given, loading)
+    if must_rest:
+        return [_along_motion(problem, method), *second]
     with named_options(), progress() as report:
         until = FALL if problem.shaking is None else None
         run = simulate(problem, method=method or "auto", duration=until, progress=report)
     return [run, *second]
+
+
+def _along_motion(problem: Problem, method: str | None) -> Recording:
+    """Let blocks go along the motion that friction lets begin."""
+    require(method in {None, "auto", "direct"}, "--method", method, "direct, or left out")
+    with named_options(), progress() as report:
+        found = check(problem, method="limit", must_rest=True, progress=report)
+        if found.motion is None:
+            said = rest_words(found.rest, asked=True) or "it falls: no motion besides is sought"
+            raise InputError("--must-rest", said, "left out: no such motion was found")
+        return let_go(problem, found.motion.accelerations, progress=report)
 
 
 def film(out: Path, shown: Sequence[Recording], options: RenderOptions) -> None:

@@ -52,7 +52,7 @@ def _moved(problem: Problem, loading: Loading) -> Problem:
     """Move the supports of a problem apart, and push it sideways, as the options say."""
     if loading.spread is not None:
         # What moves supports is loaded where it is asked for.
-        from blocksim.ask.spread import spread_by
+        from blocksim.ask.moved import spread_by
 
         problem = spread_by(problem, loading.spread)
     if loading.push is not None:

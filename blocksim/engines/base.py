@@ -57,7 +57,8 @@ class Settings:
     penetration : float
         Deepest overlap at which an answer still counts [size].
     accuracy : float
-        Share by which motion may be off, where an engine follows one.
+        Share by which motion may be off, where an engine follows one. Its steps are as long
+        as the root of that allows.
     repeats : int
         Most repetitions, with finer sweeps, of a moving run that contacts started.
     farthest : float
@@ -92,11 +93,18 @@ class Quality:
         Deepest overlap of two blocks, in units of the size.
     gain : float or None
         Most by which the energy was above that at the release, as a share of what fell.
+    error : float or None
+        How far corners were off by then, estimated [size] (`blocksim.simulation.repeating`).
+    known : float or None
+        Time from which they may be off by more than a hundredth of the size
+        [sqrt(size/g)]; None where there is none.
     """
 
     residual: float | None = None
     penetration: float | None = None
     gain: float | None = None
+    error: float | None = None
+    known: float | None = None
 
 
 class World(Protocol):
@@ -298,6 +306,11 @@ class Engine(Method):
     def is_static(self) -> bool:
         """Whether it answers without motion: no engine does."""
         return False
+
+    @property
+    def follows_accuracy(self) -> bool:
+        """Whether its motion can be asked for to an accuracy, and says how right it is."""
+        return "accuracy" in self.adjustable
 
     @property
     def version(self) -> str:

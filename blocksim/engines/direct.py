@@ -111,7 +111,8 @@ class Blocks(Stepping):
         shakes = 0.0 if shaking is None else shaking.duration / unit - self._time
         if shaking is not None and shakes > LEAST * self._step:
             # It may set blocks in motion at any time; no step goes past its end.
-            longest, left = min(self._step, shaking.spacing / unit), min(left, shakes)
+            longest = min(self._step, shaking.spacing / unit * self._step / STEP)
+            left = min(left, shakes)
             return left / math.ceil(left / longest - LEAST)
         usual = left / math.ceil(left / self._step - LEAST)
         step = left / math.ceil(left / (LONG * self._step) - LEAST)
@@ -172,7 +173,7 @@ ENGINE = Engine(
     build=Blocks,
     rule_in_space=rule_in_space,
     build_in_space=blocks_in_space,
-    adjustable=("step", "still", "rest"),
+    adjustable=("step", "accuracy", "still", "rest"),
     finest=1e-8,
     most_friction=math.inf,
     shakes=True,

@@ -58,6 +58,8 @@ DEEP = 1e-5
 """Overlap that is pushed apart at once [size]."""
 FAR = 1e3
 """Velocity that a contact taken for open cannot lose in a step, over those there are."""
+AT_REST, MOVES = 1e-9, 1e-6
+"""Velocity of blocks at rest [sqrt(size g)], and acceleration that begins a motion [g]."""
 NO_GUESS: tuple[NDArray[np.int64] | None, Solution | None] = None, None
 """Pairs, and what their contacts do, where no more is known than of the last step."""
 
@@ -174,6 +176,11 @@ class Stepping:
         rates[:, :2] += REGAIN * np.maximum(gap, -DEEP) / max(step, self._usual)
         rates[:, :2][~shut] += FAR * (1 + float(np.abs(rates).max(initial=0.0)))
         solution = self._solve(touch, rates / step, PRECISION)
+        if (
+            float(self._speeds().max()) < AT_REST
+            and np.abs(solution.acceleration).max() > MOVES
+        ):
+            solution = self._or_rest(touch, rates / step, solution)
         self._shut = shut
         self._begins = start.gap, rate[:, :2]
         if not solution.residual <= UNSOLVED:
@@ -185,6 +192,17 @@ class Stepping:
         self._ends = end.gap, self._rates(end.rows, self._velocities)[:, :2]
         passes = end.gap < np.minimum(0.0, start.gap) - CLOSED
         return ~shut & passes & (self._ends[1] < 0)
+
+    def _or_rest(self, touch: Touch, rates: Array, moves: Solution) -> Solution:
+        """Return the rest of blocks at rest that may also start to move, if there is one.
+
+        Friction may allow both, and what is known of the last step leads to either.
+        """
+        found = self._problem.solve(touch.rows, rates, self._free, None, PRECISION)
+        if not found.residual <= RESIDUAL or np.abs(found.acceleration).max() > MOVES:
+            return moves
+        self._solution = found
+        return found
 
     def _look(self, step: float) -> None:
         """See what is closed, and what approaches, where the blocks are."""

@@ -9,24 +9,22 @@ import numpy as np
 
 from blocksim.blocks.assembly import PLANAR, SUPPORT, Array
 from blocksim.blocks.problem import Problem
+from blocksim.common.conic import solved_cones
 from blocksim.common.later import Library
 from blocksim.limit.cones import Cones
 
 if TYPE_CHECKING:
     from scipy import sparse
-    from scipy.sparse import csgraph, linalg
+    from scipy.sparse import csgraph
 else:
     sparse, csgraph = Library("scipy.sparse"), Library("scipy.sparse.csgraph")
-    linalg = Library("scipy.sparse.linalg")
 
 ALIKE = 1e-7
 """Rates at a joint, over the largest, up to which its blocks move as one."""
 ENOUGH = 0.5
 """Part of the rate asked for at which a joint counts as open."""
-ROUNDS, HALVINGS = 50, 20
-"""Steps of Newton's method at most, and how finely the length of each is sought."""
-LENIENT = 1e-12
-"""What is added to equations that leave a motion free, over their size."""
+FINEST = 1e-3
+"""How finely a motion is sought that opens every joint: any will do."""
 SHARE = 0.25
 """Most of the work of the loads that opening all joints may take."""
 
@@ -83,30 +81,20 @@ def widened(problem: Problem, cones: Cones, rates: Array) -> Array | None:
 
 
 def _opening(cones: Cones) -> Array | None:
-    """Return a motion that opens every joint, None where none is found.
-
-    It has the least squares of what each joint lacks of a rate, by Newton's method.
-    """
+    """Return the least motion that opens every joint at a rate, None where none does."""
     rows: Any = cones.balance.T.tocsr()
     rows = sparse.diags_array(1 / np.sqrt(rows.multiply(rows).sum(axis=1))) @ rows
-    unit: Any = LENIENT * sparse.eye_array(rows.shape[1])
-    motion, last = np.zeros(rows.shape[1]), math.inf
-    solve: Any = linalg.spsolve
-    for _ in range(ROUNDS):
-        lack: Array = 1 - rows @ motion
-        if lack.max() < ENOUGH:
-            return motion.reshape(cones.shape) * cones.ease
-        closed = lack > 0
-        error = float(lack[closed] @ lack[closed])
-        if error > (1 - ALIKE) * last:
-            return None
-        last, active = error, rows[closed]
-        way = solve((active.T @ active + unit).tocsc(), active.T @ lack[closed])
-        gained: Array = rows @ way
-        low, high = 0.0, 4.0
-        for _ in range(HALVINGS):
-            middle = (low + high) / 2
-            falls = gained @ np.maximum(lack - middle * gained, 0.0) > 0
-            low, high = (middle, high) if falls else (low, middle)
-        motion = motion + low * way
-    return None
+    joints, rates = rows.shape
+    found = solved_cones(
+        sparse.eye_array(rates, format="csc"),
+        np.zeros(rates),
+        sparse.csc_array(-rows),
+        -np.ones(joints),
+        [("nonnegative", joints)],
+        finest=FINEST,
+        scaled=False,
+        refined=False,
+    )
+    motion: Array = np.array(found.x)
+    opens = str(found.status) == "Solved" and (rows @ motion).min() > ENOUGH
+    return motion.reshape(cones.shape) * cones.ease if opens else None

@@ -70,6 +70,26 @@ class Cones:
         self.ease[:, 2] *= np.where(turned, 1.0, UNTURNED**-2)
         self.unit = joint_weights(problem, weights)
         self._friction = problem.friction if friction is None else friction
+        self._sides = assembly.sides
+        self._edges()
+        self._direction = (
+            self._normal[:, None] * joints.normal[self._joint]
+            + self._tangent[:, None] * joints.tangent[self._joint]
+        )
+        middle = joints.ends.mean(axis=1, keepdims=True)
+        ends_used = joints.ends if width == 1 else middle + width * (joints.ends - middle)
+        self._point = ends_used.reshape(-1, 2)[self._end]
+        # Where each part meets a support: which, and in which sense it acts on it.
+        on = column(assembly.joints, "support")
+        which = [-1 if each is None else each for each in on]
+        self._support = np.array(which, dtype=np.int64)[self._joint]
+        on_after = (joints.after == SUPPORT)[self._joint]
+        on_before = (joints.before == SUPPORT)[self._joint]
+        self._sense = on_after.astype(np.float64) - on_before
+        self.balance = self._balance(assembly.built[:, :2])
+
+    def _edges(self) -> None:
+        """Lay the parts along the edges of the cones at all ends."""
         mu = np.repeat(self._friction, 2)
         ends = np.arange(2 * self._joints)
         finite, rough = ends[np.isfinite(mu)], ends[(mu > 0) & np.isfinite(mu)]
@@ -78,54 +98,31 @@ class Cones:
         upright = 1 / np.maximum(1.0, np.where(np.isfinite(mu), mu, 0.0))
         along = np.where(np.isfinite(mu), mu, 0.0) * upright
         self._end = np.concatenate([finite, rough, boundless, boundless])
-        ones = np.ones(len(boundless))
-        self._normal = np.concatenate([upright[finite], upright[rough], ones, 0 * ones])
-        self._tangent = np.concatenate([along[finite], -along[rough], 0 * ones, ones])
+        self._joint = self._end // 2
+        ones, unit = np.ones(len(boundless)), self.unit[self._joint]
+        self._normal = unit * np.concatenate([upright[finite], upright[rough], ones, 0 * ones])
+        self._tangent = unit * np.concatenate([along[finite], -along[rough], 0 * ones, ones])
         self.count = len(self._end)
         free = self.count - len(boundless)
         self.bounded = np.where(np.arange(self.count) < free, 1.0, 0.0)
-        self._joint = self._end // 2
-        self._sides = assembly.sides
-        self._normal *= self.unit[self._joint]
-        self._tangent *= self.unit[self._joint]
-        direction = (
-            self._normal[:, None] * joints.normal[self._joint]
-            + self._tangent[:, None] * joints.tangent[self._joint]
-        )
-        self._direction = direction
-        middle = joints.ends.mean(axis=1, keepdims=True)
-        ends_used = joints.ends if width == 1 else middle + width * (joints.ends - middle)
-        self._point = point = ends_used.reshape(-1, 2)[self._end]
-        # Where each part meets a support: which, and in which sense it acts on it.
-        on = column(assembly.joints, "support")
-        which = [-1 if each is None else each for each in on]
-        self._support = np.array(which, dtype=np.int64)[self._joint]
-        on_after = (joints.after == SUPPORT)[self._joint]
-        on_before = (joints.before == SUPPORT)[self._joint]
-        self._sense = on_after.astype(np.float64) - on_before
-        # The support comes last, as index -1 says, and is left out in the end.
-        centres = assembly.built[:, :2]
+
+    def _balance(self, centres: Array) -> sparse.csc_array:
+        """Return what the parts do to the blocks: the support, index -1, is left out."""
         rows: list[NDArray[np.int64]] = []
         values: list[Array] = []
-        for sign, block in ((1.0, joints.after), (-1.0, joints.before)):
+        before, after = self._sides
+        for sign, block in ((1.0, after), (-1.0, before)):
             mine = block[self._joint]
-            arm = point - centres[mine]
-            turn = arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]
-            part = sign * np.column_stack([direction, turn])
+            arm, way = self._point - centres[mine], self._direction
+            turn = arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]
+            part = sign * np.column_stack([way, turn])
             part *= np.vstack([self.ease, np.zeros(PLANAR)])[mine]
             rows.append(PLANAR * np.maximum(mine, 0)[:, None] + np.arange(PLANAR))
             values.append(part)
-        columns = np.repeat(np.arange(self.count), PLANAR)
-        self.balance = sparse.csc_array(
-            (
-                np.concatenate([each.ravel() for each in values]),
-                (
-                    np.concatenate([each.ravel() for each in rows]),
-                    np.concatenate([columns, columns]),
-                ),
-            ),
-            shape=(PLANAR * self.shape[0], self.count),
-        )
+        columns = np.tile(np.repeat(np.arange(self.count), PLANAR), 2)
+        at = np.concatenate([each.ravel() for each in rows]), columns
+        entries = np.concatenate([each.ravel() for each in values])
+        return sparse.csc_array((entries, at), shape=(PLANAR * self.shape[0], self.count))
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:

@@ -97,15 +97,9 @@ class LinearProgramme:
     """A linear programme that may be solved again with other numbers.
 
     Each solution begins with what was active in the last one, which takes a tenth of the time.
-
-    Parameters
-    ----------
-    vertex : bool
-        Find a vertex: of many unknowns a point within the optimal ones is found in less time.
     """
 
-    def __init__(self, *, vertex: bool = True) -> None:
-        self._vertex = vertex
+    def __init__(self) -> None:
         self._highs = _solver(
             primal_feasibility_tolerance=FINEST, dual_feasibility_tolerance=FINEST
         )
@@ -153,11 +147,8 @@ class LinearProgramme:
             # Of many unknowns the interior point is three to ten times faster, and as exact:
             # its answer is brought to a vertex. It does not tell whether nothing limits it.
             self._shape, self._basis = columns.shape, None
-            if columns.shape[1] > MANY:
-                for crossover in ("on",) if self._vertex else ("off", "on"):
-                    self._highs.setOptionValue("run_crossover", crossover)
-                    if self._run("ipm"):
-                        return self._found()
+            if columns.shape[1] > MANY and self._run("ipm"):
+                return self._found()
         return self._by_simplex()
 
     def _by_simplex(self) -> Optimum | None:

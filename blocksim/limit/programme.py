@@ -28,7 +28,8 @@ from blocksim.limit.bearing import settled
 from blocksim.limit.bodies import alike, widened
 from blocksim.limit.cones import ROUND_OFF, Cones
 from blocksim.limit.exact import Exact
-from blocksim.limit.linear import LinearProgramme, Optimum
+from blocksim.limit.interior import most_inside
+from blocksim.limit.linear import MANY, LinearProgramme, Optimum
 from blocksim.limit.proof import Proof, proof_in_rationals, proof_of_fall, proof_of_rest
 from blocksim.limit.symmetry import symmetric_forces, symmetric_rates
 
@@ -89,8 +90,9 @@ class Equilibrium:
         if self.rates is not None and self.margin < NEAR:
             rates = widened(self.problem, self._cones, self.rates)
             found = None if rates is None else proof_of_fall(exact, rates)
-            owner = alike(self.problem, self._cones, self.rates)
-            found = found or proof_in_rationals(exact, weights, owner)
+            if found is None:
+                owner = alike(self.problem, self._cones, self.rates)
+                found = proof_in_rationals(exact, weights, owner)
             if found is not None:
                 return found
         return proof_in_rationals(exact, weights, range(blocks))
@@ -152,9 +154,8 @@ def equilibrium(problem: Problem) -> Equilibrium:
     problem = settled(problem)
     cones, pull = Cones(problem), problem.pull()
     try:
-        found = most_common(cones, pull, LinearProgramme(vertex=False))
-        if not found.exists or abs(found.values[-1]) < NEAR:
-            found = most_common(cones, pull)
+        found = _clear(cones, pull) if cones.count > MANY else None
+        found = most_common(cones, pull) if found is None else found
         for _ in range(RESCALED):
             if not found.exists or cones.left(_parts(cones, found), pull) < ROUND_OFF:
                 break
@@ -164,7 +165,8 @@ def equilibrium(problem: Problem) -> Equilibrium:
     except Unsolved:
         return Equilibrium(problem=problem, margin=math.nan, parts=None, rates=None)
     if not found.exists:
-        driven = falling(problem)
+        known = found.prices.size > 0
+        driven = scaled(cones.rates(found.prices)) if known else falling(problem)
         return Equilibrium(problem=problem, margin=-math.inf, parts=None, rates=driven)
     margin = float(found.values[-1])
     return Equilibrium(
@@ -174,6 +176,14 @@ def equilibrium(problem: Problem) -> Equilibrium:
         rates=scaled(cones.rates(found.prices)),
         cones=cones,
     )
+
+
+def _clear(cones: Cones, pull: Array) -> Optimum | None:
+    """Find what `most_common` does in less time; None where it is near the limit."""
+    found = most_inside(cones, *_common(cones, pull), SPARE)
+    if found is not None and found.exists and not NEAR < abs(found.values[-1]) < TENSION:
+        return None
+    return found
 
 
 def _parts(cones: Cones, found: Optimum) -> Array:
@@ -238,8 +248,12 @@ def most_common(cones: Cones, pull: Array, solver: LinearProgramme | None = None
 
     What all parts have in common comes last in the optimum's values.
     """
-    common = sparse.csc_array(cones.balance @ cones.bounded[:, None])
-    return most(cones, common, -cones.loads(pull), (-TENSION, SPARE), solver)
+    return most(cones, *_common(cones, pull), (-TENSION, SPARE), solver)
+
+
+def _common(cones: Cones, pull: Array) -> tuple[Any, Array]:
+    """Return what parts do that all have in common, and what they all balance."""
+    return sparse.csc_array(cones.balance @ cones.bounded[:, None]), -cones.loads(pull)
 
 
 def extreme(

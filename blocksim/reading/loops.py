@@ -20,13 +20,14 @@ from scipy.spatial import KDTree
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.outlines import signed_area
+from blocksim.common.checks import require
 
 MEETS = 1e-4
 """Ends of lines are one corner where they are nearer than this share of the shorter line."""
 ALIKE = 1e-3
 """Lines between the same corners are one where their middles are nearer than this share."""
-MOST_LINES = 20_000
-"""Of a drawing, each with an end that meets others."""
+MOST_LINES, MOST_ENDS = 10_000, 30
+"""Of a drawing, each with an end that meets others; and ends at a place, on average."""
 
 Path = list[tuple[float, float]]
 
@@ -115,8 +116,11 @@ def _corners(points: Array, near: Array) -> tuple[NDArray[np.int64], Array, floa
             k = group[k]
         return k
 
-    moved = 0.0
-    for a, b in KDTree(points).query_pairs(float(near.max()), output_type="ndarray").tolist():
+    moved, tree, reach = 0.0, KDTree(points), float(near.max())
+    many = int(tree.count_neighbors(tree, reach))
+    few = many <= MOST_ENDS * len(points)
+    require(few, "ends of lines", "more at one place", f"at most {MOST_ENDS} on average")
+    for a, b in tree.query_pairs(reach, output_type="ndarray").tolist():
         far = math.dist(points[a], points[b])
         if far <= min(near[a], near[b]):
             moved = max(moved, far)
@@ -154,19 +158,19 @@ def _cut(line: int, path: Path, ends: Sequence[int], places: Array, near: float)
     low, high = points.min(axis=0) - near, points.max(axis=0) + near
     inside = ((places >= low) & (places <= high)).all(axis=1)
     inside[list(ends)] = False
-    cuts: list[tuple[int, float, int]] = []
-    for corner in np.flatnonzero(inside).tolist():
-        for at, (one, other) in enumerate(pairwise(points)):
-            way, arm = other - one, places[corner] - one
-            long = float(np.hypot(*way))
-            share = float(way @ arm) / long**2 if long else -1.0
-            off = abs(float(way[0] * arm[1] - way[1] * arm[0])) / long if long else math.inf
-            if 0 < share <= 1 and off <= near:
-                cuts.append((at, share, corner))
-                break
+    near_ones = np.flatnonzero(inside)
+    cuts: dict[int, tuple[int, float]] = {}
+    for at, (one, other) in enumerate(pairwise(points) if len(near_ones) else ()):
+        way, arm = other - one, places[near_ones] - one
+        long = float(np.hypot(*way))
+        if not long:
+            continue
+        share, off = arm @ way / long**2, np.abs(way[0] * arm[:, 1] - way[1] * arm[:, 0]) / long
+        for k in np.flatnonzero((share > 0) & (share <= 1) & (off <= near)).tolist():
+            cuts.setdefault(int(near_ones[k]), (at, float(share[k])))
     found: list[_Edge] = []
     last, begin, before = ends[0], 0, path[0]
-    for at, _, corner in sorted(cuts):
+    for at, _, corner in sorted((*where, corner) for corner, where in cuts.items()):
         here = tuple(places[corner].tolist())
         found.append(_Edge(line, (last, corner), (before, *path[begin + 1 : at + 1], here)))
         last, begin, before = corner, at, here

@@ -202,10 +202,13 @@ def _shaken(answer: Check[Any]) -> ShakenRecord | None:
     if answer.shaken is None:
         return None
     rocking, assembly = answer.shaken.rocking, answer.problem.assembly
+    off, late, unit = rocking.off, rocking.late, answer.problem.seconds
     return {
         "largest_rotation_deg": math.degrees(rocking.rotation),
+        "largest_rotation_error_deg": None if off is None else math.degrees(off),
         "block": assembly.blocks[rocking.block].name or str(rocking.block),
         "first_impact_s": answer.shaken.first_impact_s,
+        "first_impact_error_s": None if late is None else late * unit,
         "moved_m": answer.shaken.moved * assembly.size,
     }
 

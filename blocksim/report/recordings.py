@@ -32,7 +32,9 @@ def recording_record(recording: Recording) -> dict[str, object]:
         "recorded_s": float(recording.seconds(STANDARD_GRAVITY)[-1]),
         "moved_m": float(recording.displacement[-1]) * size,
         "largest_rotation_deg": math.degrees(rocking.rotation),
+        "gravity_m_s2": STANDARD_GRAVITY,
         "quality": to_record(recording.quality),
+        "overlap_of_smallest_block": recording.overlap_share,
         "state_hash": recording.state_hash,
     }
 
@@ -60,7 +62,8 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
     said = []
     if kept.penetration is not None:
         said.append(
-            f"blocks overlap by at most {kept.penetration:.1e} {unit}"
+            f"blocks overlap by at most {kept.penetration:.1e} {unit}, "
+            f"{recording.overlap_share:.2g} of the smallest"
             if kept.penetration > ROUNDING
             else "no blocks overlap"
         )
@@ -72,4 +75,11 @@ def recording_lines(recording: Recording, unit: str) -> list[str]:
         )
     if said:
         lines.append("  " + ", ".join(said))
+    if kept.error is not None:
+        until = recording.times[-1] if kept.known is None else kept.known
+        ends = "" if kept.known is None else ", not known beyond"
+        lines.append(
+            f"  right to {kept.error:.1e} {unit} until {until * problem.seconds:.3g} s{ends}, "
+            "says a run at twice the step"
+        )
     return lines

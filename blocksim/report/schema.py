@@ -112,11 +112,16 @@ class MovementRecord(TypedDict):
 
 
 class ShakenRecord(TypedDict):
-    """What became of blocks on ground that shakes; the time is since the release."""
+    """What became of blocks on ground that shakes; the time is since the release.
+
+    Errors are estimates: what a run at another step says otherwise.
+    """
 
     largest_rotation_deg: float
+    largest_rotation_error_deg: float | None
     block: str
     first_impact_s: float | None
+    first_impact_error_s: float | None
     moved_m: float
 
 

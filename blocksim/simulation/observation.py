@@ -16,6 +16,7 @@ from blocksim.engines.base import Engine, TellsForces, World
 from blocksim.simulation.motion import Motion, moving_run
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.recording import Recording
+from blocksim.simulation.repeating import COARSER, compared
 from blocksim.simulation.simulated import BY_RULE, Overrides, Reduced, Simulation, given_words
 from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
@@ -63,6 +64,15 @@ class Held:
             until=until,
             progress=progress,
         )
+
+    def record(self, until: float | None = None, progress: Progress = silent) -> Recording:
+        """Let the blocks go, and say how right it is where the engine follows an accuracy."""
+        recording = self.release(until, progress).recording
+        if not self.simulation.engine.follows_accuracy:
+            return recording
+        world = self.simulation.at_step(COARSER * self.simulation.settings.step).world()
+        self.onset.repeat(world)
+        return compared(recording, world)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

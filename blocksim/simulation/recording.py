@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Literal
 import numpy as np
 from numpy.lib.format import read_array_header_1_0, read_magic
 
-from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, displacement
+from blocksim.blocks.assembly import PLANAR, SPATIAL, Array, Assembly, Block, displacement
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.record import from_record, to_record
 from blocksim.common.checks import is_number, require
@@ -104,6 +104,14 @@ class Recording(Recorded[Problem], Shown):
             return np.zeros(len(self.times))
         return self._moved(PLANAR, beyond=True)
 
+    @property
+    def overlap_share(self) -> float | None:
+        """Deepest overlap over the root of the smallest block's area; None if not known."""
+        deepest = self.quality.penetration
+        if deepest is None:
+            return None
+        return deepest * self.assembly.size / min(map(_width, self.assembly.blocks))
+
     def _moved(self, count: int, *, beyond: bool = False) -> Array:
         """Displacements by the first columns of the poses, or by those beyond them."""
         at_once = max(1, CHUNK // max(1, self.poses[0].size))
@@ -172,6 +180,12 @@ class Recording(Recorded[Problem], Shown):
             np.savez_compressed(file, header=text, times=self.times, poses=self.poses)
 
         write_whole(path, write)
+
+
+def _width(block: Block) -> float:
+    """Return the root of a block's area [m]."""
+    x, y = block.vertices.T
+    return math.sqrt(abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2)
 
 
 Header = dict[str, Any]

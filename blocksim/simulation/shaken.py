@@ -3,7 +3,7 @@
 - *stands*: they lie still after the shaking, and every joint still is one: its faces lie
   over each other, nearly parallel, and touch;
 - *collapses*: they lie still and a joint is none any more, or a block has sunk by `SUNK`;
-- *undecided*: they still move when the time is over.
+- *undecided*: they still move when the time is over, or end otherwise at half the step.
 
 Blocks rock: what a joint opens it closes again, with an impact. No restitution is put in; what
 an impact leaves is what contact and friction leave. The first impact and the largest
@@ -25,7 +25,8 @@ from blocksim.engines.contact.geometry import Geometry, turns_of
 from blocksim.simulation.motion import FRAME, distrust, lie_still
 from blocksim.simulation.observation import hold
 from blocksim.simulation.recording import Recording
-from blocksim.simulation.simulated import BY_RULE, Overrides, given_words
+from blocksim.simulation.repeating import COARSER, KNOWN, SAFE, estimated
+from blocksim.simulation.simulated import BY_RULE, Overrides, Simulation, given_words
 from blocksim.simulation.verdict import Verdict
 
 SUNK = 0.5
@@ -50,11 +51,15 @@ class Rocking:
         Which one that was.
     impact : float or None
         When a joint that had opened closed first [sqrt(size/g)]; None where none did.
+    off, late : float or None
+        How far off rotation and impact may be, by a run at another step; None without one.
     """
 
     rotation: float
     block: int
     impact: float | None
+    off: float | None = None
+    late: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,10 +95,15 @@ def shake(
     *,
     until: float | None = None,
     whole: bool = False,
+    repeat: bool = True,
     settings: Overrides = BY_RULE,
     progress: Progress = silent,
 ) -> Shaken:
     """Let blocks go on ground that shakes, and see what becomes of them.
+
+    They are shaken again at twice the step. Where that ends otherwise, or the largest rotations
+    differ by more than `KNOWN` of it, they are shaken at half the step as well, which is what
+    is returned. What is said is what both finer runs say; `undecided` if they differ.
 
     Parameters
     ----------
@@ -105,6 +115,8 @@ def shake(
         Time to record for [sqrt(size/g)], or until all lies still.
     whole : bool
         Go on where a block has sunk by `SUNK`, and the verdict is certain.
+    repeat : bool
+        Without, they are shaken once.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
     progress : Progress, optional
@@ -113,11 +125,44 @@ def shake(
     -------
     Shaken
     """
+    step = Simulation.of(problem, engine, settings=settings).settings.step
+    stride = max(1, round(FRAME / step))
+
+    def at(share: float) -> Shaken:
+        """Shake them in steps of a share of those asked for; frames follow as they can."""
+        return _once(
+            problem,
+            engine,
+            max(1, int(stride / share)),
+            until=until,
+            whole=whole,
+            settings={**settings, "step": share * step},
+            progress=progress,
+        )
+
+    seen = usual = at(1.0)
+    if repeat:
+        seen, differs = _beside(usual, at(COARSER))
+        if differs:
+            seen, _ = _beside(at(1 / COARSER), usual)
+    return replace(seen, reason=seen.reason + given_words(settings))
+
+
+def _once(
+    problem: Problem,
+    engine: str | Engine,
+    stride: int,
+    *,
+    until: float | None,
+    whole: bool,
+    settings: Overrides,
+    progress: Progress,
+) -> Shaken:
+    """Shake blocks once, with a frame every so many steps."""
     assert problem.shaking is not None  # noqa: S101
     held = hold(problem, engine, settings=settings, progress=progress)
     simulation, world = held.simulation, held.world
     assembly, step = simulation.assembly, simulation.settings.step
-    stride = max(1, round(FRAME / step))
     shaken = problem.shaking.duration / problem.seconds
     end = shaken + LONGEST if until is None else until
     times, poses, taken = [0.0], [world.poses()], 0
@@ -141,11 +186,36 @@ def shake(
     rocking = rocking_of(recording)
     return Shaken(
         verdict=verdict,
-        reason=_words(what, recording, rocking) + given_words(settings),
+        reason=_words(what, recording, rocking),
         rocking=rocking,
         moved=float(recording.displacement[-1]),
         recording=recording,
     )
+
+
+def _beside(fine: Shaken, coarse: Shaken) -> tuple[Shaken, bool]:
+    """Return the finer of two answers with what the other tells, and whether they differ."""
+    one, two = fine.recording, coarse.recording
+    every = max(1, round(float(two.times[1] / one.times[1])))
+    recording = estimated(one, list(two.poses), every)
+    off = SAFE * abs(fine.rocking.rotation - coarse.rocking.rotation)
+    hit, other = fine.rocking.impact, coarse.rocking.impact
+    late = None if hit is None or other is None else SAFE * abs(hit - other)
+    rocking = replace(fine.rocking, off=off, late=late)
+    found = replace(fine, recording=recording, rocking=rocking)
+    if fine.verdict is not coarse.verdict:
+        steps = one.settings.step, two.settings.step
+        words = (
+            f"{fine.verdict} at a step of {steps[0]:.3g} sqrt(size/g), "
+            f"{coarse.verdict} at {steps[1]:.3g}"
+        )
+        return replace(found, verdict=Verdict.UNDECIDED, reason=f"{words}; {fine.reason}"), True
+    words = f"{fine.reason}; the same at {COARSER:g} times the step"
+    stands = fine.verdict is Verdict.STANDS
+    if stands and fine.rocking.rotation > TURNED:
+        words += f", rotations to {off / fine.rocking.rotation:.1%}"
+    differs = stands and off > max(KNOWN * fine.rocking.rotation, TURNED)
+    return replace(found, reason=words), differs
 
 
 def outcome(recording: Recording) -> tuple[Verdict, str]:
@@ -168,10 +238,19 @@ def rocking_of(recording: Recording) -> Rocking:
     turned = recording.poses[:, :, 2] - recording.poses[0, :, 2]
     frame, block = np.unravel_index(int(np.abs(turned).argmax()), turned.shape)
     return Rocking(
-        rotation=float(abs(turned[frame, block])),
+        rotation=_peak(np.abs(turned[:, block]), int(frame)),
         block=int(block),
         impact=_first_impact(recording.assembly, recording.times, turned),
     )
+
+
+def _peak(values: Array, at: int) -> float:
+    """Return the top of the parabola through the largest of some values and those beside it."""
+    if not 0 < at < len(values) - 1:
+        return float(values[at])
+    one, two, three = values[at - 1 : at + 2]
+    bend = one - 2 * two + three
+    return float(two - (three - one) ** 2 / (8 * bend)) if bend < 0 else float(two)
 
 
 def _first_impact(assembly: Assembly, times: Array, turned: Array) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -28,6 +29,7 @@ BY_RULE: Overrides = {}
 
 SETTINGS = {
     "step": Range(low=1e-6, high=0.2),
+    "accuracy": Range(low=1e-8, high=0.05),
     "sweeps": Range(low=1, high=1e7, whole=True),
     "hold_sweeps": Range(low=1, high=1e9, whole=True),
     "still": Range(low=1e-15, high=1e-2),
@@ -44,6 +46,17 @@ def require_setting(name: str, value: float) -> None:
 def setting_of(name: str, value: float) -> float:
     """Return the value of a setting, as an `int` where it is a whole number."""
     return round(value) if SETTINGS[name].whole else value
+
+
+def settings_by(rule: Settings, given: Overrides) -> Settings:
+    """Return the settings of a rule, but those given; an accuracy alone sets the step, too.
+
+    Errors of motion grow as the step squared.
+    """
+    settings = replace(rule, **{name: setting_of(name, value) for name, value in given.items()})
+    if "accuracy" not in given or "step" in given:
+        return settings
+    return replace(settings, step=rule.step * math.sqrt(settings.accuracy / rule.accuracy))
 
 
 def given_words(settings: Overrides) -> str:
@@ -194,11 +207,10 @@ class Simulation:
     ) -> Simulation:
         """Take the settings that the engine chooses for the blocks, or those given."""
         found = get_engine(engine)
-        given = {name: setting_of(name, value) for name, value in settings.items()}
         return cls(
             problem=problem,
             engine=found,
-            settings=replace(found.rule(problem.assembly), **given),
+            settings=settings_by(found.rule(problem.assembly), settings),
             given=settings,
             reduction=reduction,
         )
@@ -271,6 +283,10 @@ class Simulation:
         """Return the same with `factor` times the sweeps in each step of a moving run."""
         settings = replace(self.settings, sweeps=self.settings.sweeps * factor)
         return replace(self, settings=settings)
+
+    def at_step(self, step: float) -> Simulation:
+        """Return the same with another time step."""
+        return replace(self, settings=replace(self.settings, step=step))
 
     def record(
         self, times: Sequence[float], poses: Sequence[Array], quality: Quality

@@ -57,6 +57,12 @@ class HeldInSpace:
             progress=progress,
         )
 
+    def record(
+        self, until: float | None = None, progress: Progress = silent
+    ) -> SpatialRecording:
+        """Let the blocks go, and return what was recorded."""
+        return self.release(until, progress).recording
+
     def concluded(self, *, moving: bool, progress: Progress = silent) -> Observation:
         """Do the moving run if it is asked for, and tell what all of it shows."""
         verdict, motion = self.onset.verdict, None

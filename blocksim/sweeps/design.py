@@ -58,6 +58,8 @@ class SettingsTable(Written):
     ----------
     step : Axis
         Length of a step [sqrt(r/g)].
+    accuracy : Axis
+        Share by which motion may be off; steps follow.
     sweeps : Axis
         Sweeps over the contacts in each step of a moving run.
     hold_sweeps : Axis
@@ -69,6 +71,7 @@ class SettingsTable(Written):
     """
 
     step: AxisField | None = None
+    accuracy: AxisField | None = None
     sweeps: AxisField | None = None
     hold_sweeps: AxisField | None = None
     still: AxisField | None = None

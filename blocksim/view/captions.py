@@ -52,6 +52,10 @@ def title(
     facts[1:1] = built if problem.title else []
     facts[1:1] = ["still moving as it ends"] if moving else []
     run = stage.recording
+    if (known := run.quality.known) is not None:
+        sized = problem.has_size
+        until = f"{known * problem.seconds:.2g} s" if sized else f"{known:.2g} √(r/g)"
+        facts.append(f"known to 1 % until {until}")
     below = printable(f"{', '.join(facts)}   {run.engine} {run.engine_version}")
     x, wide = panel.x + 24 * size, panel.width - 48 * size
     head = fitting(head, 20 * size, wide, bold=True)

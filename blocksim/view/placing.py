@@ -9,8 +9,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from blocksim.blocks.assembly import SPATIAL, Array
+from blocksim.blocks.assembly import SPATIAL, SUPPORT, Array, Joint
 from blocksim.simulation.recording import Recording
+from blocksim.view.drawing import Part
 
 
 class Placing:
@@ -65,6 +66,26 @@ class Placing:
         local = np.zeros((*sides.shape, 2, 3))
         local[..., :2] = assembly.joint_arms.swapaxes(0, 1)
         return centres[sides][:, :, None] + _turned(turns[sides][:, :, None], local)
+
+    def side(self, joint: Joint, block: int) -> Part | None:
+        """Find the side of a piece of a block that a joint lies on."""
+        if block == SUPPORT:
+            return None
+        pieces = np.flatnonzero(self.owner == block)
+        size = self._recording.assembly.size
+        corners = self.outlines[pieces] + self._recording.assembly.centres[block] / size
+        along = np.roll(corners, -1, axis=1) - corners
+        square = (along**2).sum(axis=-1)
+        ends = np.array([joint.inner, joint.outer]) / size
+        arm = ends - corners[..., None, :]
+        # Shares of a side at which the ends are nearest to it.
+        share = (arm * along[..., None, :]).sum(axis=-1)
+        share = np.clip(share / np.where(square > 0, square, 1.0)[..., None], 0.0, 1.0)
+        off = np.linalg.norm(arm - share[..., None] * along[..., None, :], axis=-1).sum(axis=-1)
+        off = np.where(square > 0, off, np.inf)
+        piece, side = np.unravel_index(int(np.argmin(off)), off.shape)
+        start, stop = sorted(share[piece, side].tolist())
+        return Part(int(pieces[piece]), int(side), start, stop)
 
     def _placed(self, earlier: int, later: int, share: float) -> tuple[Array, Array]:
         """Centres and rotations of the blocks between two frames."""

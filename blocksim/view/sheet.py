@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from blocksim.ask.check import Check
+from blocksim.ask.rest import rest_words
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
@@ -170,9 +171,11 @@ def answer_sheet(answer: Check, titles: Titles | None = None) -> Sheet:
     """Collect what is drawn of an answer, with what its title block says."""
     mode = answer.arch and answer.arch.mode
     named = f", mode {mode}" if mode else ""
+    said = rest_words(answer.rest, answer.motion, asked=True) if answer.asked_rest else None
+    besides = f"; {said}" if said else ""
     made = sheet_of(
         answer.problem,
-        verdict=f"{answer.verdict.value}{named}, by {answer.method}",
+        verdict=f"{answer.verdict.value}{named}, by {answer.method}{besides}",
         mechanism=answer.mechanism,
         joint_states=[joint.state for joint in answer.joints],
         forces=answer.forces if answer.problem.is_planar else None,

@@ -12,6 +12,7 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from blocksim.blocks.assembly import Array
+from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.outlines import signed_area
 from blocksim.blocks.road import fill_of
@@ -34,6 +35,7 @@ LAYERS = {
     "thrust-max": (6, "DASHDOT", 25),
     "thrust-safest": (30, "CONTINUOUS", 35),
     "mechanism": (3, "CONTINUOUS", 35),
+    "gaps": (1, "CONTINUOUS", 25),
     "loads-dead": (8, "CONTINUOUS", 18),
     "loads-live": (1, "CONTINUOUS", 25),
     "reactions": (7, "CONTINUOUS", 25),
@@ -115,6 +117,7 @@ def write_dxf(sheet: Sheet, file: BinaryIO) -> None:
     _forces(space, sheet, scale)
     _road(space, sheet, shown)
     _states(space, sheet, scale)
+    _gaps(space, sheet, scale)
     _dimensions(space, sheet, shown, scale)
     foot = _words(space, sheet, shown, scale)
     _title(space, sheet, float(shown[:, 0].max()), foot, scale)
@@ -147,6 +150,19 @@ def _states(space: Any, sheet: Sheet, scale: float) -> None:
             space.add_line(*ends, dxfattribs=layer)
         if state in HINGES:
             space.add_circle(ends[HINGES[state]], HINGE * scale / 1e3, dxfattribs=layer)
+
+
+def _gaps(space: Any, sheet: Sheet, scale: float) -> None:
+    """Draw joints at which a gap or an overlap of the drawing is closed, with its size."""
+    layer, mm = {"layer": "gaps"}, scale / 1e3
+    for index, gap in marked_gaps(sheet.problem.assembly).items():
+        joint = sheet.problem.assembly.joints[index]
+        if not joint.is_corner:
+            space.add_line(joint.inner, joint.outer, dxfattribs=layer)
+        size = space.add_text(
+            f"{1000 * gap:+.3g} mm", height=LETTERS * mm / 2, dxfattribs=layer
+        )
+        size.set_placement(tuple((joint.inner + joint.outer) / 2))
 
 
 def _dimensions(space: Any, sheet: Sheet, shown: Array, scale: float) -> None:

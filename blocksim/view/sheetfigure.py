@@ -48,10 +48,13 @@ LONG = 34.0
 """Dimension lines from which on words stand along them [mm]."""
 SMALL, SMALLER, NUMBERED = 8.0, 7.5, 5.0
 """Sizes of letters [points]."""
+NUMBER, DIGIT, ROOMY = 2.4, 1.1, 6.0
+"""Width of a block that has room for its number, of a letter of that, and of one that has
+more than enough [mm]."""
+EVERY = 5
+"""Of blocks with little room, one in so many has its number."""
 BAND = 9.0
 """Width of the band of the largest force along a line of thrust [points]."""
-NUMBER, DIGIT = 2.4, 1.1
-"""Height of a block that has room for its number, and width of a letter of that [mm]."""
 LINES = {"min": (0, (6, 2)), "max": (0, (1, 1.2)), "safest": "-"}
 """Dashes of each line of thrust."""
 
@@ -232,7 +235,9 @@ def _draw_numbers(axes: Axes, sheet: Sheet, layout: Layout) -> None:
         wide = float(np.ptp(block.vertices, axis=0).min())
         # As wide as a block of the same area and the larger side would be.
         room = min(wide, area / float(np.ptp(block.vertices, axis=0).max()))
-        if room < NUMBER * mm or room < len(name) * DIGIT * mm:
+        # Where there is little room, every fifth: they are counted on.
+        seldom = room < ROOMY * mm and index % EVERY != EVERY - 1
+        if seldom or room < max(NUMBER, len(name) * DIGIT) * mm:
             continue
         x, y = block.centre.tolist()
         axes.text(x, y, literal(name), ha="center", va="center", fontsize=NUMBERED,

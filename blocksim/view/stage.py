@@ -15,7 +15,7 @@ import numpy as np
 
 from blocksim.ask.carried import carried_of
 from blocksim.ask.check import SOUGHT
-from blocksim.blocks.assembly import SUPPORT, Array, Joint, displacement
+from blocksim.blocks.assembly import SUPPORT, Array, displacement
 from blocksim.blocks.joints import JointState
 from blocksim.engines.ground import ground_level, piers
 from blocksim.limit.carried import Carried
@@ -260,7 +260,8 @@ class Stage:
     def joint_sides(self) -> tuple[tuple[Part | None, Part | None], ...]:
         """Where the joints are on the pieces before and after them; None for the support."""
         return tuple(
-            (self._side(j, j.before), self._side(j, j.after)) for j in self.assembly.joints
+            (self._placing.side(j, j.before), self._placing.side(j, j.after))
+            for j in self.assembly.joints
         )
 
     @cached_property
@@ -325,26 +326,6 @@ class Stage:
     def _seen(self) -> SeenJoints:
         frames = self._shown if self.moves else []
         return SeenJoints(self.recording, self._placing, frames, self.ground + SUNK)
-
-    def _side(self, joint: Joint, block: int) -> Part | None:
-        """Find the side of a piece of a block that a joint lies on."""
-        if block == SUPPORT:
-            return None
-        pieces = np.flatnonzero(self.owner == block)
-        size = self.assembly.size
-        corners = self._placing.outlines[pieces] + self.assembly.centres[block] / size
-        along = np.roll(corners, -1, axis=1) - corners
-        square = (along**2).sum(axis=-1)
-        ends = np.array([joint.inner, joint.outer]) / size
-        arm = ends - corners[..., None, :]
-        # Shares of a side at which the ends are nearest to it.
-        share = (arm * along[..., None, :]).sum(axis=-1)
-        share = np.clip(share / np.where(square > 0, square, 1.0)[..., None], 0.0, 1.0)
-        off = np.linalg.norm(arm - share[..., None] * along[..., None, :], axis=-1).sum(axis=-1)
-        off = np.where(square > 0, off, np.inf)
-        piece, side = np.unravel_index(int(np.argmin(off)), off.shape)
-        start, stop = sorted(share[piece, side].tolist())
-        return Part(int(pieces[piece]), int(side), start, stop)
 
     @cached_property
     def _displaced(self) -> Array:

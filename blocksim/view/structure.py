@@ -14,7 +14,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from blocksim.blocks.assembly import SUPPORT, Array, Joint
-from blocksim.blocks.closing import closed_gaps
+from blocksim.blocks.closing import marked_gaps
 from blocksim.blocks.joints import JointState
 from blocksim.blocks.problem import Problem
 from blocksim.view.drawing import (
@@ -40,9 +40,8 @@ support is shown beyond the blocks."""
 FAINT = 1e-6
 """Share of the largest rate below which there is none."""
 HATCH = "////"
-SEEN, SIZED = 1e-3, 20
-"""Share of a joint's length from which on the gap it closes is marked, for rounding is not; and
-how many have their size beside them, the largest ones."""
+SIZED = 20
+"""How many gaps have their size beside them, the largest ones."""
 
 
 def edge_width(problem: Problem, extent: float) -> float:
@@ -137,19 +136,13 @@ def draw_blocks(axes: Axes, problem: Problem, width: float) -> None:
 def _draw_gaps(axes: Axes, problem: Problem) -> None:
     """Mark joints at which a gap or an overlap of the drawing is closed, with its size."""
     joints = problem.assembly.joints
-    gaps = {
-        index: gap
-        for index, gap in closed_gaps(problem.assembly).items()
-        if abs(gap) > SEEN * joints[index].length
-    }
-    largest = set(sorted(gaps, key=lambda index: -abs(gaps[index]))[:SIZED])
-    for index, gap in gaps.items():
+    for rank, (index, gap) in enumerate(marked_gaps(problem.assembly).items()):
         joint = joints[index]
         ends = np.array([joint.inner, joint.outer])
         axes.plot(*ends.T, color=GAP, ls=line_style(GAP), lw=1.8, zorder=2.5,
                   solid_capstyle="butt", marker="D" if joint.is_corner else "", ms=4,
                   gid=f"gap-{index}", label="closed gap (+) or overlap (-)")  # fmt: skip
-        if index in largest:
+        if rank < SIZED:
             x, y = joint.tangent if joint.tangent[0] >= 0 else -joint.tangent
             axes.annotate(f"{1000 * gap:+.3g} mm", ends.mean(axis=0), xytext=(-3 * y, 3 * x),
                           textcoords="offset points", ha="center", va="bottom", color=GAP,
