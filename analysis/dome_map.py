@@ -5,6 +5,7 @@ dome has seven courses and an eye of 8 degrees. Limit analysis in space brackets
 the mechanism just below says what joints do. Beside it the continuous hemisphere with open
 meridians, usually given as 0.042 to 0.043 of the radius (Heyman 1967, Lau 2006).
 """
+# pyright: reportUnknownMemberType=false
 
 from __future__ import annotations
 
@@ -18,7 +19,6 @@ from analysis.command import run
 from analysis.rows import write_rows
 from blocksim import Dome, JointState
 from blocksim.common.files import make_folder
-from blocksim.limit.space import can_rest, joint_states
 from blocksim.view.drawing import save_figure
 
 FRICTIONS = (0.18, 0.2, 0.21, 0.22, 0.24, 0.26, 0.3, 0.35, 0.4, 0.5, 0.7)
@@ -63,9 +63,8 @@ def row(lunes: int, mu: float, courses: int = 7) -> Row:
     parts = turns = slides = 0
     if found.low is not None:
         problem = dome.but(thickness=found.low * (1 - 1e-4)).problem()
-        rates = can_rest(problem).mechanism
-        states = () if rates is None else joint_states(problem, rates)
-        for joint, state in zip(problem.assembly.joints, states, strict=bool(states)):
+        states = [each.state for each in blocksim.check(problem).joints]
+        for joint, state in zip(problem.assembly.joints, states, strict=True):
             # Meridian joints stand upright; beds do not.
             upright = abs(joint.normal[2]) < 1e-9
             slides += int(state in SLIDING)

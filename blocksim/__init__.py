@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from blocksim.ask.citing import cite
     from blocksim.ask.options import Options
     from blocksim.ask.simulate import simulate
-    from blocksim.ask.space import SpatialBracket, SpatialCheck
     from blocksim.blocks.assembly import Assembly, Block, Joint
     from blocksim.blocks.given import Body, GivenJoint
     from blocksim.blocks.joints import JointState
@@ -110,8 +109,6 @@ __all__ = [
     "SkewArch",
     "Solid",
     "SolidMaker",
-    "SpatialBracket",
-    "SpatialCheck",
     "SpatialProblem",
     "Stack",
     "Table",
@@ -149,7 +146,6 @@ _PLACES = {
     "ask.citing": ("cite",),
     "ask.options": ("Options",),
     "ask.simulate": ("simulate",),
-    "ask.space": ("SpatialBracket", "SpatialCheck"),
     "blocks.assembly": ("Assembly", "Block", "Joint"),
     "blocks.given": ("Body", "GivenJoint"),
     "blocks.joints": ("JointState",),

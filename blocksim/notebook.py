@@ -22,13 +22,20 @@ from blocksim.ask.bracket import Bracket
 from blocksim.ask.check import Check, check
 from blocksim.ask.search import ETA_MAX
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.blocks.structure import structure_record
 from blocksim.common.files import AnyPath, json_text
 from blocksim.common.words import printable
 from blocksim.kinds.circular import CircularArch
 from blocksim.report.answers import bracket_record, check_record
 from blocksim.report.answerwords import bracket_lines, check_lines
-from blocksim.report.problems import arch_size_lines, described, size_lines, size_record
+from blocksim.report.problems import (
+    arch_size_lines,
+    described,
+    problem_record,
+    size_lines,
+    size_record,
+)
 from blocksim.report.recordings import recording_lines, recording_record
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.space import SpatialRecording
@@ -56,12 +63,13 @@ def dict_of(shown: object) -> dict[str, Any]:
     Returns
     -------
     dict
-        Of an answer what `--json` prints; of a problem its structure file; of a recording
-        what it shows, without its poses.
+        Of an answer what `--json` prints; of a problem its structure file, in space what
+        answers say of it; of a recording what it shows, without its poses.
     """
     found: dict[type, Callable[[Any], Mapping[str, object]]] = {
         Arch: _arch_record,
         Problem: structure_record,
+        SpatialProblem: problem_record,
         Check: check_record,
         Bracket: bracket_record,
         Recording: recording_record,
@@ -73,11 +81,8 @@ def lines_of(shown: object) -> list[str]:
     """Return a thing in words, as the command line prints it: a head and labelled lines."""
     found: dict[type, Callable[[Any], list[str]]] = {
         Arch: lambda arch: [_arch_words(arch), *arch_size_lines(arch)],
-        Problem: lambda problem: [
-            problem.title or "Structure",
-            f"  what    {described(replace(problem, title=''))}",
-            *size_lines(problem),
-        ],
+        Problem: _problem_lines,
+        SpatialProblem: _problem_lines,
         Check: check_lines,
         Bracket: bracket_lines,
         Recording: lambda run: [
@@ -105,6 +110,7 @@ def figure_of(shown: object) -> Figure:
     found: dict[type, Callable[[Any], Figure]] = {
         Arch: _arch_figure,
         Problem: _problem_figure,
+        SpatialProblem: _spatial_figure,
         Check: _check_figure,
         Bracket: _bracket_figure,
         Recording: _recording_figure,
@@ -150,6 +156,14 @@ def html_of(shown: object) -> str:
     return f"<div><strong>{head.strip()}</strong><table>{rows}</table>{svg_of(shown)}</div>"
 
 
+def _problem_lines(problem: Problem | SpatialProblem) -> list[str]:
+    return [
+        problem.title or "Structure",
+        f"  what    {described(replace(problem, title=''))}",
+        *size_lines(problem),
+    ]
+
+
 def _recording_lines(recording: Recording) -> list[str]:
     return recording_lines(recording, recording.problem.length_name)
 
@@ -192,7 +206,15 @@ def _problem_figure(problem: Problem) -> Figure:
     return _drawn(sheet_of(problem))
 
 
-def _check_figure(answer: Check) -> Figure:
+def _spatial_figure(problem: SpatialProblem) -> Figure:
+    return _check_figure(check(problem))
+
+
+def _check_figure(answer: Check[Any]) -> Figure:
+    if isinstance(answer.problem, SpatialProblem):
+        from blocksim.view.solidfigure import solid_figure
+
+        return solid_figure(answer)
     from blocksim.view.sheet import answer_sheet
 
     return _drawn(answer_sheet(answer))

@@ -17,12 +17,13 @@ import blocksim
 from blocksim import InputError, Solid, SpatialProblem
 from blocksim.blocks.space.extruded import extruded
 from blocksim.blocks.space.files import problem_in_space
+from blocksim.engines import get_engine
 from blocksim.engines.solid.stepping import Stepping
 from blocksim.kinds.dome import Dome
-from blocksim.simulation.space import engine_in_space, observe_in_space
+from blocksim.simulation.space import observe_in_space
 from blocksim.view.solidfilm import SolidFilm
 
-DIRECT = engine_in_space("direct")
+DIRECT = get_engine("direct")
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -2,64 +2,37 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, Unpack, overload
 
-from blocksim.ask.closed import closing_of_value
-from blocksim.ask.ends import (
-    Ask,
-    Change,
-    Stands,
-    Within,
-    around,
-    changes_of,
-    tried_ends,
-)
+from blocksim.ask.ends import Change, Stands, Within
 from blocksim.ask.families import Family, families_of, family_of
-from blocksim.ask.methods import choose, chosen_words, reduces
-from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
-from blocksim.ask.searches import (
-    FARTHEST,
-    Search,
-    by_engine,
-    by_programmes,
-    followed,
-    proofs_beside,
-    shaken,
-    slowly,
-)
+from blocksim.ask.found import Found, by_family, by_threshold
+from blocksim.ask.methods import chosen_words
+from blocksim.ask.options import Asked, AskedInSpace, Of, Options, Taken, problem_of, taken
+from blocksim.ask.searches import proofs_beside
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
 from blocksim.common.shown import Shown
-from blocksim.engines import get_engine
-from blocksim.kinds.offers import Threshold, offers_of
-from blocksim.simulation.simulated import Overrides, given_words
+from blocksim.kinds.offers import offers_of
+from blocksim.simulation.simulated import given_words
 from blocksim.simulation.verdict import Evidence, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchBracket
-    from blocksim.ask.space import SpatialBracket
     from blocksim.ask.spread import Happening
-    from blocksim.engines.base import Engine, Method
     from blocksim.limit.proof import Proof
-    from blocksim.simulation.observation import Held
-    from blocksim.simulation.simulated import Reduced
 
 USUAL = "thickness"
 """What is bracketed over where nothing is said."""
-LEAST = 1e-12
-"""Least upper end of where to search."""
-GUESS = 0.1
-"""Share of the range at which a search begins where limit analysis gives no value."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bracket(Shown):
+class Bracket(Shown, Generic[Of]):
     """Where a family of problems changes from standing to falling, between two values tried.
 
     Parameters
@@ -79,7 +52,7 @@ class Bracket(Shown):
         Values tried, and those without an answer.
     evidence : tuple of Evidence
         What was seen, by which test.
-    problem : Problem
+    problem : Problem or SpatialProblem
         One of the family: what was asked about.
     tol : float
         Relative width asked for.
@@ -109,7 +82,7 @@ class Bracket(Shown):
     runs: int
     undecided: int
     evidence: tuple[Evidence, ...]
-    problem: Problem
+    problem: Of
     tol: float
     blocks: int | None = None
     splits: int | None = None
@@ -151,27 +124,35 @@ class Bracket(Shown):
 
 @overload
 def bracket(
-    asked: SpatialProblem,
-    *,
-    over: str | None = None,
-    within: Within | None = None,
-    **options: Unpack[Options],
-) -> SpatialBracket: ...
-@overload
-def bracket(
-    asked: Asked | Family,
+    asked: Asked | Family[Problem],
     *,
     over: str | None = None,
     within: Within | None = None,
     **options: Unpack[Options],
 ) -> Bracket: ...
+@overload
 def bracket(
-    asked: Asked | Family | SpatialProblem,
+    asked: AskedInSpace,
     *,
     over: str | None = None,
     within: Within | None = None,
     **options: Unpack[Options],
-) -> Bracket | SpatialBracket:
+) -> Bracket[SpatialProblem]: ...
+@overload
+def bracket(
+    asked: Asked | AskedInSpace | Family[Any],
+    *,
+    over: str | None = None,
+    within: Within | None = None,
+    **options: Unpack[Options],
+) -> Bracket[Any]: ...
+def bracket(
+    asked: Asked | AskedInSpace | Family[Any],
+    *,
+    over: str | None = None,
+    within: Within | None = None,
+    **options: Unpack[Options],
+) -> Bracket[Any]:
     """Find the value of a parameter at which blocks change from standing to falling.
 
     Engines search with the onset test and let the blocks go at both ends. Where limit analysis
@@ -179,7 +160,7 @@ def bracket(
 
     Parameters
     ----------
-    asked : Problem, Maker, Family or SpatialProblem
+    asked : Problem, SpatialProblem, a maker of one, or Family
     over : str, optional
         One of `blocksim.ask.families.families_of`; by default the thickness, where there is
         one.
@@ -192,7 +173,7 @@ def bracket(
 
     Returns
     -------
-    Bracket or SpatialBracket
+    Bracket
 
     Raises
     ------
@@ -210,238 +191,37 @@ def bracket(
     """
     started = time.perf_counter()
     given = taken(options)
-    if isinstance(asked, SpatialProblem):
-        # What is asked in space is loaded where it is asked for.
-        from blocksim.ask.space import bracket_in_space
-
-        return bracket_in_space(asked, over, within, given)
     if isinstance(asked, Family):
         require(over is None, "over", over, "left out: the family says it")
-        return _of_family(asked, within, given, started)
+        return _answer(by_family(asked, within, given), given, started)
     problem = problem_of(asked)
     if over is None:
         known = families_of(problem)
         over = USUAL if USUAL in known else None
         if over is None:
             raise InputError("over", MISSING, f"one of {', '.join(known)}")
-    offered = offers_of(problem) if within is None else None
-    threshold = None if offered is None else offered.threshold(over)
-    if threshold is not None:
-        return _thinned(problem, over, threshold, given, started)
-    return _of_family(family_of(problem, over), within, given, started)
+    if within is None and isinstance(problem, Problem):
+        offered = offers_of(problem)
+        threshold = None if offered is None else offered.threshold(over)
+        if threshold is not None:
+            return _answer(by_threshold(problem, over, threshold, given), given, started)
+    return _answer(by_family(family_of(problem, over), within, given), given, started)
 
 
-def _thinned(
-    problem: Problem, over: str, threshold: Threshold, given: Taken, started: float
-) -> Bracket:
-    """Search over a ratio of which the maker knows more."""
-    chosen = choose(
-        given.method, given.tol, problem=problem, settings=given.settings, reduce=given.reduce
-    )
-    if chosen.is_static:
-        falls, stands, said = threshold.static(chosen.name)
-        test = "closed form" if chosen.name == "theory" else "limit analysis"
-        found, evidence = Search(falls=falls, stands=stands), (Evidence(test, said),)
-        facts = threshold.facts(low=falls, high=stands, method=chosen.name)
-    else:
-        reduced = reduces(chosen, given.reduce, problem, by_maker=True)
-        found = by_engine(
-            _Reduced(threshold, get_engine(chosen), given.settings, reduce=reduced).held_at,
-            threshold.start,
-            (threshold.low, threshold.high),
-            given.tol,
-            name=threshold.name,
-            more_is_safer=True,
-            confirm=given.confirm,
-            progress=given.progress,
-        )
-        evidence = (Evidence("search", found.reason),)
-        if reduced:
-            evidence += _reduced(found, threshold.reduced_by, threshold.blocks)
-        facts = threshold.facts(
-            low=found.falls, high=found.stands, method=chosen.name, seen=found.collapse
-        )
-    return _answer(
-        found,
-        chosen,
-        given,
-        started,
-        over=over,
-        unit=threshold.unit,
-        low=threshold.value(found.falls),
-        high=threshold.value(found.stands),
-        stands="high",
-        limit=threshold.value(threshold.exact),
-        evidence=evidence,
-        problem=problem,
-        arch=facts,
-        changes=((threshold.problem, threshold.exact, True),)
-        if chosen.name == "limit" and threshold.exact
-        else (),
-    )
-
-
-class _Reduced:
-    """One problem at one value after the other, reduced alike where that is asked for."""
-
-    def __init__(
-        self, threshold: Threshold, engine: Engine, settings: Overrides, *, reduce: bool
-    ) -> None:
-        self._threshold, self._engine, self._settings = threshold, engine, settings
-        self._reduce = reduce
-        self._last: Reduced | None = None
-
-    def held_at(self, value: float) -> Held:
-        """Ask the onset test at a value."""
-        from blocksim.simulation.observation import hold
-
-        reduction = self._threshold.reduction(value, self._last) if self._reduce else None
-        problem = self._threshold.problem(value)
-        held = hold(problem, self._engine, settings=self._settings, reduction=reduction)
-        # An engine may have split it, or given it up.
-        self._last = held.simulation.reduction
-        return held
-
-
-def _answer(
-    found: Search,
-    chosen: Method,
-    given: Taken,
-    started: float,
-    *,
-    evidence: tuple[Evidence, ...],
-    **told: Any,
-) -> Bracket:
+def _answer(found: Found, given: Taken, started: float) -> Bracket[Any]:
     """Return what a search came to, and add which settings were given and what `auto` took."""
+    search, chosen = found.search, found.chosen
     settings = aside("settings", given_words(given.settings))
+    method = aside("method", chosen_words(given.method, chosen))
     return Bracket(
         method=chosen.name,
         tol=given.tol,
-        confirmed=found.confirmed,
-        runs=found.runs,
-        undecided=found.undecided,
-        evidence=evidence + settings + aside("method", chosen_words(given.method, chosen)),
-        blocks=found.blocks,
-        splits=found.splits,
+        confirmed=search.confirmed,
+        runs=search.runs,
+        undecided=search.undecided,
+        evidence=found.evidence + settings + method,
+        blocks=search.blocks,
+        splits=search.splits,
         wall_s=time.perf_counter() - started,
-        **told,
+        **found.told,
     )
-
-
-def _reduced(found: Search, by: str, most: int) -> tuple[Evidence, ...]:
-    """Tell what reductions came to; nothing where all blocks were simulated."""
-    if found.blocks is None or found.splits is None:
-        return ()
-    from blocksim.simulation.observation import reduced_words
-
-    return (Evidence("reduction", reduced_words(by, found.blocks, most, found.splits)),)
-
-
-def _of_family(
-    family: Family, within: tuple[float, float] | None, given: Taken, started: float
-) -> Bracket:
-    """Search over the values of a family."""
-    low, high = within or (family.low, family.high)
-    ranged = family.low <= low < high <= family.high and high >= LEAST
-    allowed = f"two values, the lower first, from {family.low:g} to {family.high:g}"
-    require(ranged, "within", f"{low:g} {high:g}", allowed)
-    probe = family.at(low + GUESS * (high - low))
-    chosen = choose(
-        given.method, given.tol, problem=probe, settings=given.settings, reduce=given.reduce
-    )
-    allowed = f"left out by {chosen.name}, which searches no range; engines do"
-    require(within is None or not chosen.is_static, "within", f"{low:g} {high:g}", allowed)
-    if family.spreading is not None:
-        allowed = "limit or direct: others move no supports"
-        require(chosen.moves_supports, "method", chosen.name, allowed)
-        require(not given.reduce, "reduce", given.reduce, "left out where supports move")
-    # What limit analysis says is of ground at rest.
-    static = probe.is_planar and probe.shaking is None
-    exact = family.exact() if static else None
-    remark = family.remark() if static else ""
-    closing = closing_of_value(family) if static else ()
-    rises = family.stands == "high"
-
-    def by_limit(start: float, within: Within, rises: bool) -> Search:  # noqa: ARG001
-        return by_programmes(family, start, rises=rises)
-
-    ask: Ask = by_limit
-    reduced = False
-    if family.spreading is not None:
-        if chosen.is_static:
-            found = followed(family, family.spreading, exact)
-        else:
-            found = slowly(family.spreading, given.tol, high, exact, given.progress)
-    elif chosen.is_static:
-        found = by_programmes(family, exact, rises=rises)
-    elif probe.shaking is not None:
-        start = min(max(family.start or low + GUESS * (high - low), low), high)
-        found = shaken(family, get_engine(chosen), start, (low, high), given)
-    else:
-        known = exact and math.isfinite(exact) and low <= exact <= high
-        start = exact if exact and known else low + GUESS * (high - low)
-        reduced = reduces(chosen, given.reduce, probe)
-        ask = _asking(family, get_engine(chosen), given, (low, high), merged=reduced)
-        found = ask(start, around(family, start) if known else (low, high), rises)
-    evidence = (Evidence("search", found.reason), *aside("limit analysis", remark), *closing)
-    most = len(probe.assembly.blocks)
-    if reduced and found.blocks is not None and found.blocks < most:
-        from blocksim.simulation.merging import Merging
-
-        evidence += _reduced(found, Merging.by, most)
-    ends = (found.falls, found.stands)
-    lower, upper = ends if rises else ends[::-1]
-    intervals = tried_ends(family, found, ask) if static else None
-    return _answer(
-        found,
-        chosen,
-        given,
-        started,
-        over=family.name,
-        unit=family.unit,
-        low=lower,
-        high=upper,
-        stands=family.stands,
-        limit=exact,
-        evidence=evidence,
-        problem=probe,
-        events=None if family.spreading is None else family.spreading.events,
-        intervals=intervals,
-        # Proofs are of rigid blocks.
-        changes=changes_of(family, intervals or ())
-        if chosen.name == "limit" and probe.strength is None
-        else (),
-    )
-
-
-def _asking(
-    family: Family, engine: Engine, given: Taken, within: Within, *, merged: bool
-) -> Ask:
-    """Return what asks an engine around a value of limit analysis."""
-    # What moves blocks is loaded where it is asked for.
-    from blocksim.simulation.merging import Merging
-    from blocksim.simulation.observation import hold
-
-    low, high = within
-
-    def held_at(value: float) -> Held:
-        problem = family.at(value)
-        merging = Merging.of(problem) if merged else None
-        return hold(problem, engine, settings=given.settings, reduction=merging)
-
-    def ask(start: float, within: Within, rises: bool) -> Search:
-        least, most = max(low, within[0], start / FARTHEST), min(high, within[1])
-        if not least <= start <= most:
-            return Search()
-        return by_engine(
-            held_at,
-            start,
-            (least, most),
-            given.tol,
-            name=family.name,
-            more_is_safer=rises,
-            confirm=given.confirm,
-            progress=given.progress,
-        )
-
-    return ask

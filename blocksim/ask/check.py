@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Unpack, overload
 
 from blocksim.ask.carried import carried_of
 from blocksim.ask.closed import closing_of_verdict
 from blocksim.ask.methods import choose, chosen_words, reduces
-from blocksim.ask.options import Asked, Options, Taken, problem_of, taken
+from blocksim.ask.options import Asked, AskedInSpace, Of, Options, Taken, problem_of, taken
 from blocksim.ask.rest import Moving, Rest, require_rest, rest_of
+from blocksim.ask.statics import (
+    VERDICTS,
+    crushing_evidence,
+    observed,
+    static_evidence,
+    unit,
+)
 from blocksim.ask.undecided import undecided_words
-from blocksim.blocks.assembly import Array, displacement
-from blocksim.blocks.joints import ObservedJoint, classify, closed_joints
+from blocksim.blocks.assembly import Array
+from blocksim.blocks.joints import ObservedJoint, closed_joints
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.common.checks import require
 from blocksim.common.shown import Shown
 from blocksim.engines import get_engine
 from blocksim.kinds.offers import Offers, offers_of
@@ -31,10 +36,11 @@ from blocksim.simulation.verdict import Evidence, Verdict, aside, reason_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer
-    from blocksim.ask.space import SpatialCheck
     from blocksim.engines.base import Method
     from blocksim.limit.proof import Proof
+    from blocksim.limit.space import SpatialEquilibrium
     from blocksim.simulation.observation import Observation
+    from blocksim.simulation.recorded import Recorded
     from blocksim.simulation.shaken import Shaken
 
 UNPROVED = "none: strengths are compared in floating point, not in rational arithmetic"
@@ -44,7 +50,7 @@ SOUGHT = 500
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Check(Shown):
+class Check(Shown, Generic[Of]):
     """Answer to *does it stand*, with its evidence.
 
     Parameters
@@ -54,7 +60,7 @@ class Check(Shown):
         *Stands* means that it can rest.
     evidence : tuple of Evidence
         What was seen, by which test.
-    problem : Problem
+    problem : Problem or SpatialProblem
     joints : tuple of ObservedJoint
         What each joint does as a collapse starts; closed where the blocks stand, and where
         the method does not tell.
@@ -81,6 +87,8 @@ class Check(Shown):
         Time simulated [sqrt(size/g)]; None for static methods.
     state_hash : str or None
         Fingerprint of the recorded motion.
+    recording : Recording or SpatialRecording or None
+        By an engine, that motion; None where blocks were not let go.
     blocks, splits : int or None
         Blocks simulated, and joints that a reduction merged and had to split again; None
         for static methods.
@@ -93,7 +101,7 @@ class Check(Shown):
     method: str
     verdict: Verdict
     evidence: tuple[Evidence, ...]
-    problem: Problem
+    problem: Of
     joints: tuple[ObservedJoint, ...]
     rest: Rest | None = None
     asked_rest: bool = False
@@ -104,6 +112,7 @@ class Check(Shown):
     shaken: Shaken | None = None
     simulated: float | None = None
     state_hash: str | None = None
+    recording: Recorded[Any] | None = None
     blocks: int | None = None
     splits: int | None = None
     wall_s: float
@@ -115,15 +124,14 @@ class Check(Shown):
         return reason_of(self.evidence)
 
     @cached_property
-    def static(self) -> Equilibrium | None:
-        """What a linear programme says; None where gravity leans, or the ground shakes."""
-        still = self.problem.is_planar and self.shaken is None
-        return equilibrium(self.problem) if still else None
+    def static(self) -> Equilibrium | SpatialEquilibrium | None:
+        """What limit analysis says; None where gravity leans, or the ground shakes."""
+        return equilibrium(self.problem) if self.problem.has_statics else None
 
     @cached_property
     def proof(self) -> Proof | None:
-        """The proof of the verdict by limit analysis; None where it is undecided."""
-        if self.method != "limit":
+        """The proof of the verdict by limit analysis; None where undecided, and in space."""
+        if self.method != "limit" or not isinstance(self.problem, Problem):
             return None
         found = None
         if self.problem.strength is not None and self.needed is not None:
@@ -147,13 +155,16 @@ class Check(Shown):
     def forces(self) -> Array | None:
         """Forces of equilibrium at the ends of the joints, along their normals and tangents.
 
-        (joints, 2, 2) float [mean block's weight]; None where there are none.
+        (joints, 2, 2) float [mean block's weight]; in space sums at the joints, along their
+        normals and across, (joints, 3) [N]. None where there are none.
         """
         return None if self.static is None else self.static.forces
 
     @cached_property
     def mechanism(self) -> Array | None:
         """Rates x, y [size] and rotation with which a collapse starts, (blocks, 3 or 6).
+
+        In space x, y, z, and rotations about the axes.
 
         Or what may move though it can rest. The largest way of a corner is 1. None where the
         blocks stand, or nothing is known.
@@ -163,7 +174,7 @@ class Check(Shown):
             rates = self.static.mechanism if self.needed is None else self.needed.mechanism
         if self.motion is not None:
             rates = self.motion.accelerations
-        return None if rates is None else _unit(rates, self.problem)
+        return None if rates is None else unit(rates, self.problem)
 
     @cached_property
     def carried(self) -> Carried | None:
@@ -179,19 +190,23 @@ class Check(Shown):
 
 
 @overload
-def check(
-    asked: SpatialProblem, *, must_rest: bool = False, **options: Unpack[Options]
-) -> SpatialCheck: ...
-@overload
 def check(asked: Asked, *, must_rest: bool = False, **options: Unpack[Options]) -> Check: ...
+@overload
 def check(
-    asked: Asked | SpatialProblem, *, must_rest: bool = False, **options: Unpack[Options]
-) -> Check | SpatialCheck:
+    asked: AskedInSpace, *, must_rest: bool = False, **options: Unpack[Options]
+) -> Check[SpatialProblem]: ...
+@overload
+def check(
+    asked: Asked | AskedInSpace, *, must_rest: bool = False, **options: Unpack[Options]
+) -> Check[Any]: ...
+def check(
+    asked: Asked | AskedInSpace, *, must_rest: bool = False, **options: Unpack[Options]
+) -> Check[Any]:
     """Tell whether blocks stand under their loads.
 
     Parameters
     ----------
-    asked : Problem, Maker or SpatialProblem
+    asked : Problem, SpatialProblem, or a maker of one
     must_rest : bool
         Find out as well whether it must rest, or friction may let it move
         (`blocksim.limit.starting`): a second with 8 joints, ten with 28.
@@ -200,7 +215,7 @@ def check(
 
     Returns
     -------
-    Check or SpatialCheck
+    Check
 
     Raises
     ------
@@ -219,19 +234,13 @@ def check(
     """
     started = time.perf_counter()
     given = taken(options, "tol", "confirm")
-    if isinstance(asked, SpatialProblem):
-        # What is asked in space is loaded where it is asked for.
-        from blocksim.ask.space import check_in_space
-
-        require(not must_rest, "must_rest", must_rest, "left out: it is not known in space")
-        return check_in_space(asked, given)
     problem = problem_of(asked)
     chosen = choose(given.method, problem=problem, settings=given.settings, reduce=given.reduce)
     if must_rest:
         require_rest(problem)
-    if problem.shaking is not None:
+    if isinstance(problem, Problem) and problem.shaking is not None:
         found = _by_shaking(problem, chosen, given)
-    elif (offered := offers_of(problem)) is not None:
+    elif isinstance(problem, Problem) and (offered := offers_of(problem)) is not None:
         found = _offered(problem, offered, chosen, given)
     else:
         found = _general(problem, chosen, given)
@@ -239,7 +248,7 @@ def check(
     rest = motion = None
     if problem.shaking is None:
         rest, motion = rest_of(
-            problem if must_rest else None,
+            problem if must_rest and isinstance(problem, Problem) else None,
             exists=found.exists,
             moved=found.moved,
             progress=given.progress,
@@ -254,15 +263,16 @@ def check(
         motion=motion,
         joints=found.answer.joints
         if motion is None
-        else _observed(problem, motion.accelerations),
+        else observed(problem, motion.accelerations),
         wall_s=time.perf_counter() - started,
     )
     if found.static is not None:
         # Asked for already.
         vars(answer)["static"] = found.static
-    if answer.method == "limit" and not answer.proved and answer.needed is None:
-        open_ = Evidence("limit analysis", undecided_words(problem))
-        evidence = (open_, *answer.evidence[1:])
+    open_ = answer.method == "limit" and not answer.proved and answer.needed is None
+    if isinstance(problem, Problem) and open_:
+        said = Evidence("limit analysis", undecided_words(problem))
+        evidence = (said, *answer.evidence[1:])
         return replace(answer, verdict=Verdict.UNDECIDED, evidence=evidence)
     return answer
 
@@ -270,10 +280,10 @@ def check(
 class _Found(NamedTuple):
     """An answer, and what tells of rest: forces of equilibrium, a motion that was seen."""
 
-    answer: Check
+    answer: Check[Any]
     exists: bool | None
     moved: bool
-    static: Equilibrium | None = None
+    static: Equilibrium | SpatialEquilibrium | None = None
 
 
 def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) -> _Found:
@@ -297,38 +307,38 @@ def _offered(problem: Problem, offered: Offers, chosen: Method, given: Taken) ->
     return _Found(replace(answer, arch=facts), offered.stands, moved=seen.moved)
 
 
-def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
-    """Answer by a linear programme or by an engine."""
-    planar = problem.is_planar
-    factor = collapse(problem).load_factor if planar and problem.live else None
-    static = equilibrium(problem) if planar else None
+def _general(problem: Problem | SpatialProblem, chosen: Method, given: Taken) -> _Found:
+    """Answer by limit analysis or by an engine."""
+    known = problem.has_statics
+    factor = collapse(problem).load_factor if known and problem.live else None
+    static = equilibrium(problem) if known else None
     # What soil bears is mobilised as far as it has to be.
-    problem = problem if static is None else static.problem
+    problem = static.problem if isinstance(static, Equilibrium) else problem
     exists = None if static is None else static.exists
     if static is not None and chosen.is_static:
-        verdict = Verdict.STANDS if static.exists else Verdict.COLLAPSES
-        found = (Evidence("limit analysis", _static_words(static)),)
-        needed, rates = None, static.mechanism
-        if static.exists and problem.strength is not None:
+        evidence, needed, rates = static_evidence(problem, static), None, static.mechanism
+        verdict = VERDICTS[exists]
+        if exists and isinstance(problem, Problem) and problem.strength is not None:
             needed = strength_needed(problem)
-            verdict, said = _crushing(needed, problem.strength)
+            verdict, evidence = crushing_evidence(problem, needed)
             exists = verdict is Verdict.STANDS
-            found = (Evidence("limit analysis", said),)
             rates = None if exists or needed is None else needed.mechanism
-        answer = Check(
+        answer = Check[Any](
             method=chosen.name,
             verdict=verdict,
-            evidence=(*found, *closing_of_verdict(problem, stands=verdict is Verdict.STANDS)),
+            evidence=evidence,
             problem=problem,
-            joints=_observed(problem, rates),
+            joints=observed(problem, rates),
             needed=needed,
             load_factor=factor,
             wall_s=0.0,
         )
         return _Found(answer, exists, moved=False, static=static)
     answer, seen = _simulated(problem, None, chosen, given)
-    joints = _observed(problem, seen.rates) if planar else answer.joints
-    closing = () if exists is None else closing_of_verdict(problem, stands=exists)
+    joints = observed(problem, seen.rates) if known else answer.joints
+    closing: tuple[Evidence, ...] = ()
+    if isinstance(problem, Problem) and exists is not None:
+        closing = closing_of_verdict(problem, stands=exists)
     answer = replace(
         answer, joints=joints, load_factor=factor, evidence=(*answer.evidence, *closing)
     )
@@ -336,24 +346,20 @@ def _general(problem: Problem, chosen: Method, given: Taken) -> _Found:
 
 
 def _simulated(
-    problem: Problem, offered: Offers | None, chosen: Method, given: Taken
-) -> tuple[Check, Observation]:
+    problem: Problem | SpatialProblem, offered: Offers | None, chosen: Method, given: Taken
+) -> tuple[Check[Any], Observation]:
     """Answer what an engine showed, of fewer blocks where it takes no more."""
     # What moves blocks is loaded where it is asked for.
-    from blocksim.simulation.merging import Merging
-    from blocksim.simulation.observation import observe
+    from blocksim.ask.engines import concluded, held, merged
 
     reduction = None
-    if reduces(chosen, given.reduce, problem, by_maker=offered is not None):
-        reduction = Merging.of(problem) if offered is None else offered.reduction()
-    seen = observe(
-        problem,
-        get_engine(chosen),
-        settings=given.settings,
-        reduction=reduction,
-        progress=given.progress,
-    )
-    answer = Check(
+    if offered is None:
+        reduction = merged(chosen, given, problem)
+    elif isinstance(problem, Problem) and reduces(chosen, given.reduce, problem, by_maker=True):
+        reduction = offered.reduction()
+    at_rest = held(problem, get_engine(chosen), given, reduction)
+    seen = concluded(at_rest, moving=True, progress=given.progress)
+    answer = Check[Any](
         method=chosen.name,
         verdict=seen.verdict,
         evidence=seen.evidence,
@@ -363,6 +369,7 @@ def _simulated(
         rates=seen.rates,
         simulated=seen.simulated,
         state_hash=seen.state_hash,
+        recording=None if seen.motion is None else seen.motion.recording,
         blocks=seen.blocks,
         splits=seen.splits,
         wall_s=0.0,
@@ -385,68 +392,8 @@ def _by_shaking(problem: Problem, chosen: Method, given: Taken) -> _Found:
         shaken=seen,
         simulated=float(seen.recording.times[-1]),
         state_hash=seen.recording.state_hash,
+        recording=seen.recording,
         blocks=len(problem.assembly.blocks),
         wall_s=0.0,
     )
     return _Found(answer, None, moved=False)
-
-
-def _observed(problem: Problem, rates: Array | None) -> tuple[ObservedJoint, ...]:
-    """Tell what each joint does as blocks begin to move at some rates; closed at none."""
-    assembly = problem.assembly
-    if rates is None:
-        return closed_joints(assembly.joint_angles)
-    from blocksim.simulation.onset import PROBE
-
-    rates = _unit(rates, problem)
-    return classify(assembly, assembly.built[:-1] + PROBE * rates[:, :3])
-
-
-def _unit(rates: Array, problem: Problem) -> Array:
-    """Scale rates so that the largest way of a corner is 1."""
-    largest = float(displacement(rates, problem.assembly))
-    return rates / largest if largest > 0 else rates
-
-
-def _static_words(static: Equilibrium) -> str:
-    """Say what limit analysis found."""
-    if static.exists:
-        spare = max(0.0, static.margin)
-        return (
-            "forces of equilibrium exist, and no contact is nearer to opening or sliding than "
-            f"by {spare:.3g} of its force"
-        )
-    if math.isinf(static.margin):
-        return "no forces of equilibrium exist, even if contacts could pull"
-    return (
-        "no forces of equilibrium exist: contacts would have to pull with "
-        f"{-static.margin:.3g} of what they carry"
-    )
-
-
-def _crushing(needed: Needed | None, strength: float) -> tuple[Verdict, str]:
-    """Say whether forces of equilibrium exist within a strength."""
-    if needed is None:
-        return Verdict.UNDECIDED, "the strength that is needed was not found"
-    least, most = f"{needed.low / 1e6:.6g} MPa", f"{needed.high / 1e6:.6g} MPa"
-    if needed.high <= strength:
-        said = f"forces of equilibrium exist that press joints by {most} at most"
-        return Verdict.STANDS, said
-    if needed.low > strength:
-        said = f"forces of equilibrium exist, and all crush a joint: {least} are needed"
-        return Verdict.COLLAPSES, said
-    return Verdict.UNDECIDED, f"the strength that is needed is between {least} and {most}"
-
-
-def proof_words(answer: Check) -> str:
-    """Say whether a verdict by limit analysis is proved, and by what."""
-    proof = answer.proof
-    if answer.needed is not None:
-        return UNPROVED
-    if proof is None:
-        return "none was found"
-    if proof.claim == "collapses":
-        return "a motion that no joint forbids gains work, in rational arithmetic"
-    if proof.tolerance:
-        return "forces within friction balance to 1e-12 of each weight, in rational arithmetic"
-    return "forces within friction balance exactly, in rational arithmetic"

@@ -170,7 +170,7 @@ def crossing(
     started = time.perf_counter()
     require(is_number(gap, 0, 0.1), "gap", gap, "above 0 and at most 0.1")
     require(not problem.live, "vehicle", vehicle.words, "left out: there are live loads")
-    still = problem.is_planar and problem.shaking is None
+    still = problem.has_statics
     require(still, "vehicle", vehicle.words, "gravity in the plane, and ground at rest")
     if not exists(problem):
         raise InputError("vehicle", vehicle.words, "a structure that stands without it")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from blocksim.ask.families import Family
 from blocksim.blocks.problem import Problem
@@ -49,7 +49,7 @@ class Stands:
     high: End | None
 
 
-def tried_ends(family: Family, first: Search, ask: Ask) -> tuple[Stands, ...] | None:
+def tried_ends(family: Family[Any], first: Search, ask: Ask) -> tuple[Stands, ...] | None:
     """Try all ends of the intervals that limit analysis knows; None where it knows none.
 
     Parameters
@@ -81,7 +81,7 @@ def tried_ends(family: Family, first: Search, ask: Ask) -> tuple[Stands, ...] | 
     )
 
 
-def around(family: Family, value: float) -> Within:
+def around(family: Family[Any], value: float) -> Within:
     """Return where there is no change but this one: half of the way to the next, both ways."""
     ends = [end for each in family.intervals or () for end in (each.low, each.high)]
     below = [end for end in ends if end < value and math.isfinite(end)]
@@ -92,7 +92,7 @@ def around(family: Family, value: float) -> Within:
     )
 
 
-def changes_of(family: Family, intervals: tuple[Stands, ...]) -> tuple[Change, ...]:
+def changes_of(family: Family[Any], intervals: tuple[Stands, ...]) -> tuple[Change, ...]:
     """Return all changes that limit analysis knows."""
     ends = (
         (end, above)

@@ -6,13 +6,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Generic, Literal
 
 import numpy as np
 
+from blocksim.ask.options import Of
 from blocksim.ask.scan import TRIED, Scan, least_friction, standing_at
 from blocksim.blocks.problem import Problem
 from blocksim.blocks.shaking import AMPLITUDE, DURATION, Shaking
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import PUSH
 from blocksim.common.errors import InputError
 from blocksim.limit.intervals import Interval, over_factor, over_tilt
@@ -32,7 +34,7 @@ LEANEST = 89.999
 
 
 @dataclass(frozen=True, kw_only=True)
-class Family:
+class Family(Generic[Of]):
     """A problem for each value of one parameter.
 
     Parameters
@@ -57,9 +59,9 @@ class Family:
         Where the parameter is the motion of supports.
     """
 
-    problem: Problem
+    problem: Of
     name: str
-    at: Callable[[float], Problem]
+    at: Callable[[float], Of]
     high: float
     low: float = 0.0
     unit: str = ""
@@ -88,7 +90,7 @@ class Family:
             if each.low < self.high and each.high >= self.low
         )
 
-    def of(self, problem: Problem) -> Family:
+    def of(self, problem: Of) -> Family[Of]:
         """Return the same family of another problem."""
         return family_of(problem, self.name)
 
@@ -104,7 +106,7 @@ class Family:
         return first.high if self.stands == "low" else max(first.low, 0.0)
 
 
-def family_of(problem: Problem, over: str) -> Family:
+def family_of(problem: Problem | SpatialProblem, over: str) -> Family[Any]:
     """Return the family of a problem over one parameter.
 
     Parameters
@@ -118,7 +120,7 @@ def family_of(problem: Problem, over: str) -> Family:
     InputError
         If there is no such parameter, or nothing to multiply.
     """
-    if over in FAMILIES:
+    if over in (IN_SPACE if isinstance(problem, SpatialProblem) else FAMILIES):
         return FAMILIES[over](problem)
     known = families_of(problem)
     if over not in known:
@@ -126,15 +128,17 @@ def family_of(problem: Problem, over: str) -> Family:
     return _over_parameter(problem, over)
 
 
-def families_of(problem: Problem) -> tuple[str, ...]:
+def families_of(problem: Problem | SpatialProblem) -> tuple[str, ...]:
     """Names of the parameters there are: of any problem, of its shaking, and of its kind."""
     kind = problem.maker
+    own = () if kind is None else kind.bracketed
+    if isinstance(problem, SpatialProblem):
+        return (*IN_SPACE, *own)
     still = {"amplitude", "duration"} if problem.shaking is None else set[str]()
-    always = [name for name in FAMILIES if name not in still]
-    return (*always, *(() if kind is None else kind.bracketed))
+    return (*(name for name in FAMILIES if name not in still), *own)
 
 
-def _over_load(problem: Problem) -> Family:
+def _over_load(problem: Problem | SpatialProblem) -> Family[Any]:
     if not problem.live:
         raise InputError("--over", "load", "another parameter: the structure has no live loads")
     return Family(
@@ -146,7 +150,7 @@ def _over_load(problem: Problem) -> Family:
     )
 
 
-def _over_tilt(problem: Problem) -> Family:
+def _over_tilt(problem: Problem | SpatialProblem) -> Family[Any]:
     def standing() -> tuple[Interval, ...]:
         if problem.strength is not None:
             # Of blocks that crush, tilts are tried, as parameters of a kind are.
@@ -178,7 +182,7 @@ def _over_lean(problem: Problem) -> Family:
     )
 
 
-def _over_mu(problem: Problem) -> Family:
+def _over_mu(problem: Problem | SpatialProblem) -> Family[Any]:
     return Family(
         problem=problem,
         name="mu",
@@ -260,7 +264,7 @@ def _shaking(problem: Problem, name: str) -> Shaking:
     return problem.shaking
 
 
-FAMILIES: dict[str, Callable[[Problem], Family]] = {
+FAMILIES: dict[str, Callable[[Any], Family[Any]]] = {
     "load": _over_load,
     "tilt": _over_tilt,
     "lean": _over_lean,
@@ -270,9 +274,11 @@ FAMILIES: dict[str, Callable[[Problem], Family]] = {
     "amplitude": _over_amplitude,
     "duration": _over_duration,
 }
+IN_SPACE = ("load", "tilt", "mu")
+"""Those that problems in space have."""
 
 
-def _over_parameter(problem: Problem, name: str) -> Family:
+def _over_parameter(problem: Problem | SpatialProblem, name: str) -> Family[Any]:
     """Return the family over a parameter of the kind a problem was made from.
 
     Its range is where the kind can be built, around the value at hand.

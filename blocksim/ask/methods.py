@@ -14,6 +14,8 @@ from collections.abc import Iterator
 from functools import partial
 
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import require
 from blocksim.common.errors import InputError
 from blocksim.common.later import Later
 from blocksim.engines import ENGINES, NAMES, engine_named, make_known
@@ -53,7 +55,7 @@ def choose(
     method: str | Method,
     tol: float = 0.0,
     *,
-    problem: Problem | None = None,
+    problem: Problem | SpatialProblem | None = None,
     moving: bool = False,
     settings: Overrides = BY_RULE,
     reduce: bool | None = None,
@@ -103,7 +105,7 @@ def choose(
     if moving and rung.is_static:
         able = ", ".join(NAMES)
         raise InputError("method", rung.name, f"one of {able}: {rung.name} moves no blocks")
-    still = problem is None or (problem.is_planar and problem.shaking is None)
+    still = problem is None or (problem.has_statics and isinstance(problem, Problem))
     if reduce and not (still and _can_reduce(rung)):
         able = ", ".join(each.name for each in _shipped() if _can_reduce(each))
         allowed = f"left out but for {able}, in the plane, on ground at rest"
@@ -111,6 +113,9 @@ def choose(
     if tol and tol < rung.finest:
         raise InputError("tol", tol, f"at least {rung.finest:g} for {rung.name}")
     require_settings(rung, settings)
+    accuracy = settings.get("accuracy") if isinstance(problem, SpatialProblem) else None
+    allowed = "left out in space: there settings.step says how fine a motion is"
+    require(accuracy is None, "settings.accuracy", accuracy, allowed)
     return rung
 
 
@@ -143,10 +148,15 @@ def _shipped() -> Iterator[Engine]:
     return map(ENGINES.__getitem__, NAMES)
 
 
-def _beyond(method: Method, problem: Problem | None) -> str:
+def _beyond(method: Method, problem: Problem | SpatialProblem | None) -> str:
     """Say what is allowed where a problem is beyond a method; empty where it is not."""
     if problem is None:
         return ""
+    if isinstance(problem, SpatialProblem):
+        if method.name == "limit" or (isinstance(method, Engine) and method.build_in_space):
+            return ""
+        able = ", ".join(each.name for each in _shipped() if each.build_in_space)
+        return f"one of limit, {able}: {method.name} knows no blocks in space"
     if not problem.is_planar and not method.is_spatial:
         able = " or ".join(each.name for each in _shipped() if each.is_spatial)
         return f"{able} where gravity leans out of the plane"
@@ -177,7 +187,7 @@ def reduces(
     """
     if reduce is not None:
         return reduce
-    still = problem.is_planar and problem.shaking is None
+    still = problem.has_statics
     usual = isinstance(method, Engine) and (method.reduces if by_maker else method.merges)
     return still and usual
 

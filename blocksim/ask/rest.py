@@ -11,6 +11,7 @@ import numpy as np
 from blocksim.blocks.assembly import Array, displacement
 from blocksim.blocks.groups import Group, groups_of
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.checks import require
 from blocksim.common.progress import Progress, silent
 
@@ -56,10 +57,12 @@ def rest_words(rest: Rest | None, motion: Moving | None = None, *, asked: bool) 
     return f"{said}; let go along that motion in direct {ends}"
 
 
-def require_rest(problem: Problem) -> None:
+def require_rest(problem: Problem | SpatialProblem) -> None:
     """Raise `InputError` where it cannot be found out whether blocks must rest."""
+    plane = isinstance(problem, Problem)
+    require(plane, "must_rest", "asked", "left out: it is not known in space")
     allowed = "left out where gravity leans or the ground shakes"
-    require(problem.is_planar and problem.shaking is None, "must_rest", "asked", allowed)
+    require(problem.has_statics, "must_rest", "asked", allowed)
     rigid = problem.strength is None
     require(rigid, "must_rest", "asked", "left out beside a strength: blocks are rigid there")
     bounded = bool(np.isfinite(problem.friction).all())

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -17,16 +16,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.errors import InputError
 from blocksim.common.later import Library
-from blocksim.limit.crushing import standing_margin
 from blocksim.limit.intervals import Interval
+from blocksim.limit.statics import standing_margin
 
 if TYPE_CHECKING:
     from scipy import optimize
 else:
     optimize = Library("scipy.optimize")
 
+At = Callable[[float], Problem | SpatialProblem]
+"""Value to problem."""
 ENOUGH = 1e-9
 """Lack of force at which limit analysis still calls blocks at rest [mean weights]."""
 NEAR = 1e-6
@@ -50,7 +52,10 @@ class Scan:
     """
 
     def __init__(
-        self, at: Callable[[float], Problem], ends: tuple[float, float], now: float
+        self,
+        at: At,
+        ends: tuple[float, float],
+        now: float,
     ) -> None:
         self.at = lru_cache(maxsize=2 * TRIED)(at)
         self.values = self._built(np.geomspace(*ends, TRIED).tolist(), now)
@@ -89,9 +94,7 @@ class Scan:
         return f"; {said}, as far as {tried} tell"
 
 
-def standing_at(
-    at: Callable[[float], Problem], values: Sequence[float]
-) -> tuple[Interval, ...]:
+def standing_at(at: At, values: Sequence[float]) -> tuple[Interval, ...]:
     """Find between which values forces of equilibrium exist, as far as those tried tell."""
     stood = [standing_margin(at(value)) >= -ENOUGH for value in values]
     found, low = list[Interval](), -math.inf
@@ -106,11 +109,11 @@ def standing_at(
     return (*found, Interval(low=low, high=math.inf)) if stood[-1] else tuple(found)
 
 
-def least_friction(problem: Problem, most: float) -> tuple[Interval, ...]:
+def least_friction(problem: Problem | SpatialProblem, most: float) -> tuple[Interval, ...]:
     """Find the friction from which on forces of equilibrium exist, up to a bound."""
 
-    def at(mu: float) -> Problem:
-        return replace(problem, mu=mu)
+    def at(mu: float) -> Problem | SpatialProblem:
+        return problem.with_friction(mu)
 
     if standing_margin(at(most)) < -ENOUGH:
         return ()
@@ -119,7 +122,7 @@ def least_friction(problem: Problem, most: float) -> tuple[Interval, ...]:
     return (Interval(low=low, high=math.inf),)
 
 
-def root(at: Callable[[float], Problem], low: float, high: float, *, rises: bool) -> float:
+def root(at: At, low: float, high: float, *, rises: bool) -> float:
     """Find where the margin of equilibrium vanishes between two values, one of which stands.
 
     Parameters

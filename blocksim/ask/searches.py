@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from blocksim.ask.ends import Within
 from blocksim.ask.families import Family
 from blocksim.ask.options import Taken
 from blocksim.ask.search import Answer, Bisection
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.progress import Progress, silent
 from blocksim.limit import equilibrium
-from blocksim.limit.crushing import exists
+from blocksim.limit.statics import exists
 from blocksim.simulation.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -22,10 +23,13 @@ if TYPE_CHECKING:
     from blocksim.engines.base import Engine
     from blocksim.limit.proof import Proof
     from blocksim.simulation.observation import Held, Observation
+    from blocksim.simulation.space import HeldInSpace
 
 SURE = (1e-8, 1e-7, 1e-6)
 """How far to both sides of its value limit analysis is asked again, the first that tells,
 relative."""
+ROUGH = (1e-5, 1e-4, 1e-3)
+"""The same in space, where numbers are floating-point ones alone."""
 FARTHEST = 1e3
 """How far from its first value a search goes, as a ratio."""
 FINEST_SPREAD = 1e-4
@@ -67,10 +71,12 @@ class Search:
     collapse: Observation | None = None
 
 
-def followed(family: Family, spreading: Spreading, exact: float | None) -> Search:
+def followed(
+    family: Family[Any], spreading: Spreading, exact: float | None, tol: float
+) -> Search:
     """Follow the blocks until they fall, or as far as they can be followed."""
     if exact is not None and math.isfinite(exact) and exact > 0:
-        return by_programmes(family, exact, rises=False)
+        return by_programmes(family, exact, rises=False, tol=tol)
     if spreading.path.ends == "collapse":
         return Search(falls=0.0, runs=1, reason="no forces of equilibrium exist as built")
     return Search(
@@ -102,7 +108,7 @@ def slowly(
 
 
 def shaken(
-    family: Family,
+    family: Family[Any],
     engine: Engine,
     start: float,
     within: Within,
@@ -167,8 +173,10 @@ def proofs_beside(
     return ()
 
 
-def by_programmes(family: Family, exact: float | None, *, rises: bool) -> Search:
-    """Ask a linear programme a little to both sides of its own value."""
+def by_programmes(
+    family: Family[Any], exact: float | None, *, rises: bool, tol: float
+) -> Search:
+    """Ask limit analysis a little to both sides of its own value."""
     if exact is None:
         return Search(reason="no forces of equilibrium exist at any value")
     if math.isinf(exact):
@@ -177,27 +185,31 @@ def by_programmes(family: Family, exact: float | None, *, rises: bool) -> Search
         least = family.low
         reason = f"forces of equilibrium exist down to {least:.6g}"
         return Search(stands=least, runs=1, reason=reason)
+    spatial = isinstance(family.at(exact), SpatialProblem)
+    told: list[bool | None] = []
     falls = stands = exact
-    confirmed, runs = False, 0
-    for sure in SURE:
+    runs = 0
+    for sure in (*SURE, *(by for by in ROUGH if spatial and by <= tol)):
         ends = exact * (1 - sure), exact * (1 + sure)
         falls, stands = ends if rises else ends[::-1]
         runs += 2
-        confirmed = exists(family.at(stands)) and not exists(family.at(falls))
-        if confirmed:
+        told = [exists(family.at(end)) for end in (falls, stands)]
+        if told == [False, True]:
             break
+    confirmed = told == [False, True]
     words = "confirmed" if confirmed else "not confirmed"
+    programmes = "cone" if spatial else "linear"
     return Search(
         falls=falls,
         stands=stands,
         confirmed=confirmed,
         runs=runs,
-        reason=f"limit analysis, {words} by two more linear programmes at the ends",
+        reason=f"limit analysis, {words} by two more {programmes} programmes at the ends",
     )
 
 
 def by_engine(
-    held_at: Callable[[float], Held],
+    held_at: Callable[[float], Held | HeldInSpace],
     start: float,
     within: tuple[float, float],
     tol: float,
@@ -227,15 +239,15 @@ def by_engine(
         Let the blocks go at both ends.
     progress : Progress, optional
     """
-    from blocksim.simulation.observation import conclude
+    from blocksim.ask.engines import concluded
 
-    ends: dict[Verdict, tuple[float, Held]] = {}
+    ends: dict[Verdict, tuple[float, Held | HeldInSpace]] = {}
     blocks = splits = both = 0
 
     def judge(value: float) -> Answer:
         nonlocal blocks, splits, both
         held = held_at(value)
-        blocks, splits = max(blocks, held.simulation.blocks), splits + held.splits
+        blocks, splits = max(blocks, held.blocks), splits + held.splits
         both += held.onset.may_rest
         # Every answer narrows the bracket: the last of each kind is that of its end.
         ends[held.onset.verdict] = value, held
@@ -258,7 +270,7 @@ def by_engine(
             value, held = ends[expected]
             if confirm:
                 progress(0.95, f"moving run at {name} {value:.6g}")
-            ended = conclude(held, moving=confirm)
+            ended = concluded(held, moving=confirm, progress=silent)
             agreed.append(ended.verdict is expected)
             if ended.verdict is Verdict.COLLAPSES:
                 collapse = ended

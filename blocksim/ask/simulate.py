@@ -2,41 +2,39 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from blocksim.ask.methods import choose
-from blocksim.ask.options import Asked, Options, problem_of, taken
-from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.ask.options import Asked, AskedInSpace, Options, problem_of, taken
+from blocksim.blocks.problem import Problem
 from blocksim.engines import get_engine
 
 if TYPE_CHECKING:
-    from blocksim.ask.space import SpatialRecording
+    from blocksim.simulation.recorded import Recorded
     from blocksim.simulation.recording import Recording
+    from blocksim.simulation.space import SpatialRecording
 
 
 @overload
 def simulate(
     asked: Asked, *, duration: float | None = None, **options: Unpack[Options]
 ) -> Recording: ...
-
-
 @overload
 def simulate(
-    asked: SpatialProblem, *, duration: float | None = None, **options: Unpack[Options]
+    asked: AskedInSpace, *, duration: float | None = None, **options: Unpack[Options]
 ) -> SpatialRecording: ...
-
-
+@overload
 def simulate(
-    asked: Asked | SpatialProblem,
-    *,
-    duration: float | None = None,
-    **options: Unpack[Options],
-) -> Recording | SpatialRecording:
+    asked: Asked | AskedInSpace, *, duration: float | None = None, **options: Unpack[Options]
+) -> Recording | SpatialRecording: ...
+def simulate(
+    asked: Asked | AskedInSpace, *, duration: float | None = None, **options: Unpack[Options]
+) -> Recorded[Any]:
     """Let blocks go in an engine, after the onset test, and record them.
 
     Parameters
     ----------
-    asked : Problem, SpatialProblem or Maker
+    asked : Problem, SpatialProblem, or a maker of one
     duration : float, optional
         Time to record [sqrt(size/g)]; by default until the verdict is certain, or, where
         the ground shakes, until the blocks lie still.
@@ -54,18 +52,13 @@ def simulate(
     MissingPart
         If the engine's library is not installed.
     """
-    # What moves blocks is loaded where it is asked for.
-    if isinstance(asked, SpatialProblem):
-        from blocksim.ask.space import recorded_in_space
-
-        return recorded_in_space(asked, duration, taken(options, "reduce", "tol", "confirm"))
-    from blocksim.simulation.observation import hold
-    from blocksim.simulation.shaken import shake
-
     given, problem = taken(options, "reduce", "tol", "confirm"), problem_of(asked)
     chosen = choose(given.method, problem=problem, moving=True, settings=given.settings)
     engine = get_engine(chosen)
-    if problem.shaking is not None:
+    # What moves blocks is loaded where it is asked for.
+    if isinstance(problem, Problem) and problem.shaking is not None:
+        from blocksim.simulation.shaken import shake
+
         seen = shake(
             problem,
             engine,
@@ -75,5 +68,6 @@ def simulate(
             progress=given.progress,
         )
         return seen.recording
-    held = hold(problem, engine, settings=given.settings, progress=given.progress)
-    return held.record(duration, given.progress)
+    from blocksim.ask.engines import held
+
+    return held(problem, engine, given).record(duration, given.progress)

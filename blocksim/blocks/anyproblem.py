@@ -47,6 +47,7 @@ class AnyProblem(Shown, ABC, Generic[Blocks]):
     source: str = ""
     maker: Kind | None = None
     weighed: bool = True
+    strength: float | None = None
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

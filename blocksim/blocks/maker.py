@@ -172,7 +172,7 @@ class Kind(Shown, Table, ABC):
             If there is no friction, or nothing can be built of the parameters.
         """
 
-    def offers(self, problem: Problem) -> Any:  # noqa: ARG002 - one of its own may
+    def offers(self, problem: Any) -> Any:  # noqa: ARG002 - one of its own may
         """Return what it knows of its problem better than the general way; None for nothing.
 
         See `blocksim.kinds.offers.Offers`.

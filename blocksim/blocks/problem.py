@@ -80,7 +80,6 @@ class Problem(AnyProblem[Assembly]):
     road: tuple[tuple[float, float, float], ...] = ()
     dispersal: Dispersal | None = None
     soil: Soil | None = None
-    strength: float | None = None
 
     def __post_init__(self) -> None:
         """Check the ranges."""

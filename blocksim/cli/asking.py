@@ -10,8 +10,8 @@ import click
 from blocksim.ask.bracket import bracket as ask_bracket
 from blocksim.ask.carried import carried_of
 from blocksim.ask.check import check as ask_check
-from blocksim.ask.options import Options
 from blocksim.blocks.joints import joint_names
+from blocksim.blocks.problem import Problem
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.cli.arguments import Option
 from blocksim.cli.crossing import cross
@@ -39,6 +39,7 @@ from blocksim.cli.options import (
 from blocksim.cli.output import answer_with, progress
 from blocksim.cli.proving import write_proof
 from blocksim.cli.question import joint_of
+from blocksim.cli.space import refuse
 from blocksim.cli.subject import anything_asked, is_many, is_structure
 from blocksim.common.checks import require
 from blocksim.report.answers import bracket_record, check_record
@@ -74,11 +75,7 @@ def check(
         check_each(scene, given, loading, alone)
     problem = anything_asked(scene, given, loading, spatial=spatial, thick=True)
     if isinstance(problem, SpatialProblem):
-        from blocksim.cli.space import check_in_space
-
-        others: dict[str, object] = {"joint": joint, "must_rest": must_rest, "proof": proof}
-        asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce}
-        check_in_space(problem, asked, others, as_json=as_json)
+        refuse({"joint": joint, "must_rest": must_rest, "proof": proof})
     at = None if joint is None else joint_of(joint, joint_names(problem.assembly))
     with named_options(), progress() as report:
         answer = ask_check(
@@ -136,14 +133,8 @@ def bracket(
         scene, given, loading, spatial=spatial, thick=not sought, sought=sought
     )
     if isinstance(problem, SpatialProblem):
-        from blocksim.cli.space import bracket_in_space
-
-        others: dict[str, object] = {**asdict(crossed), "within": within, "proof": proof}
-        asked: Options = {"method": method, "settings": settings_of(settings), "reduce": reduce,
-                          "tol": tol}  # fmt: skip
-        bracket_in_space(problem, over, asked, others, as_json=as_json)
-        return
-    if crosses:
+        refuse({**asdict(crossed), "proof": proof})
+    elif crosses:
         usual = {"--over": over in {None, "load"}, "--within": within is None,
                  "--method": method in {"auto", "limit"}, "--set": settings is None,
                  "--reduce": reduce is None}  # fmt: skip
@@ -161,7 +152,7 @@ def bracket(
             progress=report,
         )
     write_proof(answer.method, () if proof is None else answer.proofs, proof)
-    if crossed.out is not None:
+    if crossed.out is not None and isinstance(problem, Problem):
         write_curves(problem, answer.over, crossed.out, silent=as_json)
     record = bracket_record(answer) if as_json else dict[str, object]()
     answer_with(record, [] if as_json else bracket_lines(answer), as_json=as_json)

@@ -12,7 +12,6 @@ from blocksim.cli.filming import picture_of_leaning
 from blocksim.cli.options import Given, Loading, named_options
 from blocksim.cli.output import progress, save_picture, say
 from blocksim.cli.question import question
-from blocksim.cli.space import draw_in_space
 from blocksim.cli.subject import anything_asked, is_structure, problem_asked
 from blocksim.common.checks import require
 from blocksim.common.errors import MISSING, InputError
@@ -42,7 +41,7 @@ def write_still(
         problem = anything_asked(scene, given, loading, thick=True)
         if isinstance(problem, SpatialProblem):
             require(not must_rest, "--must-rest", must_rest, "left out in space")
-            draw_in_space(out, kind, problem, method, height)
+            _write_perspective(out, kind, problem, method, height)
         else:
             require(kind != "html", "--out", str(out), flat)
             _write_sheet(out, kind, problem, method, height, must_rest=must_rest)
@@ -95,3 +94,23 @@ def _write_sheet(
         say(f"wrote {out}")
         return
     save_picture(sheet_figure(sheet), out, kind, height)
+
+
+def _write_perspective(
+    out: Path, kind: str, problem: SpatialProblem, method: str | None, height: int | None
+) -> None:
+    """Draw a problem in space, with its answer, or write a page to turn it around."""
+    allowed = "a .png, .svg or .pdf: it is drawn in perspective; or .html, to turn it around"
+    require(kind != "dxf", "--out", str(out), allowed)
+    with named_options(), progress() as report:
+        answer = check(problem, method=method or "auto", progress=report)
+    if kind == "html":
+        from blocksim.view.turning import turning_page
+
+        text = turning_page(answer).encode()
+        write_whole(out, lambda file: file.write(text))
+        say(f"wrote {out}: a page to turn it around")
+        return
+    from blocksim.view.solidfigure import solid_figure
+
+    save_picture(solid_figure(answer), out, kind, height)

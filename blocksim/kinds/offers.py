@@ -13,6 +13,7 @@ from blocksim.simulation.simulated import Reduced
 from blocksim.simulation.verdict import Evidence, Verdict
 
 if TYPE_CHECKING:
+    from blocksim.blocks.space.problem import SpatialProblem
     from blocksim.simulation.observation import Observation
 
 
@@ -133,6 +134,6 @@ class Offers:
         """Return what is put under the answer's `arch`, with modes that were found."""
 
 
-def offers_of(problem: Problem) -> Offers | None:
+def offers_of(problem: Problem | SpatialProblem) -> Offers | None:
     """Return what the maker of a problem knows of it; None where nothing."""
     return None if problem.maker is None else problem.maker.offers(problem)

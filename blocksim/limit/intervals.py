@@ -20,8 +20,8 @@ import numpy as np
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.problem import Load, Problem
-from blocksim.limit.capacity import collapse
-from blocksim.limit.programme import equilibrium
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.limit.statics import collapse, equilibrium
 
 FINEST = 1e-9
 """Part of an arc that is not divided further [rad]."""
@@ -41,13 +41,14 @@ class Interval:
     high: float
 
 
-def over_factor(problem: Problem) -> tuple[Interval, ...]:
+def over_factor(problem: Problem | SpatialProblem) -> tuple[Interval, ...]:
     """Find the factors on the live loads at which forces of equilibrium exist.
 
     Parameters
     ----------
-    problem : Problem
-        In its plane, with live loads. Its own load factor does not matter.
+    problem : Problem or SpatialProblem
+        With live loads; a plane one with gravity in its plane. Its own load factor does not
+        matter.
 
     Returns
     -------
@@ -62,13 +63,15 @@ def over_factor(problem: Problem) -> tuple[Interval, ...]:
     return (Interval(low=-math.inf if least is None else -least, high=most),)
 
 
-def over_tilt(problem: Problem, low: float, high: float) -> tuple[Interval, ...]:
-    """Find the angles by which gravity turns in the plane at which forces of equilibrium exist.
+def over_tilt(
+    problem: Problem | SpatialProblem, low: float, high: float
+) -> tuple[Interval, ...]:
+    """Find the angles by which a table tilts at which forces of equilibrium exist.
 
     Parameters
     ----------
-    problem : Problem
-        In its plane.
+    problem : Problem or SpatialProblem
+        A plane one with gravity in its plane.
     low, high : float
         Range of the angles [rad], within a half turn.
 
@@ -77,11 +80,10 @@ def over_tilt(problem: Problem, low: float, high: float) -> tuple[Interval, ...]
     tuple of Interval
         By angle [rad].
     """
-    if problem.is_loaded:
+    if problem.is_loaded or problem.unturned.any():
         return _joined(_Arc(problem).parts(low, high), low, high)
-    x, y, _ = problem.gravity
     across = Load(
-        force=np.array([-y, x]),
+        force=problem.across[: problem.dimensions],
         blocks=tuple(range(len(problem.assembly.blocks))),
         per_weight=True,
     )
@@ -100,12 +102,16 @@ def _angle(factor: float) -> float:
 
 
 class _Arc:
-    """Gravity along an arc beside loads that do not turn with it."""
+    """Gravity along an arc beside what does not turn with it: loads, and a part of gravity."""
 
-    def __init__(self, problem: Problem) -> None:
-        self._problem, self._loads = problem, problem.loads()
-        weights = [problem.tilted(turn).pull() - self._loads for turn in (0.0, math.pi / 2)]
-        self._along, self._across = weights
+    def __init__(self, problem: Problem | SpatialProblem) -> None:
+        self._problem = problem
+        still = problem.unturned
+        self._rest = replace(problem, gravity=still).pull()
+        turning = problem.gravity - still, problem.across
+        self._along, self._across = (
+            replace(problem, gravity=still + each).pull() - self._rest for each in turning
+        )
         self._asked: dict[float, Array | None] = {}
 
     def parts(self, low: float, high: float) -> Iterator[tuple[float, float]]:
@@ -139,17 +145,17 @@ class _Arc:
 
     def _mechanism(self, angle: float, stretch: float = 1.0) -> Array | None:
         """Return how blocks fall where gravity has an angle and so many times its size."""
-        tilted = self._problem.tilted(angle)
-        asked = replace(tilted, gravity=stretch * tilted.gravity)
-        found = equilibrium(asked)
+        tilted, still = self._problem.tilted(angle), self._problem.unturned
+        turned = still + stretch * (tilted.gravity - still)
+        found = equilibrium(replace(tilted, gravity=turned))
         if found.exists or found.mechanism is not None:
             return found.mechanism
-        return np.zeros_like(self._loads)
+        return np.zeros_like(self._rest)
 
     def _spared(self, mechanism: Array, low: float, high: float) -> list[tuple[float, float]]:
         """Return the parts of an arc on which a mechanism gains no work."""
         x, y, rest = (
-            float((mechanism * each).sum()) for each in (self._along, self._across, self._loads)
+            float((mechanism * each).sum()) for each in (self._along, self._across, self._rest)
         )
         size = math.hypot(x, y)
         if abs(rest) >= size:

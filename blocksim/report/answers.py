@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from blocksim.blocks.joints import JointState, joint_names, side_name
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import FaceJoint, SpatialAssembly
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.version import __version__
 from blocksim.report.carried import carried_record
-from blocksim.report.problems import measured_line, problem_record
+from blocksim.report.problems import measured_line, problem_record, weight_of
 
 if TYPE_CHECKING:
     from blocksim.arch.answers import ArchAnswer
     from blocksim.ask.bracket import Bracket
     from blocksim.ask.check import Check
-    from blocksim.blocks.problem import Problem
+    from blocksim.blocks.assembly import Joint
     from blocksim.limit.carried import Carried
     from blocksim.report.schema import (
         ArchBracketRecord,
@@ -35,13 +38,18 @@ HINGED = {JointState.HINGE_INTRADOS: 0, JointState.HINGE_EXTRADOS: 1}
 """Which end of a joint stays closed, in the order of its `ends`."""
 
 
-def check_record(answer: Check, carried: Carried | None = None) -> CheckRecord:
+def check_record(answer: Check[Any], carried: Carried | None = None) -> CheckRecord:
     """Return a check as `check --json` prints it.
 
     Forces of joints are in N, as a file has them; normal forces press where they are above
-    0. They are those of the safest state of equilibrium.
+    0. They are those of the safest state of equilibrium. What is not known in space is null.
     """
-    problem, carried = answer.problem, carried or answer.carried
+    problem: Problem | SpatialProblem = answer.problem
+    carried = carried or answer.carried
+    told = carried_record(carried, joint_names(problem.assembly))
+    if carried is None:
+        told["weights_given"] = problem.weighed
+        told["weight_kN"] = weight_of(problem) / 1000
     seconds = None if answer.simulated is None else answer.simulated * problem.seconds
     return {
         "version": __version__,
@@ -52,7 +60,7 @@ def check_record(answer: Check, carried: Carried | None = None) -> CheckRecord:
         "reason": answer.reason,
         "problem": problem_record(problem),
         "load_factor": answer.load_factor,
-        **carried_record(carried, joint_names(problem.assembly)),
+        **told,
         "rest": answer.rest,
         "rest_goes_on": answer.motion and answer.motion.goes_on,
         "joints": _joints(answer, carried),
@@ -67,7 +75,7 @@ def check_record(answer: Check, carried: Carried | None = None) -> CheckRecord:
     }
 
 
-def bracket_record(answer: Bracket) -> BracketRecord:
+def bracket_record(answer: Bracket[Any]) -> BracketRecord:
     """Return a bracket as `bracket --json` prints it."""
     return {
         "version": __version__,
@@ -100,7 +108,7 @@ def evidence_record(evidence: Iterable[Evidence]) -> list[EvidenceRecord]:
     return [{"test": each.test, "found": each.found} for each in evidence]
 
 
-def state_words(problem: Problem) -> Callable[[JointState], str]:
+def state_words(problem: Problem | SpatialProblem) -> Callable[[JointState], str]:
     """Return what says a joint's state: only an arch has an intrados and an extrados."""
     if problem.is_arch:
         return lambda state: state.value
@@ -127,7 +135,7 @@ def _arch(of: ArchAnswer) -> ArchRecord:
     }
 
 
-def _arch_bracket(answer: Bracket) -> ArchBracketRecord | None:
+def _arch_bracket(answer: Bracket[Any]) -> ArchBracketRecord | None:
     """Tell the same of a bracket over its thickness, and both ratios tried."""
     of, line = answer.arch, measured_line(answer.problem)
     if of is None:
@@ -145,16 +153,22 @@ def _arch_bracket(answer: Bracket) -> ArchBracketRecord | None:
     }
 
 
-def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
-    problem = answer.problem
+def _joints(answer: Check[Any], carried: Carried | None) -> list[JointRecord]:
+    problem: Problem | SpatialProblem = answer.problem
     assembly, words = problem.assembly, state_words(problem)
     found = None if carried is None else carried.resultants
+    in_space = answer.forces if isinstance(problem, SpatialProblem) else None
     known = problem.weighed and problem.has_size
     told: list[JointRecord] = []
     for k, joint in enumerate(assembly.joints):
-        ends = [joint.inner.tolist()] + ([] if joint.is_corner else [joint.outer.tolist()])
+        ends = _ends(joint)
         seen = answer.joints[k]
-        end = HINGED.get(seen.state)
+        end = HINGED.get(seen.state) if isinstance(problem, Problem) else None
+        normal = friction = None
+        if found is not None:
+            normal, friction = float(found.normal[k]), float(found.friction[k])
+        elif in_space is not None:
+            normal, friction = float(in_space[k, 0]), math.hypot(*in_space[k, 1:])
         told.append(
             {
                 "a": side_name(assembly, k, 0),
@@ -164,11 +178,11 @@ def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
                 "angle_deg": math.degrees(seen.angle) if problem.is_arch else None,
                 "state": words(seen.state),
                 "hinge": None if end is None else ends[min(end, len(ends) - 1)],
-                "normal_force": None if found is None else float(found.normal[k]),
-                "friction_force": None if found is None else float(found.friction[k]),
+                "normal_force": normal,
+                "friction_force": friction,
                 "width_used": None if found is None else float(found.width_used[k]),
                 "stress_MPa": None
-                if found is None or joint.is_corner or not known
+                if found is None or len(ends) == 1 or not known
                 else float(found.stress[k]) / 1e6,
                 "friction_used": None if found is None else float(found.friction_used[k]),
             }
@@ -176,7 +190,14 @@ def _joints(answer: Check, carried: Carried | None) -> list[JointRecord]:
     return told
 
 
-def _shaken(answer: Check) -> ShakenRecord | None:
+def _ends(joint: Joint | FaceJoint) -> list[list[float]]:
+    """Return the ends of a joint, one of a corner; in space the corners of its polygon."""
+    if isinstance(joint, FaceJoint):
+        return joint.points.tolist()
+    return [joint.inner.tolist(), *([] if joint.is_corner else [joint.outer.tolist()])]
+
+
+def _shaken(answer: Check[Any]) -> ShakenRecord | None:
     """Tell what became of blocks on ground that shakes; times since the release."""
     if answer.shaken is None:
         return None
@@ -192,19 +213,20 @@ def _shaken(answer: Check) -> ShakenRecord | None:
     }
 
 
-def _mechanism(answer: Check) -> list[MovementRecord] | None:
-    """Rates of the blocks: x and y in m for each radian of rotation, which has no unit."""
+def _mechanism(answer: Check[Any]) -> list[MovementRecord] | None:
+    """Rates of the blocks: ways in m for each radian of rotation, which has no unit."""
     rates, assembly = answer.mechanism, answer.problem.assembly
     if rates is None:
         return None
+    spatial = isinstance(assembly, SpatialAssembly)
     return [
         {
             "block": block.name or str(index),
             "x": float(rate[0]) * assembly.size,
             "y": float(rate[1]) * assembly.size,
-            "z": None,
-            "rotation": float(rate[2]),
-            "rotations": None,
+            "z": float(rate[2]) * assembly.size if spatial else None,
+            "rotation": None if spatial else float(rate[2]),
+            "rotations": rate[3:].tolist() if spatial else None,
         }
         for index, (block, rate) in enumerate(zip(assembly.blocks, rates, strict=True))
     ]

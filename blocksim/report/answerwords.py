@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from blocksim.arch.dimensions import friction_angle
-from blocksim.ask.check import SOUGHT, UNPROVED, proof_words
+from blocksim.ask.check import SOUGHT, UNPROVED
 from blocksim.ask.rest import rest_words
 from blocksim.blocks.joints import JointState, joint_names
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.assembly import SpatialAssembly
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.report.answers import state_words
 from blocksim.report.carried import carried_lines
 from blocksim.report.problems import (
@@ -28,21 +31,20 @@ if TYPE_CHECKING:
     from blocksim.ask.bracket import Bracket
     from blocksim.ask.check import Check
     from blocksim.ask.ends import End
-    from blocksim.ask.space import SpatialBracket
     from blocksim.blocks.assembly import Array, Assembly
-    from blocksim.blocks.problem import Problem
     from blocksim.limit.carried import Carried
     from blocksim.simulation.verdict import Evidence
 
 SIX = 6
 """Digits of ratios, where no more are known."""
+NONE_IN_SPACE = "none: in space forces and motions are checked in floating-point numbers"
 ASIDE = {"method": "method", "settings": "method", "reduction": "method", "note": "note"}
 """Evidence that is told at the end, and what its line is called."""
 SHOWN = 8
 """Joints and blocks told in a line of text."""
 
 
-def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
+def check_lines(answer: Check[Any], carried: Carried | None = None) -> list[str]:
     """Return a check in words."""
     problem, carried, of = answer.problem, carried or answer.carried, answer.arch
     lines = [
@@ -65,7 +67,8 @@ def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
         lines.append(_exact("least  ", of))
     lines += carried_lines(carried, joint_names(problem.assembly))
     lines += unit_lines(problem) if carried else []
-    if of is None and carried is None and len(problem.assembly.joints) > SOUGHT:
+    slow = len(problem.assembly.joints) > SOUGHT and isinstance(problem, Problem)
+    if of is None and carried is None and slow:
         lines.append(f"  safety  not asked: it takes long with more than {SOUGHT} joints")
     if answer.method == "limit":
         lines.append(f"  proof   {proof_words(answer)}")
@@ -81,7 +84,26 @@ def check_lines(answer: Check, carried: Carried | None = None) -> list[str]:
     return [*lines, *aside_lines(answer.evidence)]
 
 
-def bracket_lines(answer: Bracket) -> list[str]:
+def proof_words(answer: Check[Any]) -> str:
+    """Say whether a verdict by limit analysis is proved, and by what."""
+    proof = answer.proof
+    if answer.needed is not None:
+        return UNPROVED
+    if proof is None:
+        return NONE_IN_SPACE if is_spatial(answer) else "none was found"
+    if proof.claim == "collapses":
+        return "a motion that no joint forbids gains work, in rational arithmetic"
+    if proof.tolerance:
+        return "forces within friction balance to 1e-12 of each weight, in rational arithmetic"
+    return "forces within friction balance exactly, in rational arithmetic"
+
+
+def is_spatial(answer: Check[Any] | Bracket[Any]) -> bool:
+    """Tell whether an answer is of blocks in space."""
+    return isinstance(answer.problem, SpatialProblem)
+
+
+def bracket_lines(answer: Bracket[Any]) -> list[str]:
     """Return a bracket in words."""
     of = answer.arch
     head = values_tried(answer) if of is None else _head_of_arch(of)
@@ -121,8 +143,10 @@ def aside_lines(evidence: Sequence[Evidence]) -> list[str]:
     return [f"  {ASIDE[each.test]:<7} {each.found}" for each in evidence if each.test in ASIDE]
 
 
-def ends_proved_words(answer: Bracket) -> str:
+def ends_proved_words(answer: Bracket[Any]) -> str:
     """Say whether it is proved that it falls to one side of each change, and stands beyond."""
+    if is_spatial(answer):
+        return NONE_IN_SPACE
     if answer.problem.strength is not None:
         return UNPROVED
     if not answer.proved:
@@ -132,7 +156,7 @@ def ends_proved_words(answer: Bracket) -> str:
     )
 
 
-def values_tried(answer: Bracket | SpatialBracket, digits: int = 9) -> str:
+def values_tried(answer: Bracket[Any], digits: int = 9) -> str:
     """Say the two values tried."""
     if answer.low is None and answer.high is None:
         return f"NO LIMIT: {answer.over} may be anything"
@@ -177,7 +201,7 @@ def _arch_line(of: ArchAnswer, problem: Problem, *, tried: bool) -> str:
     )
 
 
-def _arch_lines(answer: Bracket, of: ArchBracket) -> list[str]:
+def _arch_lines(answer: Bracket[Any], of: ArchBracket) -> list[str]:
     """Tell the exact thickness, modes, thrust and joints at the least thickness."""
     digits = _digits(of)
     whose = "continuous arch" if answer.method == "theory" else "voussoirs as built"
@@ -192,7 +216,7 @@ def _arch_lines(answer: Bracket, of: ArchBracket) -> list[str]:
     return lines
 
 
-def _thickness_lines(answer: Bracket, of: ArchBracket) -> list[str]:
+def _thickness_lines(answer: Bracket[Any], of: ArchBracket) -> list[str]:
     """Tell a least thickness in metres; nothing where no length was given."""
     line, low, high = measured_line(answer.problem), answer.low, answer.high
     at = None if line is None else line.at
@@ -206,7 +230,7 @@ def _thickness_lines(answer: Bracket, of: ArchBracket) -> list[str]:
     return [f"  size    {', '.join(said)}"]
 
 
-def interval_words(answer: Bracket) -> str | None:
+def interval_words(answer: Bracket[Any]) -> str | None:
     """Say between which values it stands; None where there is but one end."""
     found = answer.intervals or ()
     if sum(end is not None for each in found for end in (each.low, each.high)) < 2:
@@ -219,7 +243,7 @@ def interval_words(answer: Bracket) -> str | None:
     return ", and ".join(said)
 
 
-def _end_words(end: End, answer: Bracket) -> str:
+def _end_words(end: End, answer: Bracket[Any]) -> str:
     """Tell an end: the value of limit analysis, and those that an engine tried."""
     said = [] if end.confirmed else ["not confirmed"]
     if answer.method != "limit":
@@ -250,7 +274,7 @@ def _digits(of: ArchBracket) -> int:
     return SIX if low >= high else max(SIX, 2 - math.floor(math.log10(1 - low / high)))
 
 
-def _whose(answer: Check, of: ArchAnswer) -> str:
+def _whose(answer: Check[Any], of: ArchAnswer) -> str:
     """Say of which arch a mode is."""
     if answer.method != "theory":
         return f"of the voussoirs as built, at eta {of.shape.eta:g}"
@@ -274,7 +298,7 @@ def _modes(of: ArchAnswer, whose: str) -> list[str]:
     return lines
 
 
-def _active(answer: Check) -> str:
+def _active(answer: Check[Any]) -> str:
     """Tell the joints that take part: of an arch by their angles, else by their names."""
     words = state_words(answer.problem)
     active = [
@@ -291,10 +315,12 @@ def _active(answer: Check) -> str:
     return few([f"{names[k]} {words(each.state)}" for k, each in active])
 
 
-def _movers(rates: Array, assembly: Assembly) -> list[str]:
+def _movers(rates: Array, assembly: Assembly | SpatialAssembly) -> list[str]:
     """Blocks that move by more than a hundredth of the fastest, the fastest first."""
     reach = assembly.reach / assembly.size
-    speed = abs(rates[:, :2]).max(axis=1) + abs(rates[:, 2]) * reach
+    axes, last = (3, 6) if isinstance(assembly, SpatialAssembly) else (2, 3)
+    turns = abs(rates[:, axes:last]).max(axis=1)
+    speed = abs(rates[:, :axes]).max(axis=1) + turns * reach
     order = [int(k) for k in (-speed).argsort() if speed[k] > speed.max() / 100]
     return [assembly.blocks[k].name or str(k) for k in order]
 

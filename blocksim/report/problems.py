@@ -10,6 +10,7 @@ from blocksim.arch.dimensions import At, Line, dimensions_of, friction_angle
 from blocksim.blocks.problem import STANDARD_GRAVITY, Problem
 from blocksim.blocks.road import fill_of
 from blocksim.blocks.shaking import shaking_record
+from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.words import counted
 from blocksim.kinds.circular import CircularArch, weighed_arch
 
@@ -42,7 +43,7 @@ BUILT = {
 """What follows from the parameters of a maker."""
 
 
-def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
+def problem_record(problem: Problem | SpatialProblem, over: str | None = None) -> ProblemRecord:
     """Return a problem as answers have it; null what follows from a parameter.
 
     Parameters
@@ -51,15 +52,20 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
     over : str, optional
         The parameter that is searched over.
     """
-    arch, fill, shaking = weighed_arch(problem), fill_of(problem), problem.shaking
+    spatial = isinstance(problem, SpatialProblem)
+    arch = None if spatial else weighed_arch(problem)
+    fill = None if spatial else fill_of(problem)
+    spread = None if spatial else problem.dispersal
+    shaking = problem.shaking
     said: dict[str, object] = {
         "title": problem.title,
         "blocks": len(problem.assembly.blocks),
         "joints": len(problem.assembly.joints),
         "mu": problem.mu,
         "friction_angle_deg": friction_angle(problem.mu),
+        "lean_deg": None,
         **tilt_and_lean(problem),
-        "azimuth_deg": None,
+        "azimuth_deg": math.degrees(problem.azimuth) if spatial else None,
         "load": problem.load,
         "strength_MPa": None if problem.strength is None else problem.strength / 1e6,
         "shake": None if shaking is None else shaking_record(shaking),
@@ -68,7 +74,7 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
         "fill_m": None if fill is None else fill.height,
         "fill_weight_kN": None if fill is None else fill.weight / 1000,
         "fill_is": None if fill is None else list(fill.words),
-        "dispersal": None if problem.dispersal is None else problem.dispersal.words,
+        "dispersal": None if spread is None else spread.words,
         "live_weight_kN": 0.0 - _live(problem) / 1000,
     }
     if not problem.weighed:
@@ -78,7 +84,7 @@ def problem_record(problem: Problem, over: str | None = None) -> ProblemRecord:
     return said  # type: ignore[return-value]
 
 
-def _fixed_sizes(problem: Problem, over: str) -> dict[str, object]:
+def _fixed_sizes(problem: Problem | SpatialProblem, over: str) -> dict[str, object]:
     """Return what stays of a circular arch as its thickness changes: a line, or the radius."""
     maker = problem.maker
     if over != "thickness" or not isinstance(maker, CircularArch) or maker.shape is None:
@@ -107,7 +113,7 @@ def size_record(arch: Arch) -> dict[str, object]:
     }
 
 
-def measured_line(problem: Problem) -> Line | None:
+def measured_line(problem: Problem | SpatialProblem) -> Line | None:
     """Return the line of an arch that was measured; None where none was."""
     maker = problem.maker
     return maker.line if isinstance(maker, CircularArch) else None
@@ -119,8 +125,10 @@ def at_of(problem: Problem) -> At | None:
     return None if line is None else line.at
 
 
-def size_lines(problem: Problem) -> list[str]:
+def size_lines(problem: Problem | SpatialProblem) -> list[str]:
     """Return the dimensions of a circular arch, and what lies on its road, in words."""
+    if isinstance(problem, SpatialProblem):
+        return []
     arch, fill = weighed_arch(problem), fill_of(problem)
     lines: list[str] = []
     if arch is not None:
@@ -179,36 +187,44 @@ def is_metric(arch: Arch, at: At | None = None) -> bool:
     return at is not None or arch.radius != 1
 
 
-def weight_of(problem: Problem) -> float:
+def weight_of(problem: Problem | SpatialProblem) -> float:
     """Weight of all blocks [N]."""
+    if isinstance(problem, SpatialProblem):
+        return float(problem.assembly.weights.sum())
     return sum(block.mass for block in problem.assembly.blocks) * STANDARD_GRAVITY
 
 
-def _live(problem: Problem) -> float:
+def _live(problem: Problem | SpatialProblem) -> float:
     """Vertical live loads in all at a factor of 1, upwards [N]; body forces are none."""
     loads = [load for load in problem.live if not load.per_weight]
-    return float(sum(load.force[1] * len(load.blocks) for load in loads))
+    return float(sum(load.force[-1] * len(load.blocks) for load in loads))
 
 
-def tilt_and_lean(problem: Problem) -> dict[str, float]:
-    """Return by how many degrees gravity is turned in the plane, and out of it."""
+def tilt_and_lean(problem: Problem | SpatialProblem) -> dict[str, float]:
+    """Return by how many degrees a table tilts, and gravity is turned out of the plane."""
     x, y, z = problem.gravity.tolist()
+    if isinstance(problem, SpatialProblem):
+        tilt = math.degrees(math.atan2(math.hypot(x, y), -z))
+        return {"tilt_deg": tilt}
     return {
         "tilt_deg": math.degrees(math.atan2(x, -y)),
         "lean_deg": math.degrees(math.atan2(z, math.hypot(x, y))),
     }
 
 
-def described(problem: Problem) -> str:
+def described(problem: Problem | SpatialProblem) -> str:
     """Say what a problem is, in a line."""
     turned = tilt_and_lean(problem)
     assembly = problem.assembly
     said = [problem.title] if problem.title else []
     said += [counted(len(assembly.blocks), "block"), counted(len(assembly.joints), "joint")]
-    said.append(f"mu {problem.mu:g}")
+    spatial = isinstance(problem, SpatialProblem)
+    said.append(f"in space, mu {problem.mu:g}" if spatial else f"mu {problem.mu:g}")
     if turned["tilt_deg"]:
         said.append(f"tilted {turned['tilt_deg']:g} deg")
-    if turned["lean_deg"]:
+    if spatial and problem.azimuth:
+        said.append(f"towards {math.degrees(problem.azimuth):g} deg from x")
+    if turned.get("lean_deg"):
         said.append(f"gravity leans {turned['lean_deg']:g} deg out of the plane")
     if problem.live:
         said.append(

@@ -6,7 +6,7 @@ import io
 from dataclasses import dataclass
 
 from blocksim.arch.modes import Mode
-from blocksim.ask.check import Check, check, proof_words
+from blocksim.ask.check import Check, check
 from blocksim.blocks.joints import JointState, joint_names
 from blocksim.blocks.problem import Problem
 from blocksim.common.dates import is_dated, made_at

@@ -40,6 +40,11 @@ class Held:
     splits: int = 0
 
     @property
+    def blocks(self) -> int:
+        """How many blocks the engine was given."""
+        return self.simulation.blocks
+
+    @property
     def built(self) -> Array:
         """Poses where the blocks were built."""
         built = np.zeros_like(self.onset.mechanism)

@@ -6,14 +6,13 @@ The criteria are those of the plane (`onset`, `motion`).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, ClassVar, cast
 
-from blocksim.blocks.assembly import Array
 from blocksim.blocks.space.problem import SpatialProblem
-from blocksim.common.errors import InputError
 from blocksim.common.progress import Progress, silent
-from blocksim.engines import ENGINES, get_engine
 from blocksim.engines.base import Engine, World
 from blocksim.simulation.motion import Motion, moving_run
+from blocksim.simulation.observation import Observation
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.simulated import BY_RULE, Overrides, given_words
 from blocksim.simulation.spatial import SpatialRecording, SpatialSimulation
@@ -21,107 +20,90 @@ from blocksim.simulation.verdict import Evidence, Verdict, aside
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SpatialObservation:
-    """What an engine showed of one problem in space.
+class HeldInSpace:
+    """Blocks in space in an engine after the onset test; see `observation.Held`.
 
     Parameters
     ----------
-    verdict : Verdict
-        Undecided unless onset test and moving run agree, or only the first was asked for.
-    evidence : tuple of Evidence
-    rates : (blocks, 6) float or None
-        Velocities in proportion to those with which a collapse starts; None otherwise.
-    recording : SpatialRecording or None
-        None where the blocks were not let go.
+    simulation : SpatialSimulation
+    given : mapping of str to float
+        Settings that do not follow the engine's rule.
+    world : World
+    onset : Onset
     """
 
-    verdict: Verdict
-    evidence: tuple[Evidence, ...]
-    rates: Array | None
-    recording: SpatialRecording | None
+    simulation: SpatialSimulation
+    given: Overrides
+    world: World
+    onset: Onset
+    splits: ClassVar[int] = 0
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks the engine was given: all."""
+        return len(self.simulation.problem.assembly.blocks)
+
+    def release(
+        self, until: float | None = None, progress: Progress = silent
+    ) -> Motion[SpatialRecording]:
+        """Let the blocks go; see `moving_run`."""
+        first = self.onset
+        return moving_run(
+            self.simulation,
+            self.world,
+            first.repeat,
+            rests=first.verdict is Verdict.STANDS and not first.may_slide,
+            until=until,
+            progress=progress,
+        )
+
+    def record(
+        self, until: float | None = None, progress: Progress = silent
+    ) -> SpatialRecording:
+        """Let the blocks go, and return what was recorded."""
+        return self.release(until, progress).recording
+
+    def concluded(self, *, moving: bool, progress: Progress = silent) -> Observation:
+        """Do the moving run if it is asked for, and tell what all of it shows."""
+        verdict, motion = self.onset.verdict, None
+        evidence = (Evidence("onset test", self.onset.reason),)
+        if moving and verdict is not Verdict.UNDECIDED:
+            motion = self.release(progress=progress)
+            evidence += (Evidence("moving run", motion.reason),)
+            if motion.verdict is not verdict:
+                verdict = Verdict.UNDECIDED
+        falls = verdict is Verdict.COLLAPSES
+        return Observation(
+            verdict=verdict,
+            evidence=evidence + aside("settings", given_words(self.given)),
+            onset=self.onset,
+            # Of a recording in space nothing is asked that is of the plane.
+            motion=cast("Any", motion),
+            joints=(),
+            joints_in_motion=(),
+            rates=self.onset.mechanism - self.simulation.built if falls else None,
+            blocks=self.blocks,
+            splits=0,
+        )
 
 
-def engine_in_space(name: str | Engine) -> Engine:
-    """Return an engine that moves blocks in space.
-
-    Raises
-    ------
-    InputError
-        If it does not.
-    """
-    found = get_engine(name)
-    if found.build_in_space is None:
-        able = [each for each in ENGINES if ENGINES[each].build_in_space is not None]
-        allowed = f"one of auto, limit, {', '.join(able)}: {found.name} moves none in space"
-        raise InputError("method", found.name, allowed)
-    return found
-
-
-def observe_in_space(
+def hold_in_space(
     problem: SpatialProblem,
     engine: Engine,
-    *,
-    moving: bool = True,
     settings: Overrides = BY_RULE,
     progress: Progress = silent,
-) -> SpatialObservation:
-    """Put a problem into an engine: onset test, then, if asked for, the moving run.
+) -> HeldInSpace:
+    """Put a problem into an engine, and do the onset test.
 
     Parameters
     ----------
     problem : SpatialProblem
     engine : Engine
-        One that moves blocks in space; see `engine_in_space`.
-    moving : bool
-        Let the blocks go after the onset test, unless that is undecided.
+        One that moves blocks in space.
     settings : mapping of str to float
         Given instead of what the engine's rule says.
     progress : Progress, optional
     """
-    simulation, world, first = _held(problem, engine, settings, progress)
-    verdict, recording, mechanism = first.verdict, None, first.mechanism
-    evidence = (Evidence("onset test", first.reason),)
-    if moving and verdict is not Verdict.UNDECIDED:
-        motion = _released(simulation, world, first, None, progress)
-        recording = motion.recording
-        evidence += (Evidence("moving run", motion.reason),)
-        verdict = verdict if motion.verdict is verdict else Verdict.UNDECIDED
-    evidence += aside("settings", given_words(settings))
-    return SpatialObservation(
-        verdict=verdict,
-        evidence=evidence,
-        rates=mechanism - simulation.built if verdict is Verdict.COLLAPSES else None,
-        recording=recording,
-    )
-
-
-def simulate_in_space(
-    problem: SpatialProblem,
-    engine: Engine,
-    *,
-    until: float,
-    settings: Overrides = BY_RULE,
-    progress: Progress = silent,
-) -> SpatialRecording:
-    """Let blocks in space go and record them until a time, or until all lie still.
-
-    Parameters
-    ----------
-    problem : SpatialProblem
-    engine : Engine
-    until : float
-        [sqrt(size/g)]
-    settings : mapping of str to float
-    progress : Progress, optional
-    """
-    simulation, world, first = _held(problem, engine, settings, progress)
-    return _released(simulation, world, first, until, progress).recording
-
-
-def _held(
-    problem: SpatialProblem, engine: Engine, settings: Overrides, progress: Progress
-) -> tuple[SpatialSimulation, World, Onset]:
-    """Put blocks into an engine, and do the onset test."""
     simulation = SpatialSimulation.of(problem, engine, settings)
     world = simulation.world()
     found = onset(
@@ -133,18 +115,17 @@ def _held(
         # What an engine does not take of friction may hold blocks.
         rougher=None if simulation.look.is_bounded(engine) else problem,
     )
-    return simulation, world, found
+    return HeldInSpace(simulation=simulation, given=settings, world=world, onset=found)
 
 
-def _released(
-    simulation: SpatialSimulation,
-    world: World,
-    first: Onset,
-    until: float | None,
-    progress: Progress,
-) -> Motion[SpatialRecording]:
-    """Let blocks go; see `moving_run`."""
-    rests = first.verdict is Verdict.STANDS and not first.may_slide
-    return moving_run(
-        simulation, world, first.repeat, rests=rests, until=until, progress=progress
-    )
+def observe_in_space(
+    problem: SpatialProblem,
+    engine: Engine,
+    *,
+    moving: bool = True,
+    settings: Overrides = BY_RULE,
+    progress: Progress = silent,
+) -> Observation:
+    """Do the onset test, then, if asked for, the moving run; see `hold_in_space`."""
+    held = hold_in_space(problem, engine, settings, progress)
+    return held.concluded(moving=moving, progress=progress)

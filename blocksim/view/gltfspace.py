@@ -26,7 +26,7 @@ from blocksim.view.solidscene import Marks, moving_box, supports_of
 from blocksim.view.style import GROUND
 
 if TYPE_CHECKING:
-    from blocksim.ask.space import SpatialCheck
+    from blocksim.ask.check import Check
 
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """From z upwards to y upwards."""
@@ -50,7 +50,7 @@ def write_recording(recording: SpatialRecording, file: BinaryIO, kind: str) -> N
     file.write(made.glb() if kind == "glb" else made.gltf())
 
 
-def mechanism_model(answer: SpatialCheck) -> bytes:
+def mechanism_model(answer: Check[SpatialProblem]) -> bytes:
     """Return how blocks begin to fall and come back, as .glb; still where they stand."""
     problem, rates = answer.problem, answer.mechanism
     assembly = problem.assembly
@@ -60,7 +60,9 @@ def mechanism_model(answer: SpatialCheck) -> bytes:
     moved = WAY * (np.zeros_like(rest) if rates is None else rates)
     poses = rest + shares[:, None, None] * moved
     times = np.linspace(0.0, GOES, FRAMES + 1)
-    return _document(problem, times, poses, marks_of(assembly, answer.joints)).glb()
+    return _document(
+        problem, times, poses, marks_of(assembly, [each.state for each in answer.joints])
+    ).glb()
 
 
 def _document(problem: SpatialProblem, times: Array, poses: Array, marks: Marks) -> Document:

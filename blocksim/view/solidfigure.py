@@ -14,24 +14,26 @@ from scipy.spatial.transform import Rotation
 
 from blocksim.blocks.assembly import Array
 from blocksim.blocks.joints import JointState
+from blocksim.limit.space import SpatialEquilibrium
 from blocksim.view.drawing import literal, state_of_any, words_of
 from blocksim.view.solidjoints import force_lines, marks_of
 from blocksim.view.solidscene import Camera, blocks_of, moving_box, supports_of
 from blocksim.view.style import FONT, INK, PAPER, QUIET, THRUST, VERDICTS
 
 if TYPE_CHECKING:
-    from blocksim.ask.space import SpatialCheck
+    from blocksim.ask.check import Check
+    from blocksim.blocks.space.problem import SpatialProblem
 
 WAY = 0.15
 """How far the mechanism is drawn: its largest way in units of the size."""
 
 
-def solid_figure(answer: SpatialCheck) -> Figure:
+def solid_figure(answer: Check[SpatialProblem]) -> Figure:
     """Draw blocks in space; of what falls, moved as its collapse begins.
 
     Parameters
     ----------
-    answer : SpatialCheck
+    answer : Check
 
     Returns
     -------
@@ -42,22 +44,24 @@ def solid_figure(answer: SpatialCheck) -> Figure:
     if rates is None:
         rates = np.zeros((len(assembly.blocks), 6))
     turns = Rotation.from_rotvec(WAY * rates[:, 3:]).as_matrix()
-    marks = marks_of(assembly, answer.joints)
+    marks = marks_of(assembly, [each.state for each in answer.joints])
     pieces = supports_of(assembly, low, high)
     pieces += blocks_of(assembly, turns, WAY * assembly.size * rates[:, :3], marks)
     camera = Camera(low, high)
     with mpl.rc_context(FONT):
         figure = _figure(answer, *camera.painted(pieces))
-        if answer.static is not None and answer.static.point_forces is not None:
-            _draw_forces(figure, answer, camera)
+        static = answer.static
+        forces = static.point_forces if isinstance(static, SpatialEquilibrium) else None
+        if forces is not None:
+            _draw_forces(figure, answer.problem, forces, camera)
     return figure
 
 
-def _draw_forces(figure: Figure, answer: SpatialCheck, camera: Camera) -> None:
+def _draw_forces(
+    figure: Figure, problem: SpatialProblem, forces: Array, camera: Camera
+) -> None:
     """Draw the resultants of joints over the blocks, as wide as they are large."""
-    assert answer.static is not None  # noqa: S101
-    assert answer.static.point_forces is not None  # noqa: S101
-    lines, shares = force_lines(answer.problem, answer.static.point_forces)
+    lines, shares = force_lines(problem, forces)
     seen = [camera.seen(line) for line, share in zip(lines, shares, strict=True) if share]
     widths = [0.4 + 2.6 * share for share in shares.tolist() if share]
     (axes,) = figure.axes
@@ -69,7 +73,7 @@ def _draw_forces(figure: Figure, answer: SpatialCheck, camera: Camera) -> None:
                 color=THRUST)  # fmt: skip
 
 
-def _figure(answer: SpatialCheck, polygons: list[Array], fills: list[Array]) -> Figure:
+def _figure(answer: Check[SpatialProblem], polygons: list[Array], fills: list[Array]) -> Figure:
     """Put polygons, title and legend on paper."""
     figure = Figure(figsize=(8, 6), facecolor=PAPER)
     axes = figure.add_axes((0.03, 0.09, 0.94, 0.8))
@@ -86,7 +90,7 @@ def _figure(answer: SpatialCheck, polygons: list[Array], fills: list[Array]) -> 
     )  # fmt: skip
     words = f"{problem.title or 'blocks in space'}, {len(problem.assembly.blocks)} blocks, "
     figure.text(0.04, 0.905, literal(f"{words}mu {problem.mu:g}"), color=QUIET, fontsize=9)
-    states = {state_of_any(each) for each in answer.joints} - {JointState.CLOSED}
+    states = {state_of_any(each.state) for each in answer.joints} - {JointState.CLOSED}
     told = [words_of(each, is_arch=False) for each in sorted(states)]
     if told:
         figure.legend(

@@ -151,6 +151,11 @@ class SpatialAssembly:
         own = (each.friction for each in self.joints)
         return frozen([math.nan if mu is None else mu for mu in own], (-1,))
 
+    @property
+    def joint_angles(self) -> Array:
+        """Directions of the joints from a crown, (joints,): nan, as there is none."""
+        return np.full(len(self.joints), np.nan)
+
     @cached_property
     def weights(self) -> Array:
         """Weights of the blocks [N], (blocks,)."""

@@ -71,6 +71,8 @@ class SpatialProblem(AnyProblem[SpatialAssembly]):
         require(not self.moves, "moves", "given", "left out in space: supports stay")
         allowed = "left out: the ground is at rest in space"
         require(self.shaking is None, "shake", "ground that shakes", allowed)
+        rigid = "left out: blocks in space are rigid"
+        require(self.strength is None, "strength", self.strength, rigid)
 
     @property
     def _axis(self) -> Array:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 from blocksim.blocks.assembly import Array
-from blocksim.blocks.joints import JointState
+from blocksim.blocks.joints import JointState, ObservedJoint
 from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.limit.space.cones import Answer
 from blocksim.limit.space.contacts import Contacts, solved
 
 BALANCED = 1e-12
@@ -33,62 +35,109 @@ ROUNDED = 1e-14
 """Of the forces at a block: what rounding may leave over."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
 class SpatialEquilibrium:
-    """What a cone programme says of equilibrium, and what is left of it when it is checked.
+    """What a cone programme says of equilibrium; it is checked when more than that is asked.
+
+    Forces are mended until they balance in floating-point numbers, each strictly within its
+    cone. A motion is held to the rates at which points open: no forces could balance but
+    those of many times all weight.
 
     Parameters
     ----------
-    exists : bool or None
-        None where neither forces nor a motion pass the check.
+    contacts : Contacts
+    found : Answer
+        What the programme found.
+
+    Attributes
+    ----------
     margin : float
         By how much every point presses, in units of the lighter block's weight beside it
         over the points of its joint; below 0 it would have to pull. At most 1, -inf where not
         even pulling would help.
-    forces : (joints, 3) float or None
-        Sums at each joint: along its normal, and across [N].
-    point_forces : (points, 3) float or None
-        The same at each point.
-    mechanism : (blocks, 6) float or None
-        Rates with which a collapse starts, the largest way of a centre or corner 1: x, y, z
-        [size], and rotations about the axes.
-    gap : float
-        Of what exists, the largest force or moment left over, in units of each block's weight;
-        of what does not, all weight over the least forces that could balance.
     """
 
-    exists: bool | None
-    margin: float
-    forces: Array | None = None
-    point_forces: Array | None = None
-    mechanism: Array | None = None
-    gap: float = math.inf
+    proof: ClassVar[None] = None
+    """Nothing here is proved in rational numbers."""
+
+    def __init__(self, contacts: Contacts, found: Answer) -> None:
+        self._contacts, self._found = contacts, found
+        self.margin = found.value
+
+    @cached_property
+    def _held(self) -> tuple[Array, float]:
+        """Forces and what they leave over, or rates and how far they rule forces out."""
+        contacts = self._contacts
+        pull = contacts.problem.pull().ravel()
+        if self._presses:
+            return _balanced(contacts, pull, self._found.forces)
+        rates = contacts.mended(self._found.rates)
+        return rates, _ruled_out(contacts, pull, rates)
+
+    @property
+    def _presses(self) -> bool:
+        return len(self._found.forces) > 0 and self.margin > 0
+
+    @property
+    def gap(self) -> float:
+        """How near it was held to.
+
+        Of what exists, the largest force or moment left over, in units of each block's weight;
+        of what does not, all weight over the least forces that could balance.
+        """
+        return self._held[1]
+
+    @property
+    def exists(self) -> bool | None:
+        """Whether forces exist; None where neither forces nor a motion pass the check."""
+        if self._presses:
+            return True if self.gap <= BALANCED else None
+        return False if self.gap * FARTHEST < 1 else None
+
+    @property
+    def point_forces(self) -> Array | None:
+        """Forces at each point, along its normal and across, (points, 3) [N]."""
+        return self._held[0].reshape(-1, 3) * self._contacts.unit if self.exists else None
+
+    @property
+    def forces(self) -> Array | None:
+        """Their sums at each joint, (joints, 3) [N]."""
+        each = self.point_forces
+        if each is None:
+            return None
+        sums = np.zeros((len(self._contacts.problem.assembly.joints), 3))
+        np.add.at(sums, self._contacts.joint, each)
+        return sums
+
+    @cached_property
+    def mechanism(self) -> Array | None:
+        """Rates with which a collapse starts, (blocks, 6), the largest way of a corner 1.
+
+        x, y, z [size], and rotations about the axes.
+        """
+        falls = self.exists is False
+        return unit_rates(self._contacts.problem, self._held[0]) if falls else None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LargestLoad:
+class SpatialCollapse:
     """The largest factor on live loads at which forces of equilibrium exist.
 
     Parameters
     ----------
-    factor : float or None
+    load_factor : float or None
         inf where no load is too much, None where there is no equilibrium at any.
     gap : float
         By how much, of the factor, forces and mechanism disagree.
     mechanism : (blocks, 6) float or None
     """
 
-    factor: float | None
+    load_factor: float | None
     gap: float
     mechanism: Array | None = None
 
 
 def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
-    """Tell whether forces of equilibrium exist, and check what the solver found.
-
-    Forces are mended until they balance in floating-point numbers, each strictly within its
-    cone. A motion is held to the rates at which points open: no forces could balance but
-    those of many times all weight.
+    """Tell whether forces of equilibrium exist.
 
     Parameters
     ----------
@@ -100,33 +149,10 @@ def can_rest(problem: SpatialProblem) -> SpatialEquilibrium:
         If the solver gives up.
     """
     contacts = Contacts(problem)
-    pull = problem.pull().ravel()
-    found = contacts.most(pull)
-    exists, gap, forces, rates = None, math.inf, None, found.rates
-    if len(found.forces) and found.value > 0:
-        forces, gap = _balanced(contacts, pull, found.forces)
-        exists = True if gap <= BALANCED else None
-    else:
-        rates = contacts.mended(found.rates)
-        gap = _ruled_out(contacts, pull, rates)
-        exists = False if gap * FARTHEST < 1 else None
-    sums = None
-    if exists and forces is not None:
-        each = forces.reshape(-1, 3) * contacts.unit
-        sums = np.zeros((len(problem.assembly.joints), 3))
-        np.add.at(sums, contacts.joint, each)
-        forces = each
-    return SpatialEquilibrium(
-        exists=exists,
-        margin=found.value,
-        forces=sums,
-        point_forces=forces if exists else None,
-        mechanism=unit_rates(problem, rates) if exists is False else None,
-        gap=gap,
-    )
+    return SpatialEquilibrium(contacts, contacts.most(problem.pull().ravel()))
 
 
-def largest_load(problem: SpatialProblem) -> LargestLoad:
+def largest_load(problem: SpatialProblem) -> SpatialCollapse:
     """Find the largest factor on the live loads at which forces of equilibrium exist.
 
     Parameters
@@ -144,12 +170,12 @@ def largest_load(problem: SpatialProblem) -> LargestLoad:
     unit = float(np.abs(live / contacts.rows).max()) or 1.0
     found = contacts.most(pull, live / unit)
     if math.isinf(found.value):
-        return LargestLoad(factor=None if found.value < 0 else math.inf, gap=0.0)
+        return SpatialCollapse(load_factor=None if found.value < 0 else math.inf, gap=0.0)
     work = float(found.rates @ live) / unit
     bound = -float(found.rates @ pull) / work if work > 0 else math.inf
     gap = abs(bound - found.value) / max(abs(found.value), 1e-300)
-    return LargestLoad(
-        factor=found.value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
+    return SpatialCollapse(
+        load_factor=found.value / unit, gap=gap, mechanism=unit_rates(problem, found.rates)
     )
 
 
@@ -206,7 +232,7 @@ def unit_rates(problem: SpatialProblem, rates: Array) -> Array:
     return each / largest if largest > 0 else each
 
 
-def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...]:
+def observed_joints(problem: SpatialProblem, rates: Array) -> tuple[ObservedJoint, ...]:
     """Tell what each joint does in a motion of the blocks.
 
     Of a hinge some points stay together and others part, or all but one edge does. Sliding
@@ -226,7 +252,7 @@ def joint_states(problem: SpatialProblem, rates: Array) -> tuple[JointState, ...
     slides = together & (slip > SEEN)
     ends = np.cumsum([len(each.points) for each in problem.assembly.joints])[:-1]
     pairs = zip(np.split(together, ends), np.split(slides, ends), strict=True)
-    return tuple(state_of(one, two) for one, two in pairs)
+    return tuple(ObservedJoint(angle=math.nan, state=state_of(one, two)) for one, two in pairs)
 
 
 def state_of(together: NDArray[np.bool_], slides: NDArray[np.bool_]) -> JointState:

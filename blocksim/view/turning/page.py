@@ -15,19 +15,20 @@ from blocksim.view.gltfspace import mechanism_model
 from blocksim.view.style import INK, PAPER, QUIET, VERDICTS
 
 if TYPE_CHECKING:
-    from blocksim.ask.space import SpatialCheck
+    from blocksim.ask.check import Check
+    from blocksim.blocks.space.problem import SpatialProblem
 
 VIEWER = Path(__file__).parent / "model-viewer.min.js"
 """<model-viewer> as the registry of npm has it, @google/model-viewer."""
 VERSION = "4.4.0"
 
 
-def turning_page(answer: SpatialCheck) -> str:
+def turning_page(answer: Check[SpatialProblem]) -> str:
     """Build the page.
 
     Parameters
     ----------
-    answer : SpatialCheck
+    answer : Check
 
     Returns
     -------
@@ -35,7 +36,7 @@ def turning_page(answer: SpatialCheck) -> str:
         HTML, complete in itself.
     """
     problem = answer.problem
-    states = {state_of_any(each) for each in answer.joints} - {JointState.CLOSED}
+    states = {state_of_any(each.state) for each in answer.joints} - {JointState.CLOSED}
     return (
         environment_of("blocksim.view.turning")
         .get_template("page.html")

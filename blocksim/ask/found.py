@@ -1,0 +1,240 @@
+"""A bracket found: by what the maker knows of a threshold, or over the values of a family."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from blocksim.ask.closed import closing_of_value
+from blocksim.ask.ends import Ask, Within, around, changes_of, tried_ends
+from blocksim.ask.families import Family
+from blocksim.ask.methods import choose, reduces
+from blocksim.ask.options import Taken
+from blocksim.ask.searches import (
+    FARTHEST,
+    Search,
+    by_engine,
+    by_programmes,
+    followed,
+    shaken,
+    slowly,
+)
+from blocksim.blocks.problem import Problem
+from blocksim.blocks.space.problem import SpatialProblem
+from blocksim.common.checks import require
+from blocksim.engines import get_engine
+from blocksim.kinds.offers import Threshold
+from blocksim.simulation.verdict import Evidence, aside
+
+if TYPE_CHECKING:
+    from blocksim.engines.base import Engine, Method
+    from blocksim.simulation.observation import Held
+    from blocksim.simulation.simulated import Reduced
+    from blocksim.simulation.space import HeldInSpace
+
+LEAST = 1e-12
+"""Least upper end of where to search."""
+GUESS = 0.1
+"""Share of the range at which a search begins where limit analysis gives no value."""
+
+
+class Found(NamedTuple):
+    """What a search came to, by which method, and what else the answer says of it."""
+
+    search: Search
+    chosen: Method
+    evidence: tuple[Evidence, ...]
+    told: dict[str, Any]
+
+
+def by_threshold(problem: Problem, over: str, threshold: Threshold, given: Taken) -> Found:
+    """Search over a ratio of which the maker knows more."""
+    chosen = choose(
+        given.method, given.tol, problem=problem, settings=given.settings, reduce=given.reduce
+    )
+    if chosen.is_static:
+        falls, stands, said = threshold.static(chosen.name)
+        test = "closed form" if chosen.name == "theory" else "limit analysis"
+        found, evidence = Search(falls=falls, stands=stands), (Evidence(test, said),)
+        facts = threshold.facts(low=falls, high=stands, method=chosen.name)
+    else:
+        reduced = reduces(chosen, given.reduce, problem, by_maker=True)
+        found = by_engine(
+            _Reduced(threshold, get_engine(chosen), given, reduce=reduced).held_at,
+            threshold.start,
+            (threshold.low, threshold.high),
+            given.tol,
+            name=threshold.name,
+            more_is_safer=True,
+            confirm=given.confirm,
+            progress=given.progress,
+        )
+        evidence = (Evidence("search", found.reason),)
+        if reduced:
+            evidence += _reduction(found, threshold.reduced_by, threshold.blocks)
+        facts = threshold.facts(
+            low=found.falls, high=found.stands, method=chosen.name, seen=found.collapse
+        )
+    known = chosen.name == "limit" and threshold.exact
+    return Found(
+        found,
+        chosen,
+        evidence,
+        {
+            "over": over,
+            "unit": threshold.unit,
+            "low": threshold.value(found.falls),
+            "high": threshold.value(found.stands),
+            "stands": "high",
+            "limit": threshold.value(threshold.exact),
+            "problem": problem,
+            "arch": facts,
+            "changes": ((threshold.problem, threshold.exact, True),) if known else (),
+        },
+    )
+
+
+class _Reduced:
+    """One problem at one value after the other, reduced alike where that is asked for."""
+
+    def __init__(
+        self, threshold: Threshold, engine: Engine, given: Taken, *, reduce: bool
+    ) -> None:
+        self._threshold, self._engine, self._settings = threshold, engine, given.settings
+        self._reduce = reduce
+        self._last: Reduced | None = None
+
+    def held_at(self, value: float) -> Held:
+        """Ask the onset test at a value."""
+        from blocksim.simulation.observation import hold
+
+        reduction = self._threshold.reduction(value, self._last) if self._reduce else None
+        problem = self._threshold.problem(value)
+        held = hold(problem, self._engine, settings=self._settings, reduction=reduction)
+        # An engine may have split it, or given it up.
+        self._last = held.simulation.reduction
+        return held
+
+
+def _reduction(found: Search, by: str, most: int) -> tuple[Evidence, ...]:
+    """Tell what reductions came to; nothing where all blocks were simulated."""
+    if found.blocks is None or found.splits is None:
+        return ()
+    from blocksim.simulation.observation import reduced_words
+
+    return (Evidence("reduction", reduced_words(by, found.blocks, most, found.splits)),)
+
+
+def by_family(family: Family[Any], within: Within | None, given: Taken) -> Found:
+    """Search over the values of a family."""
+    low, high = within or (family.low, family.high)
+    ranged = family.low <= low < high <= family.high and high >= LEAST
+    allowed = f"two values, the lower first, from {family.low:g} to {family.high:g}"
+    require(ranged, "within", f"{low:g} {high:g}", allowed)
+    probe = family.at(low + GUESS * (high - low))
+    chosen = choose(
+        given.method, given.tol, problem=probe, settings=given.settings, reduce=given.reduce
+    )
+    allowed = f"left out by {chosen.name}, which searches no range; engines do"
+    require(within is None or not chosen.is_static, "within", f"{low:g} {high:g}", allowed)
+    if family.spreading is not None:
+        allowed = "limit or direct: others move no supports"
+        require(chosen.moves_supports, "method", chosen.name, allowed)
+        require(not given.reduce, "reduce", given.reduce, "left out where supports move")
+    # What limit analysis says is of ground at rest.
+    known = probe.has_statics
+    exact = family.exact() if known else None
+    found, ask = _sought(family, probe, chosen, given, (low, high), exact)
+    remark = family.remark() if known else ""
+    closing = closing_of_value(family) if known and isinstance(probe, Problem) else ()
+    evidence = (Evidence("search", found.reason), *aside("limit analysis", remark), *closing)
+    most = len(probe.assembly.blocks)
+    if (
+        reduces(chosen, given.reduce, probe)
+        and found.blocks is not None
+        and found.blocks < most
+    ):
+        from blocksim.simulation.merging import Merging
+
+        evidence += _reduction(found, Merging.by, most)
+    ends = (found.falls, found.stands)
+    lower, upper = ends if family.stands == "high" else ends[::-1]
+    intervals = tried_ends(family, found, ask) if known else None
+    # Proofs are of rigid blocks in the plane.
+    proves = chosen.name == "limit" and isinstance(probe, Problem) and probe.strength is None
+    return Found(
+        found,
+        chosen,
+        evidence,
+        {
+            "over": family.name,
+            "unit": family.unit,
+            "low": lower,
+            "high": upper,
+            "stands": family.stands,
+            "limit": exact,
+            "problem": probe,
+            "events": None if family.spreading is None else family.spreading.events,
+            "intervals": intervals,
+            "changes": changes_of(family, intervals or ()) if proves else (),
+        },
+    )
+
+
+def _sought(
+    family: Family[Any],
+    probe: Problem | SpatialProblem,
+    chosen: Method,
+    given: Taken,
+    within: Within,
+    exact: float | None,
+) -> tuple[Search, Ask]:
+    """Search for the first change, and return what is asked of the others."""
+    (low, high), rises = within, family.stands == "high"
+
+    def by_limit(start: float, within: Within, rises: bool) -> Search:  # noqa: ARG001
+        return by_programmes(family, start, rises=rises, tol=given.tol)
+
+    if family.spreading is not None:
+        if chosen.is_static:
+            return followed(family, family.spreading, exact, given.tol), by_limit
+        found = slowly(family.spreading, given.tol, high, exact, given.progress)
+        return found, by_limit
+    if chosen.is_static:
+        return by_programmes(family, exact, rises=rises, tol=given.tol), by_limit
+    if probe.shaking is not None:
+        start = min(max(family.start or low + GUESS * (high - low), low), high)
+        return shaken(family, get_engine(chosen), start, within, given), by_limit
+    ask = _asking(family, chosen, given, within)
+    if exact and math.isfinite(exact) and low <= exact <= high:
+        return ask(exact, around(family, exact), rises), ask
+    return ask(low + GUESS * (high - low), within, rises), ask
+
+
+def _asking(family: Family[Any], chosen: Method, given: Taken, within: Within) -> Ask:
+    """Return what asks an engine around a value of limit analysis."""
+    # What moves blocks is loaded where it is asked for.
+    from blocksim.ask.engines import held, merged
+
+    (low, high), engine = within, get_engine(chosen)
+
+    def held_at(value: float) -> Held | HeldInSpace:
+        problem = family.at(value)
+        return held(problem, engine, given, merged(chosen, given, problem))
+
+    def ask(start: float, within: Within, rises: bool) -> Search:
+        least, most = max(low, within[0], start / FARTHEST), min(high, within[1])
+        if not least <= start <= most:
+            return Search()
+        return by_engine(
+            held_at,
+            start,
+            (least, most),
+            given.tol,
+            name=family.name,
+            more_is_safer=rises,
+            confirm=given.confirm,
+            progress=given.progress,
+        )
+
+    return ask
