@@ -13,7 +13,7 @@ from blocksim.common.dates import is_dated, made_at
 from blocksim.common.version import __version__
 from blocksim.kinds.offers import offers_of
 from blocksim.limit import equilibrium
-from blocksim.report.answerwords import ASIDE
+from blocksim.report.answerwords import ASIDE, proof_words
 from blocksim.report.environment import environment
 from blocksim.report.inlinemap import inline_picture
 from blocksim.report.motion import Drawing, mechanism_drawing
