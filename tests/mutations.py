@@ -117,16 +117,16 @@ MUTATIONS = (
     ),
     Mutation(
         "table tilted the other way",
-        "blocks/problem.py",
-        "[x * cos - y * sin, x * sin + y * cos, z]",
-        "[x * cos + y * sin, -x * sin + y * cos, z]",
+        "blocks/anyproblem.py",
+        "cos * (self.gravity - still) + sin * self.across",
+        "cos * (self.gravity - still) - sin * self.across",
         "test_structure.py test_structures_cli.py",
     ),
     Mutation(
         "overlap is taken",
         "blocks/polygons.py",
-        "overlaps(parts, fixed_ones, slack, 1):",
-        "overlaps(parts, fixed_ones, slack, 1)[1:]:",
+        "overlaps([shape.parts for shape in shapes], fixed, slack, 1):",
+        "overlaps([shape.parts for shape in shapes], fixed, slack, 1)[1:]:",
         "test_polygons.py",
     ),
     Mutation(
@@ -139,7 +139,7 @@ MUTATIONS = (
     Mutation(
         "joints may close in a mechanism",
         "simulation/onset.py",
-        "overlap_share(assembly, mechanism) < settings.closing and (",
+        "look.overlap(mechanism) < settings.closing and (",
         "True and (",
         "test_onset.py test_pymunk.py test_pybullet.py",
     ),
@@ -233,8 +233,8 @@ MUTATIONS = (
         "test_writing.py",
     ),
     Mutation(
-        "terminals obey titles", "cli/output.py", '"\\n".join(map(printable, lines))',
-        '"\\n".join(lines)', "test_strange_text.py",
+        "terminals obey titles", "cli/output.py", "[printable(line) for line in lines]",
+        "list(lines)", "test_strange_text.py",
     ),
     Mutation(
         "pages hold what controls", "report/environment.py", "        finalize=printed,\n", "",

@@ -93,7 +93,7 @@ LEANING = (
 @pytest.mark.parametrize(
     ("asked", "taken", "why"),
     [
-        ({}, "limit", "the cheapest method that sees the blocks as built and is exact"),
+        ({}, "limit", "no cheaper method sees the blocks as built and is exact"),
         ({"tol": 1e-9}, "limit", "is exact"),
         ({"moving": True}, "direct", "can move blocks and brackets down to 1e-08"),
         ({"moving": True, "tol": 1e-2}, "direct", "can move blocks"),

@@ -207,7 +207,7 @@ def test_files_are_written_in_one_call(tmp_path: Path) -> None:
         (("--vehicle", "10@0", "--over", "mu"), "--over"),
         (("--vehicle", "10@0", "--point-load", "0", "1"), "left out"),
         (("--vehicle", "10@0", "--dispersal", "sideways"), "across:down"),
-        (("--out", "e.csv"), "--vehicle beside it"),
+        (("--out", "e.csv"), "--over spread beside it"),
         (("--along", "road"), "--vehicle beside it"),
     ],
 )

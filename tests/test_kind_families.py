@@ -177,12 +177,12 @@ def test_what_slips_may_come_to_rest_again() -> None:
 
 def test_names_of_parameters_are_known() -> None:
     wall = structure_of({"kind": "wall", "friction": 0.7})
-    assert families_of(wall) == ("load", "tilt", "lean", "mu", "spread")
-    with pytest.raises(InputError, match="must be one of load, tilt, lean, mu, spread"):
+    assert families_of(wall) == ("load", "tilt", "lean", "mu", "spread", "push")
+    with pytest.raises(InputError, match="must be one of load, tilt, lean, mu, spread, push"):
         family_of(wall, "thickness")
     portal = structure_of({"kind": "portal", "friction": 0.7})
     with pytest.raises(
-        InputError, match=r"lean, mu, spread, arch\.thickness, arch\.radius, pier_width"
+        InputError, match=r"lean, mu, spread, push, arch\.thickness, arch\.radius, pier_width"
     ):
         family_of(portal, "thickness")
 

@@ -20,7 +20,12 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NAME = re.compile(r"[\w.-]+")
 USED = ("dask", "dxf", "mujoco", "parquet")
 """Extras of those who use blocksim."""
-NAMED = {"PIL": "pillow", "flint": "python-flint", "mujoco": "mujoco-core"}
+NAMED = {
+    "PIL": "pillow",
+    "flint": "python-flint",
+    "mujoco": "mujoco-core",
+    "typing_extensions": "typing-extensions",
+}
 """What is installed under another name than it is imported by."""
 
 

@@ -221,11 +221,9 @@ def test_the_command_render_films_blocks_in_space(tmp_path: Path) -> None:
 
 
 def test_what_an_engine_cannot_do_in_space_is_one_line() -> None:
-    """Engines of the plane, settings it has not, brackets."""
+    """Engines of the plane, settings it has not."""
     problem = incline(0.1, 0.5)
-    with pytest.raises(InputError, match="moves none in space"):
+    with pytest.raises(InputError, match="knows no blocks in space"):
         blocksim.check(problem, method="pymunk")
     with pytest.raises(InputError, match="sweeps"):
         blocksim.check(problem, method="direct", settings={"sweeps": 3})
-    with pytest.raises(InputError, match="engines bracket nothing in space"):
-        blocksim.bracket(problem, over="mu", method="direct")

@@ -246,8 +246,9 @@ def coefficients(words: str, angle: float | None) -> Sides:
 
     Examples
     --------
-    >>> coefficients("0.5,active", math.radians(30))
-    (0.5, 0.333...)
+    >>> left, right = coefficients("0.5,active", math.radians(30))
+    >>> left, round(right, 3)
+    (0.5, 0.333)
     """
     found: list[float] = []
     for word in words.split(","):

@@ -19,7 +19,11 @@ STREAM = "-"
 
 def is_many(scene: str) -> bool:
     """Tell a stream or a folder of structures from one."""
-    return scene == STREAM or Path(scene).is_dir()
+    try:
+        return scene == STREAM or Path(scene).is_dir()
+    except (OSError, ValueError):
+        # No name of a file: whatever reads it says so.
+        return False
 
 
 def is_structure(scene: str | None) -> bool:
