@@ -187,12 +187,7 @@ def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
     both = inside("check", str(place), *asked[:4], "--fill-pressure", "0.4", "--json")
     reaction = json.loads(both.stdout)["reactions"][0]
     assert reaction["horizontal_kN"] == pytest.approx(0.0, abs=1e-9)
-    # A vehicle, and what spreads it: less than half the way down the slope on each side.
-    for dispersal in ((), ("--dispersal", "1:2")):
-        crossed = inside(
-            "bracket", str(place), *asked[:4], "--vehicle", "10@0", *dispersal, "--json"
-        )
-        assert crossed.returncode == 0, crossed.stderr
+    # What spreads a load: less than half the way down the slope on each side.
     spread = inside(
         "check",
         str(place),
@@ -206,6 +201,18 @@ def test_a_drawn_wall_under_fill_by_hand(tmp_path: Path) -> None:
     )
     told = json.loads(spread.stdout)
     assert told["problem"]["live_weight_kN"] == pytest.approx(10.0)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("dispersal", [(), ("--dispersal", "1:2")], ids=["straight", "spread"])
+def test_a_vehicle_crosses_a_drawn_wall_under_fill(
+    dispersal: tuple[str, ...], tmp_path: Path
+) -> None:
+    place = tmp_path / "wedge.json"
+    place.write_text(json.dumps(WEDGE))
+    fill = ("--fill", "1", "--fill-unit-weight", "18")
+    crossed = inside("bracket", str(place), *fill, "--vehicle", "10@0", *dispersal, "--json")
+    assert crossed.returncode == 0, crossed.stderr
 
 
 @pytest.mark.parametrize("words", ["at-rest", "active", "0.1,x", "1,2,3", ""])

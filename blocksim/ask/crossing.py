@@ -248,6 +248,8 @@ class _Search:
         self._nodes = quadrature(0.0, 1.0)[0][: degree + 1]
         self._to_control = np.linalg.inv(_bernstein(self._nodes, degree))
         self.places: list[Place] = []
+        # The largest inverse of a load factor so far.
+        self.worst = 0.0
         self._open: list[tuple[float, int, _Piece, float, float]] = []
         self._order = itertools.count()
         self._last: tuple[Array, float] | None = None
@@ -274,11 +276,6 @@ class _Search:
             self._add(left, first, middle)
             self._add(right, middle, second)
         return self.worst
-
-    @property
-    def worst(self) -> float:
-        """The largest inverse of a load factor so far."""
-        return max((1 / place.load_factor for place in self.places), default=0.0)
 
     def _pieces(
         self, vehicle: Vehicle, heading: str, start: float, end: float
@@ -332,6 +329,7 @@ class _Search:
                   load_factor=factor)
         )  # fmt: skip
         self._last = live, 1 / factor
+        self.worst = max(self.worst, 1 / factor)
         return 1 / factor
 
     def _add(self, piece: _Piece, first: float, second: float) -> None:
