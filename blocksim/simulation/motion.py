@@ -37,7 +37,7 @@ from blocksim.blocks.assembly import Array, Assembly, displacement
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Quality, Settings, World, trusted
 from blocksim.simulation.looking import Looking
-from blocksim.simulation.onset import UNFOUND
+from blocksim.simulation.onset import UNFOUND, Onset
 from blocksim.simulation.recorded import Recorded
 from blocksim.simulation.verdict import Verdict
 
@@ -163,6 +163,20 @@ def moving_run(
         repeat(again)
         motion = _released(simulation, again, until, progress, rests=rests, last=not left)
     return motion
+
+
+def released(
+    simulation: Runs[Shown],
+    world: World,
+    first: Onset,
+    until: float | None = None,
+    progress: Progress = silent,
+) -> Motion[Shown]:
+    """Let blocks go as the onset test left them in a world; see `moving_run`."""
+    rests = first.verdict is Verdict.STANDS and not first.may_slide
+    return moving_run(
+        simulation, world, first.repeat, rests=rests, until=until, progress=progress
+    )
 
 
 def _released(

@@ -13,7 +13,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.common.words import counted
 from blocksim.engines.base import Engine, TellsForces, World
-from blocksim.simulation.motion import Motion, moving_run
+from blocksim.simulation.motion import Motion, released
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.repeating import COARSER, compared
@@ -54,16 +54,8 @@ class Held:
     def release(
         self, until: float | None = None, progress: Progress = silent
     ) -> Motion[Recording]:
-        """Let the blocks go; see `moving_run`."""
-        first = self.onset
-        return moving_run(
-            self.simulation,
-            self.world,
-            first.repeat,
-            rests=first.verdict is Verdict.STANDS and not first.may_slide,
-            until=until,
-            progress=progress,
-        )
+        """Let the blocks go; see `released`."""
+        return released(self.simulation, self.world, self.onset, until, progress)
 
     def record(self, until: float | None = None, progress: Progress = silent) -> Recording:
         """Let the blocks go, and say how right it is where the engine follows an accuracy."""

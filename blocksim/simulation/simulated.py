@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, cast
-
-import numpy as np
 
 from blocksim.blocks.assembly import Array, Assembly
 from blocksim.blocks.problem import Problem
 from blocksim.common.checks import Range
 from blocksim.engines import get_engine
 from blocksim.engines.base import Engine, Quality, Settings, TakesForces, TellsForces, World
+from blocksim.simulation.recorded import Overrides as Overrides
+from blocksim.simulation.recorded import Simulated
 from blocksim.simulation.recording import Recording
 
 if TYPE_CHECKING:
     from blocksim.simulation.looking import Looking
     from blocksim.simulation.onset import Onset
 
-Overrides = Mapping[str, float]
-"""Fields of an engine's `Settings` by name, given instead of what its rule says."""
 BY_RULE: Overrides = {}
 """None given."""
 
@@ -176,24 +174,15 @@ class ReducedWorld:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Simulation:
-    """A problem, an engine and its settings.
+class Simulation(Simulated[Problem]):
+    """A problem of the plane, an engine and its settings.
 
     Parameters
     ----------
-    problem : Problem
-    engine : Engine
-    settings : Settings
-    given : mapping of str to float
-        Those settings that do not follow the engine's rule.
     reduction : Reduced or None
         What the engine is given in place of all blocks.
     """
 
-    problem: Problem
-    engine: Engine
-    settings: Settings
-    given: Overrides = field(default_factory=dict[str, float])
     reduction: Reduced | None = None
 
     @classmethod
@@ -279,11 +268,6 @@ class Simulation:
             said.append(f"sweeps {fewer:.2g} times the rule's are too few to be sure")
         return "; ".join(said)
 
-    def finer(self, factor: int) -> Simulation:
-        """Return the same with `factor` times the sweeps in each step of a moving run."""
-        settings = replace(self.settings, sweeps=self.settings.sweeps * factor)
-        return replace(self, settings=settings)
-
     def at_step(self, step: float) -> Simulation:
         """Return the same with another time step."""
         return replace(self, settings=replace(self.settings, step=step))
@@ -292,12 +276,4 @@ class Simulation:
         self, times: Sequence[float], poses: Sequence[Array], quality: Quality
     ) -> Recording:
         """Return frames as a recording."""
-        return Recording(
-            problem=self.problem,
-            engine=self.engine.name,
-            engine_version=self.engine.version,
-            settings=self.settings,
-            times=np.array(times),
-            poses=np.array(poses),
-            quality=quality,
-        )
+        return self.recorded(Recording, times, poses, quality)

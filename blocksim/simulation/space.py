@@ -11,7 +11,7 @@ from typing import Any, ClassVar, cast
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, World
-from blocksim.simulation.motion import Motion, moving_run
+from blocksim.simulation.motion import Motion, released
 from blocksim.simulation.observation import Observation
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.simulated import BY_RULE, Overrides, given_words
@@ -26,14 +26,11 @@ class HeldInSpace:
     Parameters
     ----------
     simulation : SpatialSimulation
-    given : mapping of str to float
-        Settings that do not follow the engine's rule.
     world : World
     onset : Onset
     """
 
     simulation: SpatialSimulation
-    given: Overrides
     world: World
     onset: Onset
     splits: ClassVar[int] = 0
@@ -46,16 +43,8 @@ class HeldInSpace:
     def release(
         self, until: float | None = None, progress: Progress = silent
     ) -> Motion[SpatialRecording]:
-        """Let the blocks go; see `moving_run`."""
-        first = self.onset
-        return moving_run(
-            self.simulation,
-            self.world,
-            first.repeat,
-            rests=first.verdict is Verdict.STANDS and not first.may_slide,
-            until=until,
-            progress=progress,
-        )
+        """Let the blocks go; see `released`."""
+        return released(self.simulation, self.world, self.onset, until, progress)
 
     def record(
         self, until: float | None = None, progress: Progress = silent
@@ -75,7 +64,7 @@ class HeldInSpace:
         falls = verdict is Verdict.COLLAPSES
         return Observation(
             verdict=verdict,
-            evidence=evidence + aside("settings", given_words(self.given)),
+            evidence=evidence + aside("settings", given_words(self.simulation.given)),
             onset=self.onset,
             # Of a recording in space nothing is asked that is of the plane.
             motion=cast("Any", motion),
@@ -115,7 +104,7 @@ def hold_in_space(
         # What an engine does not take of friction may hold blocks.
         rougher=None if simulation.look.is_bounded(engine) else problem,
     )
-    return HeldInSpace(simulation=simulation, given=settings, world=world, onset=found)
+    return HeldInSpace(simulation=simulation, world=world, onset=found)
 
 
 def observe_in_space(

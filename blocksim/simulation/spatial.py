@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,10 +12,10 @@ from blocksim.blocks.space.parting import displacement_in_space
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.files import AnyPath
 from blocksim.common.shown import renderer
-from blocksim.engines.base import Engine, Quality, Settings, World
+from blocksim.engines.base import Engine, Quality, World
 from blocksim.simulation.looking import InSpace
-from blocksim.simulation.recorded import Recorded
-from blocksim.simulation.simulated import Overrides, setting_of
+from blocksim.simulation.recorded import Recorded, Simulated
+from blocksim.simulation.simulated import Overrides, settings_by
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -60,20 +60,9 @@ class SpatialRecording(Recorded[SpatialProblem]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpatialSimulation:
-    """A problem in space, an engine and its settings; as `Simulation`.
+class SpatialSimulation(Simulated[SpatialProblem]):
+    """A problem in space, an engine that moves blocks there, and its settings."""
 
-    Parameters
-    ----------
-    problem : SpatialProblem
-    engine : Engine
-        One that moves blocks in space.
-    settings : Settings
-    """
-
-    problem: SpatialProblem
-    engine: Engine
-    settings: Settings
     length = "L"
 
     @classmethod
@@ -82,11 +71,11 @@ class SpatialSimulation:
     ) -> SpatialSimulation:
         """Take the settings that the engine chooses for the blocks, or those given."""
         assert engine.rule_in_space is not None  # noqa: S101 - asked of engines in space only
-        given = {name: setting_of(name, value) for name, value in settings.items()}
         return cls(
             problem=problem,
             engine=engine,
-            settings=replace(engine.rule_in_space(problem.assembly), **given),
+            settings=settings_by(engine.rule_in_space(problem.assembly), settings),
+            given=settings,
         )
 
     @property
@@ -105,21 +94,8 @@ class SpatialSimulation:
         assert self.engine.build_in_space is not None  # noqa: S101 - as above
         return self.engine.build_in_space(self.problem, self.settings)
 
-    def finer(self, factor: int) -> SpatialSimulation:
-        """Return the same with more sweeps in each step of a moving run."""
-        settings = replace(self.settings, sweeps=self.settings.sweeps * factor)
-        return replace(self, settings=settings)
-
     def record(
         self, times: Sequence[float], poses: Sequence[Array], quality: Quality
     ) -> SpatialRecording:
         """Return frames as a recording."""
-        return SpatialRecording(
-            problem=self.problem,
-            engine=self.engine.name,
-            engine_version=self.engine.version,
-            settings=self.settings,
-            times=np.array(times),
-            poses=np.array(poses),
-            quality=quality,
-        )
+        return self.recorded(SpatialRecording, times, poses, quality)
