@@ -39,7 +39,7 @@ from blocksim.engines.base import Quality, Settings, World, trusted
 from blocksim.simulation.looking import Looking
 from blocksim.simulation.onset import UNFOUND, Onset
 from blocksim.simulation.recorded import Recorded
-from blocksim.simulation.verdict import Verdict
+from blocksim.simulation.verdict import Evidence, Verdict
 
 ROUNDING = 1e-12
 """What is smaller is nothing but rounding."""
@@ -177,6 +177,22 @@ def released(
     return moving_run(
         simulation, world, first.repeat, rests=rests, until=until, progress=progress
     )
+
+
+def both_tests(
+    first: Onset, release: Callable[[], Motion[Shown]], *, moving: bool
+) -> tuple[Verdict, Motion[Shown] | None, tuple[Evidence, ...]]:
+    """Let blocks go after the onset test if that is asked for, and tell what both tests show.
+
+    They are not let go where that test is undecided: unbalanced impulses would throw them.
+    """
+    verdict, evidence = first.verdict, (Evidence("onset test", first.reason),)
+    if not moving or verdict is Verdict.UNDECIDED:
+        return verdict, None, evidence
+    motion = release()
+    if motion.verdict is not verdict:
+        verdict = Verdict.UNDECIDED
+    return verdict, motion, (*evidence, Evidence("moving run", motion.reason))
 
 
 def _released(

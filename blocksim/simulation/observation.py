@@ -13,7 +13,7 @@ from blocksim.blocks.problem import Problem
 from blocksim.common.progress import Progress, silent
 from blocksim.common.words import counted
 from blocksim.engines.base import Engine, TellsForces, World
-from blocksim.simulation.motion import Motion, released
+from blocksim.simulation.motion import Motion, both_tests, released
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.recording import Recording
 from blocksim.simulation.repeating import COARSER, compared
@@ -200,13 +200,9 @@ def hold(
 def conclude(held: Held, *, moving: bool, progress: Progress = silent) -> Observation:
     """Do the second part: the moving run if asked for, and what all of it shows."""
     simulation, first = held.simulation, held.onset
-    verdict, motion = first.verdict, None
-    evidence = (Evidence("onset test", first.reason),)
-    if moving and verdict is not Verdict.UNDECIDED:
-        motion = held.release(progress=progress)
-        evidence += (Evidence("moving run", motion.reason),)
-        if motion.verdict is not verdict:
-            verdict = Verdict.UNDECIDED
+    verdict, motion, evidence = both_tests(
+        first, lambda: held.release(progress=progress), moving=moving
+    )
     evidence += _asides(held, motion)
     evidence += aside("settings", given_words(simulation.given))
     joints = closed_joints(simulation.assembly.joint_angles)

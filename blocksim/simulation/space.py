@@ -11,12 +11,12 @@ from typing import Any, ClassVar, cast
 from blocksim.blocks.space.problem import SpatialProblem
 from blocksim.common.progress import Progress, silent
 from blocksim.engines.base import Engine, World
-from blocksim.simulation.motion import Motion, released
+from blocksim.simulation.motion import Motion, both_tests, released
 from blocksim.simulation.observation import Observation
 from blocksim.simulation.onset import Onset, onset
 from blocksim.simulation.simulated import BY_RULE, Overrides, given_words
 from blocksim.simulation.spatial import SpatialRecording, SpatialSimulation
-from blocksim.simulation.verdict import Evidence, Verdict, aside
+from blocksim.simulation.verdict import Verdict, aside
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,13 +54,9 @@ class HeldInSpace:
 
     def concluded(self, *, moving: bool, progress: Progress = silent) -> Observation:
         """Do the moving run if it is asked for, and tell what all of it shows."""
-        verdict, motion = self.onset.verdict, None
-        evidence = (Evidence("onset test", self.onset.reason),)
-        if moving and verdict is not Verdict.UNDECIDED:
-            motion = self.release(progress=progress)
-            evidence += (Evidence("moving run", motion.reason),)
-            if motion.verdict is not verdict:
-                verdict = Verdict.UNDECIDED
+        verdict, motion, evidence = both_tests(
+            self.onset, lambda: self.release(progress=progress), moving=moving
+        )
         falls = verdict is Verdict.COLLAPSES
         return Observation(
             verdict=verdict,
